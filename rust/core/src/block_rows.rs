@@ -1,0 +1,46 @@
+//! A sparse matrix made of blocks of [`BLOCK`] rows that share their columns: one block a face, one cone a block.
+
+/// Rows of one block: `xx`, `yy`, `√2·xy` of a face's Hessian (same Frobenius norm as the four entries).
+pub const BLOCK: usize = 3;
+
+/// A sparse matrix of `BLOCK · n_blocks` rows. All rows of a block have the same columns, sorted and without repeats.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlockRows {
+    /// Number of columns.
+    pub n_columns: usize,
+    /// Block `b` owns the entries `starts[b]..starts[b + 1]`; length `n_blocks + 1`.
+    pub starts: Vec<usize>,
+    /// The column of each entry.
+    pub columns: Vec<u32>,
+    /// The `BLOCK` row values of each entry.
+    pub values: Vec<[f64; BLOCK]>,
+}
+
+impl BlockRows {
+    /// Number of blocks.
+    #[must_use]
+    pub fn n_blocks(&self) -> usize {
+        self.starts.len().saturating_sub(1)
+    }
+
+    /// The columns and values of block `b`.
+    #[must_use]
+    pub fn block(&self, b: usize) -> (&[u32], &[[f64; BLOCK]]) {
+        let range = self.starts[b]..self.starts[b + 1];
+        (&self.columns[range.clone()], &self.values[range])
+    }
+
+    /// Block `b` times the vector `u`.
+    #[must_use]
+    pub fn block_times(&self, b: usize, u: &[f64]) -> [f64; BLOCK] {
+        let (columns, values) = self.block(b);
+        let mut sum = [0.0; BLOCK];
+        for (&column, value) in columns.iter().zip(values) {
+            let x = u[column as usize];
+            for (s, v) in sum.iter_mut().zip(value) {
+                *s += v * x;
+            }
+        }
+        sum
+    }
+}

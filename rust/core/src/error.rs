@@ -1,0 +1,108 @@
+//! What can go wrong, as values: each error names the culprit and the cure.
+
+/// The result of every fallible function of this crate.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Any failure of this crate. A solver that stops short of its tolerance is *not* an error but a status.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The mesh cannot be used as it is.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// An argument has a wrong value or shape.
+    #[error("{name}: {problem}")]
+    Argument {
+        /// The argument's name, as the caller wrote it.
+        name: &'static str,
+        /// What is wrong with it and what to pass instead.
+        problem: String,
+    },
+    /// The numerical problem could not be solved at all.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    /// The caller asked to stop through [`crate::Progress::cancel`]; nothing is returned.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl Error {
+    /// An [`Error::Argument`] for the argument `name`.
+    pub fn argument(name: &'static str, problem: impl Into<String>) -> Self {
+        Self::Argument { name, problem: problem.into() }
+    }
+}
+
+/// What is wrong with a mesh.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// A face names a vertex that does not exist.
+    #[error("face {face} names vertex {vertex}, but there are only {n_vertices} vertices")]
+    VertexOutOfRange {
+        /// The face.
+        face: usize,
+        /// The vertex that it names.
+        vertex: i64,
+        /// How many there are.
+        n_vertices: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("vertex {vertex} has a coordinate that is not finite; remove or repair that vertex")]
+    NonFiniteVertex {
+        /// The vertex.
+        vertex: usize,
+    },
+    /// An edge length is NaN, infinite or negative.
+    #[error("face {face} has an edge length that is negative or not finite; pass lengths >= 0")]
+    BadEdgeLength {
+        /// The face.
+        face: usize,
+    },
+    /// The two faces of an edge were given different lengths for it.
+    #[error("faces {first} and {second} share an edge but were given different lengths for it")]
+    UnequalEdgeLengths {
+        /// One face.
+        first: usize,
+        /// The other.
+        second: usize,
+    },
+    /// Three edge lengths of a face form no triangle.
+    #[error("the edge lengths of face {face} violate the triangle inequality")]
+    TriangleInequality {
+        /// The face.
+        face: usize,
+    },
+    /// There is no face with positive area.
+    #[error("the mesh has no face with positive area; nothing can be computed on it")]
+    NoFaces,
+    /// A dual edge has no length, so the circumcentric Hessian does not exist.
+    #[error("faces {face} and {neighbour} have the same circumcentre: the circumcentric dual edge has no length; use barycentric duals")]
+    ZeroDualEdge {
+        /// One face.
+        face: usize,
+        /// Its neighbour.
+        neighbour: usize,
+    },
+    /// The operation needs positions, but the mesh is known by its edge lengths only.
+    #[error("the mesh has edge lengths only; this operation needs vertex positions")]
+    NoPositions,
+}
+
+/// Why a numerical problem has no answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SolveError {
+    /// The matrix of a linear system is singular or not finite.
+    #[error("the linear system could not be factorised: {reason}")]
+    Factorisation {
+        /// What the factorisation reported.
+        reason: String,
+    },
+    /// The constraints contradict each other or the problem has no unique solution.
+    #[error("the problem has no solution: {reason}")]
+    Infeasible {
+        /// Why.
+        reason: String,
+    },
+}

@@ -1,0 +1,9 @@
+//! The L1 surface Hessian of triangle meshes [Rowe, Jacobson and Stein 2024]: operators, solvers, flows.
+//!
+//! Read in this order: [`mesh`] → [`operators`] → [`solve`] → [`tools`].
+pub mod block_rows;
+pub mod error;
+pub mod progress;
+
+pub use error::{Error, Result};
+pub use progress::Progress;

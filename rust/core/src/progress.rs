@@ -1,0 +1,107 @@
+//! Cancelling, finishing early and watching a running call from another thread.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard};
+
+use crate::{Error, Result};
+
+/// What a running call last said of itself.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Report {
+    /// How much is done, 0 to 1.
+    pub fraction: f64,
+    /// What is being done, in a word or two.
+    pub stage: String,
+    /// The number of finished steps or iterations of that stage.
+    pub iteration: usize,
+    /// The energy after the last of them, if known.
+    pub energy: Option<f64>,
+    /// The relative duality gap of the last inner solution, if known.
+    pub gap: Option<f64>,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    report: Report,
+    snapshot: Option<Vec<[f64; 3]>>,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    cancel: AtomicBool,
+    finish: AtomicBool,
+    state: Mutex<State>,
+}
+
+/// A handle shared between a running call and whoever watches it; clones share one state.
+#[derive(Debug, Clone, Default)]
+pub struct Progress {
+    shared: Arc<Shared>,
+}
+
+impl Progress {
+    /// A fresh handle.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Ask the running call to stop and return [`Error::Cancelled`].
+    pub fn cancel(&self) {
+        self.shared.cancel.store(true, Ordering::Relaxed);
+    }
+
+    /// Ask the running call to stop and return what it has reached.
+    pub fn finish(&self) {
+        self.shared.finish.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether [`Progress::cancel`] was called.
+    #[must_use]
+    pub fn is_cancelled(&self) -> bool {
+        self.shared.cancel.load(Ordering::Relaxed)
+    }
+
+    /// Whether [`Progress::finish`] was called.
+    #[must_use]
+    pub fn is_finishing(&self) -> bool {
+        self.shared.finish.load(Ordering::Relaxed)
+    }
+
+    /// # Errors
+    /// [`Error::Cancelled`] after [`Progress::cancel`].
+    pub fn check(&self) -> Result<()> {
+        if self.is_cancelled() {
+            Err(Error::Cancelled)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Publish where the call stands.
+    pub fn report(&self, report: Report) {
+        self.state().report = report;
+    }
+
+    /// What the call last published.
+    #[must_use]
+    pub fn last_report(&self) -> Report {
+        self.state().report.clone()
+    }
+
+    /// Publish the vertices after a finished flow step.
+    pub fn set_snapshot(&self, vertices: &[[f64; 3]]) {
+        self.state().snapshot = Some(vertices.to_vec());
+    }
+
+    /// The vertices after the last finished flow step.
+    #[must_use]
+    pub fn snapshot(&self) -> Option<Vec<[f64; 3]>> {
+        self.state().snapshot.clone()
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        // A poisoned lock only means that a watcher panicked while reading: the state itself is plain data.
+        self.shared.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+    }
+}
