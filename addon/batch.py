@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The batch command: stylize files without a window.
+
+`blender --command ridgeform stylize FILES -o OUT` with the installed extension, or, from a checkout with the
+wheel and the `bpy` package installed, `python -m addon stylize FILES -o OUT`.
+"""
+
+import argparse
+import contextlib
+import json
+import math
+import os
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import bpy
+
+from . import files, selection
+from .console import ProgressBar
+from .settings import default_settings
+from .tools.stylize import RefusedError, Stylization
+
+COMMAND = "ridgeform"
+POLL_SECONDS = 0.05
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Run the command line; returns the exit code: 0, 1 if a file failed, 2 for a wrong command line."""
+    try:
+        options = _parser().parse_args(arguments)
+    except SystemExit as leaving:
+        return int(leaving.code or 0)
+    settings = _settings_from(options)
+    failed = False
+    taken: set[Path] = set()
+    with _clean_output(options.json) as emit:
+        for source in options.files:
+            record = _one_file(source, options, settings, taken)
+            failed |= record["error"] is not None
+            emit(record)
+    return 1 if failed else 0
+
+
+def _one_file(
+    source: Path, options: argparse.Namespace, settings: object, taken: set[Path]
+) -> dict[str, object]:
+    record: dict[str, object] = {
+        "file": str(source),
+        "output": None,
+        "vertices": None,
+        "faces": None,
+        "energy_before": None,
+        "energy_after": None,
+        "gap": None,
+        "seconds": None,
+        "warnings": [],
+        "error": None,
+        "meshes": [],
+    }
+    begin = time.perf_counter()
+    try:
+        target = _target(source, options)
+        if target in taken:
+            raise files.FileError(f"{target} is already the output of another file")
+        if target == source.resolve():
+            raise files.FileError(f"{source.name} would be overwritten: choose another output")
+        run = _stylize_file(source, settings)
+        files.write_file(target)
+        taken.add(target)
+        record |= _record_of(run) | {"output": str(target)}
+        if run.errors:
+            record["error"] = "; ".join(run.errors)
+    except (files.FileError, RefusedError) as error:
+        record["error"] = str(error)
+    record["seconds"] = round(time.perf_counter() - begin, 3)
+    return record
+
+
+def _stylize_file(source: Path, settings: object) -> Stylization:
+    chosen = selection.usable(files.read_file(source))
+    run = Stylization(chosen.objects, settings, chosen.skipped)
+    run.job.start()
+    try:
+        with ProgressBar(source.name) as bar:
+            while run.job.is_running:
+                bar.show(run.job.fraction)
+                time.sleep(POLL_SECONDS)
+            bar.show(1.0)
+    except BaseException:
+        run.job.cancel()
+        raise
+    run.apply()
+    return run
+
+
+def _record_of(run: Stylization) -> dict[str, object]:
+    done = [entry for entry in run.summary if entry["energy_after"] is not None]
+    warnings = [f'"{entry["name"]}": {note}' for entry in run.summary for note in entry["warnings"]]
+    return {
+        "vertices": sum(entry["vertices"] for entry in done),
+        "faces": sum(entry["faces"] for entry in done),
+        "energy_before": sum(entry["energy_before"] for entry in done),
+        "energy_after": sum(entry["energy_after"] for entry in done),
+        "gap": max((entry["gap"] for entry in done), default=None),
+        "warnings": warnings + run.skipped,
+        "meshes": run.summary,
+    }
+
+
+def _target(source: Path, options: argparse.Namespace) -> Path:
+    out: Path = options.output
+    into_folder = len(options.files) > 1 or options.format is not None or out.is_dir() or not out.suffix
+    target = out / (source.stem + (options.format or source.suffix.lower())) if into_folder else out
+    files.check_suffix(target)
+    return target.resolve()
+
+
+@contextlib.contextmanager
+def _clean_output(as_json: bool) -> Iterator[object]:
+    """Give a function that prints a record; with JSON, what Blender prints goes to standard error."""
+    if not as_json:
+        yield lambda record: print(_sentence(record), flush=True)
+        return
+    sys.stdout.flush()
+    saved = os.dup(1)
+    os.dup2(2, 1)
+    try:
+        with os.fdopen(os.dup(saved), "w", encoding="utf-8") as stream:
+            yield lambda record: print(json.dumps(record, ensure_ascii=False), file=stream, flush=True)
+    finally:
+        sys.stdout.flush()
+        os.dup2(saved, 1)
+        os.close(saved)
+
+
+def _sentence(record: dict[str, object]) -> str:
+    if record["error"] is not None:
+        return f"{record['file']}: failed: {record['error']}"
+    notes = "".join(f"\n  note: {note}" for note in record["warnings"])
+    where = f"{record['file']} → {record['output']}"
+    energies = f"energy {record['energy_before']:.4g} → {record['energy_after']:.4g}, gap {record['gap']:.1g}"
+    return f"{where}: {record['vertices']} vertices, {energies}, {record['seconds']:.1f} s{notes}"
+
+
+def _settings_from(options: argparse.Namespace) -> object:
+    given = {
+        name: value
+        for name, value in vars(options).items()
+        if value is not None
+        and name not in {"tool", "files", "output", "format", "json", "reduce", "shape_key", "mark"}
+    }
+    if options.fidelity is not None:
+        given["use_fidelity"] = True
+    if options.reduce is not None:
+        given |= {"reduce": True, "reduce_ratio": options.reduce}
+    if options.shape_key:
+        given["output"] = "SHAPE_KEY"
+    if options.mark:
+        given["marks"] = {kind.upper() for kind in options.mark}
+    if options.mark_angle is not None:
+        given["mark_angle"] = math.radians(options.mark_angle)
+    return default_settings(**given)
+
+
+def _suffix(text: str) -> str:
+    return "." + text.lower().lstrip(".")
+
+
+def _parser() -> argparse.ArgumentParser:
+    defaults = default_settings()
+    parser = argparse.ArgumentParser(prog="ridgeform", description="Ridgeform without a window.")
+    tools = parser.add_subparsers(dest="tool", required=True, metavar="TOOL")
+    stylize = tools.add_parser("stylize", help="make meshes piecewise flat, with crisp ridges")
+    add = stylize.add_argument
+    add("files", nargs="+", type=Path, metavar="FILE", help=f"what to read: {' '.join(files.FORMATS)}")
+    add(
+        "-o", "--output", type=Path, required=True, metavar="OUT", help="the file, or the folder, to write to"
+    )
+    add(
+        "--format", type=_suffix, choices=list(files.FORMATS), help="write into the folder OUT in this format"
+    )
+    add("--json", action="store_true", help="print one JSON record per file on standard output")
+    add("--steps", type=int, help=f"flow steps ({defaults.steps})")
+    add("--strength", type=float, help=f"0 to 1 ({defaults.strength})")
+    add("--sharpness", type=float, help=f"0 to 1 ({defaults.sharpness})")
+    add("--strength-group", metavar="NAME", help="vertex group that masks the strength")
+    add("--ridge-group", metavar="NAME", help="vertex group painted where ridges should form")
+    add("--avoid-ridges", action="store_true", default=None, help="keep ridges away from what is painted")
+    add("--shape-key", action="store_true", help="put the result into a new shape key")
+    add("--keep-volume", action="store_true", default=None, help="scale closed meshes to their old volume")
+    add("--mark", action="append", choices=("sharp", "crease", "bevel"), help="mark ridges; may be repeated")
+    add("--mark-angle", type=float, metavar="DEGREES", help="least angle between the faces at a ridge (20)")
+    add("--reduce", type=float, metavar="RATIO", help="keep this share of the triangles")
+    add("--fidelity", type=float, help="fidelity weight of the paper instead of --strength")
+    add("--scale", choices=("max_edge", "bounding_box"), help="unit of --fidelity (max_edge)")
+    add("--coupling", choices=("joint", "separate"), help="norm over the three coordinates (joint)")
+    add("--dual", choices=("barycentric", "circumcentric"), help="dual edges (barycentric)")
+    add(
+        "--delaunay",
+        action="store_true",
+        default=None,
+        help="compute on the intrinsic Delaunay triangulation",
+    )
+    add("--solver", choices=("auto", "fast", "clarabel"), help="solver of each step (auto)")
+    add(
+        "--tolerance",
+        type=float,
+        help="certified relative gap of each step; 0: stop when nothing visible changes",
+    )
+    add("--max-iterations", type=int, help="most solver iterations in a step; 0: left to the solver")
+    return parser
+
+
+_command = None
+
+
+def register() -> None:
+    """Register `blender --command ridgeform`."""
+    global _command  # noqa: PLW0603
+    _command = bpy.utils.register_cli_command(COMMAND, main)
+
+
+def unregister() -> None:
+    """Unregister the command."""
+    bpy.utils.unregister_cli_command(_command)

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where points lie on a triangulated surface: nearest triangle and barycentric coordinates, by chart."""
+
+import numpy as np
+from mathutils.bvhtree import BVHTree
+
+
+def charts(corners: np.ndarray, triangles: np.ndarray, uv_layers: list[np.ndarray]) -> np.ndarray:
+    """The UV chart (m,) of each triangle: connected without crossing a seam of any UV map.
+
+    `corners` (m, 3) are the corners of the mesh that the triangles use, `uv_layers` arrays (c, 2). Without
+    UV maps all is one chart.
+    """
+    if not uv_layers:
+        return np.zeros(len(triangles), np.int64)
+    rows = np.concatenate(
+        [triangles.reshape(-1, 1), *(layer[corners.ravel()] for layer in uv_layers)], axis=1
+    )
+    _, node = np.unique(rows, axis=0, return_inverse=True)
+    node = node.reshape(-1, 3)
+    label = np.arange(int(node.max()) + 1)
+    while True:
+        least = label[node].min(axis=1)
+        lowered = label.copy()
+        for corner in range(3):
+            np.minimum.at(lowered, node[:, corner], least)
+            # A label is itself a node: hooking the old root makes whole trees merge at once.
+            np.minimum.at(lowered, label[node[:, corner]], least)
+        lowered = lowered[lowered]
+        if np.array_equal(lowered, label):
+            break
+        label = lowered
+    _, chart = np.unique(label[node[:, 0]], return_inverse=True)
+    return chart
+
+
+class SurfaceMap:
+    """Finds the nearest point of a triangulated surface, on the whole of it or on one chart."""
+
+    def __init__(self, coordinates: np.ndarray, triangles: np.ndarray, chart: np.ndarray) -> None:
+        """Take a surface of triangles (m, 3) with the chart (m,) of each."""
+        self._coordinates = coordinates
+        self._triangles = triangles
+        self._chart = chart
+        self._vectors = coordinates.tolist()
+        self._whole = BVHTree.FromPolygons(self._vectors, triangles.tolist(), all_triangles=True)
+        self._parts: dict[int, tuple[BVHTree, np.ndarray]] = {}
+
+    def nearest(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The nearest triangle (k,) of each point (k, 3) and the barycentric coordinates (k, 3) in it."""
+        found = [self._whole.find_nearest(point) for point in points.tolist()]
+        triangle = np.array([hit[2] for hit in found], np.int64)
+        return triangle, self._barycentric(triangle, np.array([hit[0][:] for hit in found]))
+
+    def nearest_on_chart_of(self, triangle: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """As `nearest`, but each point (k, 3) looks only on the chart of the triangle (k,) given for it."""
+        wanted = self._chart[triangle]
+        found = np.empty(len(points), np.int64)
+        places = np.empty((len(points), 3))
+        for chart in np.unique(wanted).tolist():
+            tree, members = self._part(chart)
+            rows = np.flatnonzero(wanted == chart)
+            hits = [tree.find_nearest(point) for point in points[rows].tolist()]
+            found[rows] = members[[hit[2] for hit in hits]]
+            places[rows] = [hit[0][:] for hit in hits]
+        return found, self._barycentric(found, places)
+
+    def _part(self, chart: int) -> tuple[BVHTree, np.ndarray]:
+        if chart not in self._parts:
+            members = np.flatnonzero(self._chart == chart)
+            used, local = np.unique(self._triangles[members], return_inverse=True)
+            tree = BVHTree.FromPolygons(
+                self._coordinates[used].tolist(), local.reshape(-1, 3).tolist(), all_triangles=True
+            )
+            self._parts[chart] = (tree, members)
+        return self._parts[chart]
+
+    def _barycentric(self, triangle: np.ndarray, places: np.ndarray) -> np.ndarray:
+        a, b, c = (self._coordinates[self._triangles[triangle, corner]] for corner in range(3))
+        normal = np.cross(b - a, c - a)
+        twice = np.einsum("ij,ij->i", normal, normal)
+        weights = np.stack(
+            [
+                np.einsum("ij,ij->i", np.cross(c - b, places - b), normal),
+                np.einsum("ij,ij->i", np.cross(a - c, places - c), normal),
+                np.einsum("ij,ij->i", np.cross(b - a, places - a), normal),
+            ],
+            axis=1,
+        )
+        # A triangle without area gives its corners equal shares.
+        weights = np.where(twice[:, None] > 0, weights, 1.0).clip(0.0, None)
+        total = weights.sum(axis=1, keepdims=True)
+        return np.where(total > 0, weights / np.where(total > 0, total, 1.0), 1.0 / 3.0)

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Running calls of the wheel: in this thread, or in another one while Blender goes on drawing.
+
+No Blender data is touched here. The wheel releases the interpreter lock while it computes; whoever started a
+job polls it and writes to Blender from the main thread.
+"""
+
+import threading
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import ridgeform
+
+
+@dataclass
+class Task:
+    """One call of the wheel: what to call, and what came of it."""
+
+    name: str
+    call: Callable[[ridgeform.Progress], object]
+    progress: ridgeform.Progress = field(default_factory=ridgeform.Progress)
+    result: object | None = None
+    error: BaseException | None = None
+    seconds: float = 0.0
+    started: bool = False
+
+    def run(self) -> None:
+        """Call, and keep the result or the error."""
+        self.started = True
+        begin = time.perf_counter()
+        try:
+            self.result = self.call(self.progress)
+        except BaseException as error:
+            self.error = error
+        self.seconds = time.perf_counter() - begin
+
+
+class Job:
+    """Some tasks, run one after the other."""
+
+    def __init__(self, tasks: Sequence[Task]) -> None:
+        """Take the tasks; nothing runs yet."""
+        self.tasks = list(tasks)
+        self._thread: threading.Thread | None = None
+        self._stop = threading.Event()
+
+    def run(self) -> None:
+        """Run all tasks in this thread. An interrupt (Ctrl-C) ends the job and is raised again."""
+        for task in self.tasks:
+            if self._stop.is_set():
+                return
+            task.run()
+            if isinstance(task.error, KeyboardInterrupt):
+                raise task.error
+
+    def start(self) -> None:
+        """Run all tasks in a thread of their own."""
+        self._thread = threading.Thread(target=self.run, name="ridgeform")
+        self._thread.start()
+
+    @property
+    def is_running(self) -> bool:
+        """Whether the thread is still at work."""
+        return self._thread is not None and self._thread.is_alive()
+
+    @property
+    def current(self) -> Task:
+        """The task at work, or the last one."""
+        begun = [task for task in self.tasks if task.started]
+        return begun[-1] if begun else self.tasks[0]
+
+    @property
+    def fraction(self) -> float:
+        """How much of all tasks is done, 0 to 1."""
+        done = sum(1.0 if task.seconds else task.progress.fraction for task in self.tasks if task.started)
+        return done / len(self.tasks)
+
+    def finish(self) -> None:
+        """Ask the running task to return what it has reached, and start no other."""
+        self._stop.set()
+        for task in self.tasks:
+            task.progress.finish()
+
+    def cancel(self) -> None:
+        """Ask the running task to stop without a result, and wait until it has."""
+        self._stop.set()
+        for task in self.tasks:
+            task.progress.cancel()
+        self.join()
+
+    def join(self) -> None:
+        """Wait for the thread to end."""
+        if self._thread is not None:
+            self._thread.join()
+
+
+_last_summary: list[dict[str, object]] = []
+
+
+def last_summary() -> list[dict[str, object]]:
+    """What the last run did: one dictionary per mesh, with plain values that JSON can hold.
+
+    Keys: name, vertices, faces, energy_before, energy_after, gap, steps, status, seconds, warnings, error.
+    """
+    return [dict(entry) for entry in _last_summary]
+
+
+def store_summary(entries: Sequence[dict[str, object]]) -> None:
+    """Make this the answer of `last_summary`."""
+    _last_summary[:] = [dict(entry) for entry in entries]

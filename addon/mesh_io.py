@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The border between Blender and NumPy: reading and writing coordinates, triangles, weights and edge marks.
+
+Coordinates are `float32` arrays (n, 3) in object space, the bits that Blender stores. What is read in Edit
+Mode is the edited mesh, which `flush_edit_mode` copies into the mesh's own arrays first.
+"""
+
+from collections.abc import Iterable
+from typing import Protocol
+
+import bmesh
+import bpy
+import numpy as np
+
+
+def flush_edit_mode(obj: bpy.types.Object) -> None:
+    """Bring the arrays of a mesh in Edit Mode up to date with what is edited; does nothing in Object Mode."""
+    if obj.data.is_editmode:
+        obj.update_from_editmode()
+
+
+def triangles(mesh: bpy.types.Mesh) -> np.ndarray:
+    """The loop triangles (m, 3) int32: vertices of the triangles that Blender draws for faces of any size."""
+    mesh.calc_loop_triangles()
+    corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
+    mesh.loop_triangles.foreach_get("vertices", corners)
+    return corners.reshape(-1, 3)
+
+
+def triangle_corners(mesh: bpy.types.Mesh) -> np.ndarray:
+    """The corners (m, 3) int32 of the faces that the loop triangles use."""
+    corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
+    mesh.loop_triangles.foreach_get("loops", corners)
+    return corners.reshape(-1, 3)
+
+
+def triangle_faces(mesh: bpy.types.Mesh) -> np.ndarray:
+    """The face (m,) int32 that each loop triangle is a part of."""
+    faces = np.empty(len(mesh.loop_triangles), np.int32)
+    mesh.loop_triangles.foreach_get("polygon_index", faces)
+    return faces
+
+
+def edges(mesh: bpy.types.Mesh) -> np.ndarray:
+    """The edges (k, 2) int32."""
+    ends = np.empty(2 * len(mesh.edges), np.int32)
+    mesh.edges.foreach_get("vertices", ends)
+    return ends.reshape(-1, 2)
+
+
+def face_corners(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """First corner of each face (f,), vertex of each corner (c,) and edge of each corner (c,), int32."""
+    starts = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_start", starts)
+    vertices = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("vertex_index", vertices)
+    corner_edges = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("edge_index", corner_edges)
+    return starts, vertices, corner_edges
+
+
+def selected_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Which vertices (n,) bool are selected and visible."""
+    selected = np.empty(len(mesh.vertices), bool)
+    hidden = np.empty(len(mesh.vertices), bool)
+    mesh.vertices.foreach_get("select", selected)
+    mesh.vertices.foreach_get("hide", hidden)
+    return selected & ~hidden
+
+
+def group_weights(obj: bpy.types.Object, name: str) -> np.ndarray:
+    """The weights (n,) float32 of a vertex group, 0 outside it; `KeyError` if there is no such group."""
+    index = obj.vertex_groups[name].index
+    weights = np.zeros(len(obj.data.vertices), np.float32)
+    for vertex in obj.data.vertices:
+        for element in vertex.groups:
+            if element.group == index:
+                weights[vertex.index] = element.weight
+                break
+    return weights
+
+
+class Coordinates(Protocol):
+    """Where a run reads the coordinates of one mesh and writes them back."""
+
+    original: np.ndarray
+    """The coordinates (n, 3) float32 as they were."""
+
+    def write(self, coordinates: np.ndarray) -> None:
+        """Store coordinates (n, 3) and have the viewport redrawn."""
+
+    def restore(self) -> None:
+        """Put back every bit that `write` changed."""
+
+
+def open_coordinates(obj: bpy.types.Object) -> Coordinates:
+    """The coordinates that Blender would edit: the edited mesh, the active shape key or the positions."""
+    if obj.data.is_editmode:
+        return _EditedCoordinates(obj)
+    if obj.data.shape_keys is not None:
+        return _KeyCoordinates(obj)
+    return _PositionCoordinates(obj)
+
+
+def _read_positions(mesh: bpy.types.Mesh) -> np.ndarray:
+    values = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.attributes["position"].data.foreach_get("vector", values)
+    return values.reshape(-1, 3)
+
+
+def _write_positions(mesh: bpy.types.Mesh, coordinates: np.ndarray) -> None:
+    mesh.attributes["position"].data.foreach_set(
+        "vector", np.ascontiguousarray(coordinates, np.float32).ravel()
+    )
+
+
+def _read_key(key: bpy.types.ShapeKey) -> np.ndarray:
+    values = np.empty(3 * len(key.data), np.float32)
+    key.data.foreach_get("co", values)
+    return values.reshape(-1, 3)
+
+
+def _write_key(key: bpy.types.ShapeKey, coordinates: np.ndarray) -> None:
+    key.data.foreach_set("co", np.ascontiguousarray(coordinates, np.float32).ravel())
+
+
+class _PositionCoordinates:
+    def __init__(self, obj: bpy.types.Object) -> None:
+        self._object = obj
+        self.original = _read_positions(obj.data)
+
+    def write(self, coordinates: np.ndarray) -> None:
+        _write_positions(self._object.data, coordinates)
+        self._object.data.update()
+
+    def restore(self) -> None:
+        self.write(self.original)
+
+
+class _KeyCoordinates:
+    """The active shape key; keys that are relative to it move along, as when Blender edits a basis."""
+
+    def __init__(self, obj: bpy.types.Object) -> None:
+        self._object = obj
+        keys = obj.data.shape_keys
+        active = active_key_index(obj)
+        self._active = active
+        self._moves_mesh = keys.key_blocks[active] == keys.reference_key
+        self._mesh_original = _read_positions(obj.data)
+        self._dependent = {
+            index: _read_key(keys.key_blocks[index]) for index in _dependent_keys(keys, active)
+        }
+        self.original = _read_key(keys.key_blocks[active])
+
+    def write(self, coordinates: np.ndarray) -> None:
+        coordinates = np.asarray(coordinates, np.float32)
+        offset = coordinates - self.original
+        self._store(coordinates, {index: key + offset for index, key in self._dependent.items()}, coordinates)
+
+    def restore(self) -> None:
+        self._store(self.original, self._dependent, self._mesh_original)
+
+    def _store(self, active: np.ndarray, dependent: dict[int, np.ndarray], positions: np.ndarray) -> None:
+        blocks = self._object.data.shape_keys.key_blocks
+        _write_key(blocks[self._active], active)
+        for index, coordinates in dependent.items():
+            _write_key(blocks[index], coordinates)
+        if self._moves_mesh:
+            _write_positions(self._object.data, positions)
+        self._object.data.update()
+
+
+def active_key_index(obj: bpy.types.Object) -> int:
+    """The index of the shape key that is edited: the active one, or the reference key if none is active."""
+    active = obj.active_shape_key
+    return 0 if active is None else obj.data.shape_keys.key_blocks.find(active.name)
+
+
+def _dependent_keys(keys: bpy.types.Key, active: int) -> list[int]:
+    """The indices of the keys that are relative to the active one, directly or through others."""
+    if not keys.use_relative:
+        return []
+    blocks = keys.key_blocks
+    relative_to = [blocks.find(block.relative_key.name) for block in blocks]
+    marked = {active}
+    grown = True
+    while grown:
+        new = {index for index, base in enumerate(relative_to) if base in marked and index not in marked}
+        marked |= new
+        grown = bool(new)
+    return sorted(marked - {active})
+
+
+class _EditedCoordinates:
+    """The mesh in Edit Mode; its active shape key, if any, is what is edited."""
+
+    def __init__(self, obj: bpy.types.Object) -> None:
+        self._object = obj
+        mesh = obj.data
+        if mesh.shape_keys is not None:
+            self.original = _read_key(mesh.shape_keys.key_blocks[active_key_index(obj)])
+        else:
+            values = np.empty(3 * len(mesh.vertices), np.float32)
+            mesh.vertices.foreach_get("co", values)
+            self.original = values.reshape(-1, 3)
+        self._current = self.original
+
+    def write(self, coordinates: np.ndarray) -> None:
+        coordinates = np.ascontiguousarray(coordinates, np.float32)
+        # Bits are compared, not numbers: so that restoring also tells 0 from -0.
+        changed = np.flatnonzero((coordinates.view(np.uint32) != self._current.view(np.uint32)).any(axis=1))
+        edited = bmesh.from_edit_mesh(self._object.data)
+        edited.verts.ensure_lookup_table()
+        for index, position in zip(changed.tolist(), coordinates[changed].tolist(), strict=True):
+            edited.verts[index].co = position
+        edited.normal_update()
+        bmesh.update_edit_mesh(self._object.data, loop_triangles=True, destructive=False)
+        self._current = coordinates
+
+    def restore(self) -> None:
+        self.write(self.original)
+
+
+def add_shape_key(obj: bpy.types.Object, coordinates: np.ndarray, name: str) -> bpy.types.ShapeKey:
+    """Store coordinates (n, 3) as a new active shape key, relative to the key that was active, with value 1.
+
+    A mesh without shape keys gets its Basis first. Object Mode only.
+    """
+    if obj.data.shape_keys is None:
+        obj.shape_key_add(name="Basis", from_mix=False)
+    blocks = obj.data.shape_keys.key_blocks
+    base = blocks[active_key_index(obj)].name
+    key = obj.shape_key_add(name=name, from_mix=False)
+    _write_key(key, coordinates)
+    key.relative_key = blocks[base]
+    key.value = 1.0
+    obj.active_shape_key_index = len(blocks) - 1
+    obj.data.update()
+    return key
+
+
+EDGE_MARKS = {
+    "SHARP": ("sharp_edge", "BOOLEAN"),
+    "CREASE": ("crease_edge", "FLOAT"),
+    "BEVEL": ("bevel_weight_edge", "FLOAT"),
+}
+"""Blender's attribute and its type for each kind of edge mark."""
+
+
+def mark_edges(mesh: bpy.types.Mesh, ridges: np.ndarray, kinds: Iterable[str]) -> None:
+    """Mark the edges (k,) bool with each of the kinds of `EDGE_MARKS`; other edges keep their marks."""
+    for kind in kinds:
+        if mesh.is_editmode:
+            _mark_edited_edges(mesh, ridges, kind)
+        else:
+            _mark_edge_attribute(mesh, ridges, kind)
+    if not mesh.is_editmode:
+        mesh.update()
+
+
+def _mark_edge_attribute(mesh: bpy.types.Mesh, ridges: np.ndarray, kind: str) -> None:
+    name, data_type = EDGE_MARKS[kind]
+    attribute = mesh.attributes.get(name) or mesh.attributes.new(name, data_type, "EDGE")
+    values = np.empty(len(mesh.edges), bool if data_type == "BOOLEAN" else np.float32)
+    attribute.data.foreach_get("value", values)
+    values[ridges] = 1
+    attribute.data.foreach_set("value", values)
+
+
+def _mark_edited_edges(mesh: bpy.types.Mesh, ridges: np.ndarray, kind: str) -> None:
+    edited = bmesh.from_edit_mesh(mesh)
+    name, _ = EDGE_MARKS[kind]
+    layer = None
+    if kind != "SHARP":
+        layer = edited.edges.layers.float.get(name) or edited.edges.layers.float.new(name)
+    edited.edges.ensure_lookup_table()
+    for index in np.flatnonzero(ridges).tolist():
+        edge = edited.edges[index]
+        if layer is None:
+            edge.smooth = False
+        else:
+            edge[layer] = 1.0
+    bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)

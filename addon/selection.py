@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What takes part: the meshes that a tool would work on, and why others cannot."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import bpy
+
+MODES = ("OBJECT", "EDIT_MESH")
+
+
+@dataclass
+class Selection:
+    """The mesh objects that take part, each mesh once, and a sentence for each that was left out."""
+
+    objects: list[bpy.types.Object] = field(default_factory=list)
+    skipped: list[str] = field(default_factory=list)
+
+
+def reason_against(obj: bpy.types.Object) -> str | None:
+    """Why the mesh of this object cannot be worked on, and what to do about it; `None` if it can."""
+    mesh, name, key = obj.data, obj.name, obj.active_shape_key
+    reasons = (
+        (mesh.library, f'"{name}" is linked from another file: make its mesh local first'),
+        (mesh.override_library, f'"{name}" has overridden mesh data: make its mesh local first'),
+        (not mesh.is_editable, f'"{name}" cannot be edited'),
+        (
+            any(modifier.type == "MULTIRES" for modifier in obj.modifiers),
+            f'"{name}" has a Multiresolution modifier: apply it first',
+        ),
+        (
+            mesh.is_editmode and mesh.total_vert_sel == 0,
+            f'Nothing is selected in "{name}": select the part to work on',
+        ),
+        (not mesh.is_editmode and len(mesh.polygons) == 0, f'"{name}" has no faces'),
+        (key and key.lock_shape, f'The active shape key of "{name}" is locked: unlock it first'),
+    )
+    return next((reason for applies, reason in reasons if applies), None)
+
+
+def mesh_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """The mesh objects of the mode: those in Edit Mode, else the selected ones, the active one first."""
+    chosen = context.objects_in_mode if context.mode == "EDIT_MESH" else context.selected_objects
+    active = context.view_layer.objects.active
+    return sorted((obj for obj in chosen if obj.type == "MESH"), key=lambda obj: obj != active)
+
+
+def usable(objects: Iterable[bpy.types.Object]) -> Selection:
+    """Those of the objects that can be worked on; linked duplicates share one mesh, which is taken once."""
+    selection = Selection()
+    seen = set()
+    for obj in objects:
+        if obj.data in seen:
+            continue
+        seen.add(obj.data)
+        reason = reason_against(obj)
+        if reason is None:
+            selection.objects.append(obj)
+        else:
+            selection.skipped.append(reason)
+    return selection
+
+
+def reason_disabled(context: bpy.types.Context) -> str | None:
+    """Why a tool cannot start here, for the tooltip of its button; `None` if it can."""
+    if context.mode not in MODES:
+        return "Switch to Object Mode or to the Edit Mode of a mesh"
+    objects = mesh_objects(context)
+    if not objects:
+        return "Select a mesh object"
+    selection = usable(objects)
+    return None if selection.objects else selection.skipped[0]

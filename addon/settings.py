@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The settings of each tool, and how a modeler's sliders become the paper's numbers."""
+
+from types import SimpleNamespace
+
+import numpy as np
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+
+RIDGE_PULL = 10.0
+"""How much cheaper (or dearer) full paint makes ridges: a decade is visible and still solves well."""
+
+
+def fidelity_of(strength: float) -> float:
+    """The fidelity weight η of eq. (24), on a unit bounding box, that a strength from 0 to 1 stands for."""
+    return 10.0 ** (8.0 - 4.0 * strength)
+
+
+def ridge_weights_of(painted: np.ndarray, triangles: np.ndarray, avoid: bool) -> np.ndarray:
+    """Face weights (m,) of the energy from a painted vertex group (n,) of 0 to 1.
+
+    Nothing painted is 1, so neutral. Painted 1 divides the cost of ridges by `RIDGE_PULL`, or multiplies it
+    with `avoid`.
+    """
+    exponent = painted.astype(np.float64)[triangles].mean(axis=1)
+    return RIDGE_PULL ** (exponent if avoid else -exponent)
+
+
+class StylizeSettings:
+    """The settings of stylize, shared by the operator, the sidebar panel, presets and the batch command."""
+
+    steps: IntProperty(
+        name="Steps",
+        description="How often the flattening step is repeated. More steps give larger and flatter facets",
+        default=20,
+        min=1,
+        max=1000,
+        soft_max=60,
+    )
+    strength: FloatProperty(
+        name="Strength",
+        description="How far each step may move the surface: 0 keeps every detail, 1 leaves only the main "
+        "planes",
+        default=0.5,
+        min=0.0,
+        max=1.5,
+        soft_max=1.0,
+        subtype="FACTOR",
+    )
+    sharpness: FloatProperty(
+        name="Sharpness",
+        description="How angular the result is: 0 gives soft, rounded transitions, 1 the hardest ridges",
+        default=0.5,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+    )
+    strength_group: StringProperty(
+        name="Mask",
+        description="Vertex group that says where and how strongly to stylize. Vertices that are not in it "
+        "stay where they are",
+    )
+    ridge_group: StringProperty(
+        name="Ridges",
+        description="Vertex group painted where ridges should form. What is not painted is neutral",
+    )
+    avoid_ridges: BoolProperty(
+        name="Avoid Ridges",
+        description="Keep ridges away from the painted vertices instead of drawing them there",
+        default=False,
+    )
+    output: EnumProperty(
+        name="Result",
+        description="Where the result goes",
+        items=(
+            ("POSITIONS", "Mesh", "Move the vertices, or the active shape key if there is one"),
+            ("SHAPE_KEY", "New Shape Key", "Leave the mesh as it is and put the result into a new shape key"),
+        ),
+        default="POSITIONS",
+    )
+    keep_volume: BoolProperty(
+        name="Keep Volume",
+        description="Scale the result so that it encloses as much as before. For closed meshes in Object "
+        "Mode",
+        default=False,
+    )
+    marks: EnumProperty(
+        name="Mark Ridges",
+        description="Mark the edges along the ridges. Marks that exist are kept",
+        items=(
+            ("SHARP", "Sharp", "Mark ridges as sharp edges"),
+            ("CREASE", "Crease", "Give ridges a full subdivision crease"),
+            ("BEVEL", "Bevel", "Give ridges a full bevel weight"),
+        ),
+        options={"ENUM_FLAG"},
+        default=set(),
+    )
+    mark_angle: FloatProperty(
+        name="Ridge Angle",
+        description="Edges with at least this angle between their two faces are marked as ridges",
+        default=np.radians(20.0),
+        min=0.0,
+        max=np.pi,
+        subtype="ANGLE",
+    )
+    reduce: BoolProperty(
+        name="Reduce Triangles",
+        description="Simplify the result: flat facets need few triangles. Quads and n-gons become triangles",
+        default=False,
+    )
+    reduce_ratio: FloatProperty(
+        name="Ratio",
+        description="The share of the triangles that is left",
+        default=0.25,
+        min=0.001,
+        max=1.0,
+        soft_min=0.02,
+        subtype="FACTOR",
+    )
+    use_fidelity: BoolProperty(
+        name="Set Fidelity",
+        description="Set the fidelity weight of the paper instead of the strength",
+        default=False,
+    )
+    fidelity: FloatProperty(
+        name="Fidelity",
+        description="Fidelity weight η of the flow (Rowe et al. 2024, eq. 24): larger stays closer to the "
+        "surface",
+        default=500.0,
+        min=1e-6,
+        max=1e12,
+        soft_min=1.0,
+        soft_max=1e8,
+        precision=1,
+    )
+    scale: EnumProperty(
+        name="Unit",
+        description="The length that the fidelity weight is measured in",
+        items=(
+            ("max_edge", "Longest Edge", "The unit of the paper"),
+            (
+                "bounding_box",
+                "Bounding Box",
+                "The longest side of the bounding box: independent of the mesh's density",
+            ),
+        ),
+        default="max_edge",
+    )
+    coupling: EnumProperty(
+        name="Coupling",
+        description="How the three coordinates share ridges",
+        items=(
+            (
+                "joint",
+                "Joint",
+                "One norm over all three coordinates: the result does not depend on the object's axes",
+            ),
+            ("separate", "Separate", "Each coordinate by itself, as in the paper"),
+        ),
+        default="joint",
+    )
+    dual: EnumProperty(
+        name="Dual",
+        description="The dual edges of the Hessian",
+        items=(
+            ("barycentric", "Barycentric", "Between centers of mass: safe on every mesh"),
+            ("circumcentric", "Circumcentric", "Between circumcenters: for well-shaped triangles"),
+        ),
+        default="barycentric",
+    )
+    delaunay: BoolProperty(
+        name="Intrinsic Delaunay",
+        description="Compute each step on the intrinsic Delaunay triangulation. Helps with long, thin "
+        "triangles",
+        default=False,
+    )
+    solver: EnumProperty(
+        name="Solver",
+        description="What solves the problem of each step",
+        items=(
+            ("auto", "Automatic", "Chosen by the problem"),
+            ("fast", "Fast", "The specialised first-order solver"),
+            ("clarabel", "Clarabel", "The general interior-point solver: slow and accurate"),
+        ),
+        default="auto",
+    )
+    tolerance: FloatProperty(
+        name="Tolerance",
+        description="Certified relative duality gap that each step must reach. 0 stops as soon as nothing "
+        "visible changes",
+        default=0.0,
+        min=0.0,
+        max=1.0,
+        precision=6,
+    )
+    max_iterations: IntProperty(
+        name="Iterations",
+        description="The most iterations of the solver in a step. 0 leaves it to the solver",
+        default=0,
+        min=0,
+    )
+
+
+SETTING_NAMES = tuple(StylizeSettings.__annotations__)
+"""The names of all settings of stylize, in the order in which they are shown."""
+
+
+def default_settings(**changes: object) -> SimpleNamespace:
+    """The settings of stylize as a plain object with Blender's defaults, for use without an operator.
+
+    Raises `TypeError` for a name that is not a setting.
+    """
+    unknown = sorted(set(changes) - set(SETTING_NAMES))
+    if unknown:
+        raise TypeError(f"Stylize has no setting {', '.join(unknown)}.")
+    values = {
+        name: annotation.keywords.get("default", "")
+        for name, annotation in StylizeSettings.__annotations__.items()
+    }
+    return SimpleNamespace(**(values | changes))
+
+
+def stylize_options(settings: object) -> dict[str, object]:
+    """The keyword arguments of `ridgeform.stylize` that the settings stand for, the same for every mesh."""
+    paper = settings.use_fidelity
+    return {
+        "iterations": settings.steps,
+        "fidelity": settings.fidelity if paper else fidelity_of(settings.strength),
+        "scale": settings.scale if paper else "bounding_box",
+        "sharpness": settings.sharpness,
+        "coupling": settings.coupling,
+        "dual": settings.dual,
+        "delaunay": settings.delaunay,
+        "solver": settings.solver,
+        "tolerance": settings.tolerance or None,
+        "max_iterations": settings.max_iterations or None,
+    }

@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sidebar tab, the menu entries and the presets."""
+
+from . import menus, panel, presets
+
+_MODULES = (presets, panel, menus)
+
+
+def register() -> None:
+    """Add everything to Blender's interface."""
+    for module in _MODULES:
+        module.register()
+
+
+def unregister() -> None:
+    """Take everything out of Blender's interface again."""
+    for module in reversed(_MODULES):
+        module.unregister()

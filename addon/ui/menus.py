@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Entries in the Object menu and in the Mesh menu."""
+
+import bpy
+
+
+def _draw(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    self.layout.separator()
+    self.layout.operator("ridgeform.stylize", icon="MOD_DECIM")
+
+
+def _menus() -> tuple[type, type]:
+    return bpy.types.VIEW3D_MT_object, bpy.types.VIEW3D_MT_edit_mesh
+
+
+def register() -> None:
+    """Append the entries."""
+    for menu in _menus():
+        menu.append(_draw)
+
+
+def unregister() -> None:
+    """Remove the entries."""
+    for menu in _menus():
+        menu.remove(_draw)
