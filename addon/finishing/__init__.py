@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Optional last steps on a result: arrays in, arrays out."""
+"""Optional last steps on a result."""

@@ -15,6 +15,7 @@ from ..finishing.ridges import ridge_edges
 from ..finishing.volume import keep_volume
 from ..job import Job, Task, store_summary
 from ..settings import ridge_weights_of, stylize_options
+from ..welding import Weld, weld_seams
 
 KEY_NAME = "Stylized"
 UNEVEN_SCALE = 1.1
@@ -27,15 +28,15 @@ class Part:
 
     object: bpy.types.Object
     coordinates: mesh_io.Coordinates
-    triangles: np.ndarray
+    weld: Weld
     free: np.ndarray
     """Which vertices (n,) bool may move."""
     task: Task
     warnings: list[str] = field(default_factory=list)
 
     def merged(self, vertices: np.ndarray) -> np.ndarray:
-        """Coordinates (n, 3) float32: the new ones where the vertex may move, the old bits elsewhere."""
-        new = np.asarray(vertices, np.float32)
+        """Coordinates (n, 3) float32 from welded vertices, with the old bits where none may move."""
+        new = np.asarray(vertices, np.float32)[self.weld.vertex]
         return np.where(self.free[:, None], new, self.coordinates.original)
 
 
@@ -150,22 +151,23 @@ def _prepare(obj: bpy.types.Object, settings: object) -> Part:
             f'Vertex {broken[0]} of "{obj.name}" has a coordinate that is not a finite number '
             f"({len(broken)} in all): delete or move it"
         )
+    weld = weld_seams(vertices, triangles)
     free = mesh_io.selected_vertices(mesh) if mesh.is_editmode else np.ones(len(vertices), bool)
     options = stylize_options(settings)
     if settings.strength_group:
-        strength = _group(obj, settings.strength_group)
-        free &= strength > 0
-        options["strength"] = strength.astype(np.float64)
+        strength = weld.mean_of(_group(obj, settings.strength_group))
+        free &= strength[weld.vertex] > 0
+        options["strength"] = strength
     if settings.ridge_group:
         painted = _group(obj, settings.ridge_group)
-        options["ridge_weights"] = ridge_weights_of(painted, triangles, settings.avoid_ridges)
-    if not free.any():
+        options["ridge_weights"] = ridge_weights_of(painted, triangles[weld.kept], settings.avoid_ridges)
+    moving = weld.all_of(free)
+    if not moving.any():
         raise RefusedError(f'No vertex of "{obj.name}" may move: the mask is empty where it is selected')
-    if not free.all():
-        options["fixed"] = ~free
-    part = Part(
-        obj, coordinates, triangles, free, Task(obj.name, partial(_flow, vertices, triangles, options))
-    )
+    if not moving.all():
+        options["fixed"] = ~moving
+    call = partial(_flow, vertices[weld.first], weld.triangles, options)
+    part = Part(obj, coordinates, weld, moving[weld.vertex], Task(obj.name, call))
     scales = np.abs(obj.matrix_world.to_scale())
     if scales.max() > UNEVEN_SCALE * scales.min():
         part.warnings.append(
@@ -205,8 +207,11 @@ def _write_result(part: Part, settings: object) -> None:
     coordinates = part.merged(part.task.result.vertices)
     if settings.keep_volume:
         if part.free.all():
-            scaled, reason = keep_volume(part.coordinates.original, coordinates, part.triangles)
-            coordinates = scaled.astype(np.float32)
+            first = part.weld.first
+            scaled, reason = keep_volume(
+                part.coordinates.original[first], coordinates[first], part.weld.triangles
+            )
+            coordinates = part.merged(scaled)
         else:
             reason = "the volume was not kept, because only a part of the mesh was free to move"
         if reason is not None:

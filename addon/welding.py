@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Treating the two sides of a split seam as one surface while computing.
+
+Formats that store a vertex once per normal or UV (glTF, PLY), and the Edge Split modifier, leave open
+borders whose vertices lie in the same place. Computed as they are, the surface would tear open along them.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass
+class Weld:
+    """The welded mesh of a mesh: which of its vertices each vertex is, and what is left of its triangles."""
+
+    vertex: np.ndarray
+    """The welded vertex (n,) of each vertex."""
+    first: np.ndarray
+    """A vertex (k,) of the mesh for each welded vertex."""
+    triangles: np.ndarray
+    """The welded triangles (l, 3), those that kept three different vertices."""
+    kept: np.ndarray
+    """Which triangles (m,) bool of the mesh these are."""
+
+    def all_of(self, mask: np.ndarray) -> np.ndarray:
+        """Whether a mask (n,) holds for all the vertices of each welded vertex (k,)."""
+        result = np.ones(len(self.first), bool)
+        np.logical_and.at(result, self.vertex, mask)
+        return result
+
+    def mean_of(self, values: np.ndarray) -> np.ndarray:
+        """The mean of values (n,) over the vertices of each welded vertex (k,)."""
+        count = np.bincount(self.vertex, minlength=len(self.first))
+        return np.bincount(self.vertex, weights=values, minlength=len(self.first)) / count
+
+
+def weld_seams(coordinates: np.ndarray, triangles: np.ndarray) -> Weld:
+    """Weld vertices on open borders whose coordinates (n, 3) are equal; all others keep their order."""
+    n = len(coordinates)
+    representative = np.arange(n)
+    border = _border_vertices(triangles, n)
+    if len(border):
+        # Adding 0 turns -0 into 0, which is the same place.
+        _, first, place = np.unique(coordinates[border] + 0.0, axis=0, return_index=True, return_inverse=True)
+        representative[border] = border[first[place.ravel()]]
+    first, vertex = np.unique(representative, return_inverse=True)
+    welded = vertex[triangles].astype(np.int32)
+    kept = (welded != np.roll(welded, 1, axis=1)).all(axis=1)
+    return Weld(vertex, first, welded[kept], kept)
+
+
+def _border_vertices(triangles: np.ndarray, n_vertices: int) -> np.ndarray:
+    ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2).astype(np.int64)
+    ends.sort(axis=1)
+    edge, count = np.unique(ends[:, 0] * n_vertices + ends[:, 1], return_counts=True)
+    border = edge[count == 1]
+    return np.unique(np.concatenate([border // n_vertices, border % n_vertices]))
