@@ -73,6 +73,20 @@ pub enum MeshError {
         /// The face.
         face: usize,
     },
+    /// Edge lengths were not given once for every face.
+    #[error("edge lengths were given for {rows} faces, but there are {n_faces}; pass one row a face")]
+    LengthRows {
+        /// How many rows were given.
+        rows: usize,
+        /// How many faces there are.
+        n_faces: usize,
+    },
+    /// More faces than 32-bit halfedge indices can count.
+    #[error("{n_faces} faces are more than the 1431655764 that fit; reduce the mesh")]
+    TooManyFaces {
+        /// How many there are.
+        n_faces: usize,
+    },
     /// There is no face with positive area.
     #[error("the mesh has no face with positive area; nothing can be computed on it")]
     NoFaces,

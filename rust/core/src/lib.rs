@@ -3,7 +3,11 @@
 //! Read in this order: [`mesh`] → [`operators`] → [`solve`] → [`tools`].
 pub mod block_rows;
 pub mod error;
+pub mod mesh;
+pub mod operators;
 pub mod progress;
+#[doc(hidden)]
+pub mod shapes;
 
 pub use error::{Error, Result};
 pub use progress::Progress;

@@ -1,0 +1,116 @@
+//! Triangle meshes: connectivity, edge lengths and, if known, positions.
+
+pub mod connectivity;
+pub mod triangle;
+
+pub use connectivity::{Connectivity, EdgeKind};
+
+use crate::error::MeshError;
+
+/// Two lengths of one edge may differ by this part of the longer one; lengths that were stored in single precision do.
+const LENGTH_TOLERANCE: f64 = 1e-6;
+
+/// A triangle mesh: connectivity and edge lengths, and vertex positions if it was made from them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh {
+    connectivity: Connectivity,
+    edge_lengths: Vec<[f64; 3]>,
+    positions: Option<Vec<[f64; 3]>>,
+}
+
+/// The edge lengths of `faces`, one row a face, column `i` opposite corner `i`.
+#[must_use]
+pub fn edge_lengths(faces: &[[u32; 3]], positions: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let distance = |a: u32, b: u32| {
+        let (mut p, mut q) = (positions[a as usize], positions[b as usize]);
+        // Both faces of an edge must get the same bits.
+        if a > b {
+            std::mem::swap(&mut p, &mut q);
+        }
+        let d = [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
+        (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt()
+    };
+    faces.iter().map(|&[a, b, c]| [distance(b, c), distance(c, a), distance(a, b)]).collect()
+}
+
+impl Mesh {
+    /// A mesh from `vertices` (positions) and `faces` (vertex triples).
+    ///
+    /// Non-manifold edges, faces without area and unreferenced vertices are accepted.
+    ///
+    /// # Errors
+    /// [`MeshError::NonFiniteVertex`], [`MeshError::VertexOutOfRange`] and the errors of [`Connectivity::new`].
+    pub fn new(vertices: Vec<[f64; 3]>, faces: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        if let Some(vertex) = vertices.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+            return Err(MeshError::NonFiniteVertex { vertex });
+        }
+        let connectivity = Connectivity::new(faces, vertices.len())?;
+        let edge_lengths = edge_lengths(connectivity.faces(), &vertices);
+        if let Some(face) = edge_lengths.iter().position(|l| !l.iter().all(|x| x.is_finite())) {
+            return Err(MeshError::BadEdgeLength { face });
+        }
+        Ok(Self { connectivity, edge_lengths, positions: Some(vertices) })
+    }
+
+    /// A mesh known by its edge lengths only: `lengths` has one row a face, column `i` opposite corner `i`.
+    /// Without `n_vertices` the vertices are those up to the largest that a face names.
+    ///
+    /// # Errors
+    /// [`MeshError::LengthRows`] if there is not one row a face, and the errors of [`Mesh::from_connectivity`] and
+    /// [`Connectivity::new`].
+    pub fn from_edge_lengths(
+        faces: Vec<[u32; 3]>,
+        lengths: Vec<[f64; 3]>,
+        n_vertices: Option<usize>,
+    ) -> Result<Self, MeshError> {
+        let named = faces.iter().flatten().map(|&v| v as usize + 1).max().unwrap_or(0);
+        Self::from_connectivity(Connectivity::new(faces, n_vertices.unwrap_or(named))?, lengths)
+    }
+
+    /// A mesh known by its edge lengths only, on a connectivity that exists already, say that of
+    /// [`crate::intrinsic::delaunay_flips`].
+    ///
+    /// # Errors
+    /// [`MeshError::LengthRows`], [`MeshError::BadEdgeLength`], [`MeshError::TriangleInequality`] (violated by more
+    /// than rounding), [`MeshError::UnequalEdgeLengths`] (the two faces of an edge differ by more than 1e-6 of it).
+    pub fn from_connectivity(connectivity: Connectivity, lengths: Vec<[f64; 3]>) -> Result<Self, MeshError> {
+        if lengths.len() != connectivity.n_faces() {
+            return Err(MeshError::LengthRows { rows: lengths.len(), n_faces: connectivity.n_faces() });
+        }
+        for (face, &l) in lengths.iter().enumerate() {
+            if !l.iter().all(|x| x.is_finite() && *x >= 0.0) {
+                return Err(MeshError::BadEdgeLength { face });
+            }
+            if triangle::slack(l) < -LENGTH_TOLERANCE * l[0].max(l[1]).max(l[2]) {
+                return Err(MeshError::TriangleInequality { face });
+            }
+        }
+        for h in connectivity.edges() {
+            if let Some(mate) = connectivity.mate(h) {
+                let (a, b) = (lengths[h / 3][h % 3], lengths[mate / 3][mate % 3]);
+                if (a - b).abs() > LENGTH_TOLERANCE * a.max(b) {
+                    return Err(MeshError::UnequalEdgeLengths { first: h / 3, second: mate / 3 });
+                }
+            }
+        }
+        Ok(Self { connectivity, edge_lengths: lengths, positions: None })
+    }
+
+    /// The halfedges.
+    #[must_use]
+    pub fn connectivity(&self) -> &Connectivity {
+        &self.connectivity
+    }
+
+    /// The edge lengths, one row a face, column `i` opposite corner `i`.
+    #[must_use]
+    pub fn edge_lengths(&self) -> &[[f64; 3]] {
+        &self.edge_lengths
+    }
+
+    /// The vertex positions, unless the mesh was made from edge lengths.
+    #[must_use]
+    pub fn positions(&self) -> Option<&[[f64; 3]]> {
+        self.positions.as_deref()
+    }
+}

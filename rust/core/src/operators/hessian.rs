@@ -1,0 +1,244 @@
+//! The surface Hessian `H = M_F T C G` (Rowe et al. 2024, eq. (30)) in one pass over the faces.
+//!
+//! Across an edge of length `l` the gradient of a continuous function jumps only along the edge's normal. With `n` the
+//! unit normal into face `f`, `(s_f, h_f)` the foot and height of the opposite corner and `(s_g, h_g)` those of the
+//! neighbour unfolded into the plane of `f` ([`triangle::apex`]), that jump is a number times `n`,
+//!
+//! `δ = n [((1 − s_f/l)/h_f + (1 − s_g/l)/h_g) u_tail + (s_f/(l h_f) + s_g/(l h_g)) u_head − u_f/h_f − u_g/h_g]`,
+//!
+//! so the composition of the gradient (28), the hinge map (29) and the tensor product needs neither a basis for the
+//! neighbour nor a rotation.
+
+use crate::block_rows::{BlockRows, BLOCK};
+use crate::error::{Error, MeshError};
+use crate::mesh::{triangle, Connectivity, Mesh};
+use crate::operators::dual::DualEdge;
+use crate::operators::Dual;
+
+/// A face's block has up to six columns: its corners and the vertices opposite its edges.
+const STENCIL: usize = 6;
+
+/// The columns of every face's block of rows, computed once per connectivity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HessianPattern {
+    n_columns: usize,
+    starts: Vec<usize>,
+    columns: Vec<u32>,
+    /// Where the face's corners 0, 1, 2 and the vertices opposite its halfedges 0, 1, 2 are in its block.
+    slots: Vec<[u8; STENCIL]>,
+}
+
+impl HessianPattern {
+    /// The pattern of `connectivity`.
+    #[must_use]
+    pub fn new(connectivity: &Connectivity) -> Self {
+        let n_faces = connectivity.n_faces();
+        let mut pattern = Self {
+            n_columns: connectivity.n_vertices(),
+            starts: Vec::with_capacity(n_faces + 1),
+            columns: Vec::with_capacity(STENCIL * n_faces),
+            slots: Vec::with_capacity(n_faces),
+        };
+        pattern.starts.push(0);
+        for (f, &corners) in connectivity.faces().iter().enumerate() {
+            // A missing neighbour repeats a corner: no column of its own, and its slot is never written.
+            let mut stencil = [corners[0], corners[1], corners[2], corners[0], corners[0], corners[0]];
+            for i in 0..3 {
+                if let Some(twin) = connectivity.twin(3 * f + i) {
+                    stencil[3 + i] = connectivity.opposite(twin);
+                }
+            }
+            pattern.push(stencil);
+        }
+        pattern
+    }
+
+    /// Appends the block of a face with the vertices `stencil`.
+    fn push(&mut self, stencil: [u32; STENCIL]) {
+        let start = self.columns.len();
+        let mut sorted = stencil;
+        sorted.sort_unstable();
+        for vertex in sorted {
+            if self.columns.len() == start || self.columns.last() != Some(&vertex) {
+                self.columns.push(vertex);
+            }
+        }
+        let block = &self.columns[start..];
+        self.slots.push(stencil.map(|vertex| block.iter().take_while(|&&c| c < vertex).count() as u8));
+        self.starts.push(self.columns.len());
+    }
+
+    /// The matrix for the given edge lengths: rows `xx, yy, √2·xy` of every face's Hessian in the frame of
+    /// [`triangle::layout`], times its area.
+    ///
+    /// Faces that are degenerate ([`triangle::is_degenerate`]) have zero rows and count as missing for their neighbours.
+    ///
+    /// # Errors
+    /// [`MeshError::ZeroDualEdge`] with circumcentric duals where two circumcentres coincide;
+    /// [`MeshError::LengthRows`] if `lengths` has not one row a face of this pattern's connectivity.
+    pub fn assemble(
+        &self,
+        connectivity: &Connectivity,
+        lengths: &[[f64; 3]],
+        dual: Dual,
+    ) -> Result<BlockRows, MeshError> {
+        let mut rows = BlockRows {
+            n_columns: self.n_columns,
+            starts: self.starts.clone(),
+            columns: self.columns.clone(),
+            values: Vec::new(),
+        };
+        self.assemble_into(connectivity, lengths, dual, &mut rows)?;
+        Ok(rows)
+    }
+
+    /// [`HessianPattern::assemble`] into a matrix that the same pattern has made before.
+    ///
+    /// # Errors
+    /// As [`HessianPattern::assemble`]; then the values of `rows` are unspecified.
+    pub fn assemble_into(
+        &self,
+        connectivity: &Connectivity,
+        lengths: &[[f64; 3]],
+        dual: Dual,
+        rows: &mut BlockRows,
+    ) -> Result<(), MeshError> {
+        let n_faces = self.slots.len();
+        if lengths.len() != n_faces || connectivity.n_faces() != n_faces {
+            return Err(MeshError::LengthRows { rows: lengths.len(), n_faces });
+        }
+        rows.values.clear();
+        rows.values.resize(self.columns.len(), [0.0; BLOCK]);
+        // A degenerate face is marked by area 0.
+        let areas: Vec<f64> =
+            lengths.iter().map(|&l| if triangle::is_degenerate(l) { 0.0 } else { triangle::area(l) }).collect();
+        for f in (0..n_faces).filter(|&f| areas[f] > 0.0) {
+            let block = &mut rows.values[self.starts[f]..self.starts[f + 1]];
+            let slots = self.slots[f];
+            let directions = directions(lengths[f], areas[f]);
+            for i in 0..3 {
+                let Some(twin) = connectivity.twin(3 * f + i).filter(|t| areas[t / 3] > 0.0) else { continue };
+                let hinge = Hinge::new(lengths, &areas, 3 * f + i, twin);
+                let Some(edge) = DualEdge::new(dual, &hinge) else {
+                    return Err(MeshError::ZeroDualEdge { face: f, neighbour: twin / 3 });
+                };
+                let tensor = edge.tensor(directions[i], areas[f]);
+                let jump = hinge.jump();
+                let columns = [slots[(i + 1) % 3], slots[(i + 2) % 3], slots[i], slots[3 + i]];
+                for (column, coefficient) in columns.into_iter().zip(jump) {
+                    for (value, t) in block[usize::from(column)].iter_mut().zip(tensor) {
+                        *value += coefficient * t;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The unit directions of a face's halfedges in its own frame.
+fn directions(l: [f64; 3], area: f64) -> [[f64; 2]; 3] {
+    let [s, h] = triangle::apex(l, 2, area);
+    [[(s - l[2]) / l[0], h / l[0]], [-s / l[1], -h / l[1]], [1.0, 0.0]]
+}
+
+/// Two faces unfolded into one plane about their shared edge. Origin at the start of the halfedge of `f`, x along it,
+/// y into `f`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Hinge {
+    /// Length of the shared edge.
+    pub length: f64,
+    /// Foot and height of the corner of `f` opposite the edge.
+    pub face: [f64; 2],
+    /// Foot and height of the neighbour's opposite corner; the height counts away from `f`.
+    pub neighbour: [f64; 2],
+}
+
+impl Hinge {
+    /// The hinge at halfedge `h` with the given `twin`; both faces must have an area.
+    pub(crate) fn new(lengths: &[[f64; 3]], areas: &[f64], h: usize, twin: usize) -> Self {
+        let (f, g) = (h / 3, twin / 3);
+        let length = lengths[f][h % 3];
+        let [foot, height] = triangle::apex(lengths[g], twin % 3, areas[g]);
+        // The twin runs the other way.
+        Self { length, face: triangle::apex(lengths[f], h % 3, areas[f]), neighbour: [length - foot, height] }
+    }
+
+    /// The jump of the gradient, neighbour less face, along the normal into `f`: the coefficients of the values at the
+    /// halfedge's tail and head, at the opposite corner of `f` and at that of the neighbour.
+    fn jump(&self) -> [f64; 4] {
+        let ([s_f, h_f], [s_g, h_g]) = (self.face, self.neighbour);
+        let (face, neighbour) = (1.0 / h_f, 1.0 / h_g);
+        let head = (s_f * face + s_g * neighbour) / self.length;
+        [face + neighbour - head, head, -face, -neighbour]
+    }
+}
+
+/// The matrix `H` of Rowe et al. 2024, eq. (30): `4m × n`, rows `xx, xy, yx, yy` of every face's Hessian times its area,
+/// in the frame of eq. (28).
+///
+/// # Errors
+/// [`MeshError::ZeroDualEdge`] with circumcentric duals where two circumcentres coincide.
+pub fn hessian(mesh: &Mesh, dual: Dual) -> Result<sprs::CsMat<f64>, MeshError> {
+    let rows = assembled(mesh, dual)?;
+    let n_entries = 4 * rows.columns.len();
+    let mut indptr = Vec::with_capacity(4 * rows.n_blocks() + 1);
+    let mut indices = Vec::with_capacity(n_entries);
+    let mut data = Vec::with_capacity(n_entries);
+    indptr.push(0);
+    for b in 0..rows.n_blocks() {
+        let (columns, values) = rows.block(b);
+        let entries: [fn(&[f64; BLOCK]) -> f64; 4] =
+            [|v| v[0], |v| v[2] / std::f64::consts::SQRT_2, |v| v[2] / std::f64::consts::SQRT_2, |v| v[1]];
+        for entry in entries {
+            indices.extend(columns.iter().map(|&c| c as usize));
+            data.extend(values.iter().map(entry));
+            indptr.push(indices.len());
+        }
+    }
+    Ok(sprs::CsMat::new((4 * rows.n_blocks(), rows.n_columns), indptr, indices, data))
+}
+
+fn assembled(mesh: &Mesh, dual: Dual) -> Result<BlockRows, MeshError> {
+    let pattern = HessianPattern::new(mesh.connectivity());
+    pattern.assemble(mesh.connectivity(), mesh.edge_lengths(), dual)
+}
+
+/// The area-weighted Frobenius norm of every face's Hessian, jointly over the columns of `values`.
+fn weighted_norms(mesh: &Mesh, values: &[f64], dual: Dual) -> Result<Vec<f64>, Error> {
+    let n = mesh.connectivity().n_vertices();
+    if (n == 0 && !values.is_empty()) || (n > 0 && values.len() % n != 0) {
+        let problem =
+            format!("{} numbers are not whole columns of {n} vertex values; pass one per vertex", values.len());
+        return Err(Error::argument("values", problem));
+    }
+    let rows = assembled(mesh, dual)?;
+    let squared = |column: &[f64], b: usize| rows.block_times(b, column).iter().map(|x| x * x).sum::<f64>();
+    Ok((0..rows.n_blocks())
+        .map(|b| values.chunks_exact(n.max(1)).map(|column| squared(column, b)).sum::<f64>().sqrt())
+        .collect())
+}
+
+/// The Frobenius norm `‖H_f(u)‖` of every face's Hessian, not times its area, of `values` (column-major, `n` rows): one
+/// number a face, jointly over the columns. Degenerate faces have 0.
+///
+/// # Errors
+/// [`Error::Argument`] if `values` are not whole columns, and the errors of [`hessian`].
+pub fn hessian_norm(mesh: &Mesh, values: &[f64], dual: Dual) -> Result<Vec<f64>, Error> {
+    let mut norms = weighted_norms(mesh, values, dual)?;
+    for (norm, &l) in norms.iter_mut().zip(mesh.edge_lengths()) {
+        if *norm > 0.0 {
+            *norm /= triangle::area(l);
+        }
+    }
+    Ok(norms)
+}
+
+/// The energy `E_H(u) = Σ_f A_f ‖H_f(u)‖` (Rowe et al. 2024, eq. (18)) of `values` (column-major, `n` rows), with one
+/// norm a face over all columns.
+///
+/// # Errors
+/// [`Error::Argument`] if `values` are not whole columns, and the errors of [`hessian`].
+pub fn energy(mesh: &Mesh, values: &[f64], dual: Dual) -> Result<f64, Error> {
+    Ok(weighted_norms(mesh, values, dual)?.iter().sum())
+}

@@ -1,0 +1,34 @@
+//! The lumped mass matrix.
+
+use crate::mesh::{triangle, Connectivity};
+
+/// The mixed Voronoi area of every vertex (Meyer et al. 2003), `n` values that sum to the total area.
+///
+/// A triangle without an obtuse angle is split by its Voronoi cells; an obtuse one gives half its area to the obtuse
+/// corner and a quarter to each of the others. Unreferenced vertices get 0.
+#[must_use]
+pub fn voronoi_mass(connectivity: &Connectivity, lengths: &[[f64; 3]]) -> Vec<f64> {
+    let mut mass = vec![0.0; connectivity.n_vertices()];
+    for (corners, &l) in connectivity.faces().iter().zip(lengths) {
+        for (&corner, part) in corners.iter().zip(corner_areas(l)) {
+            mass[corner as usize] += part;
+        }
+    }
+    mass
+}
+
+/// The three corners' parts of a triangle's area.
+fn corner_areas(l: [f64; 3]) -> [f64; 3] {
+    let area = triangle::area(l);
+    if area == 0.0 {
+        return [0.0; 3];
+    }
+    let cotangents = triangle::cotangents(l);
+    if let Some(obtuse) = cotangents.iter().position(|&c| c < 0.0) {
+        let mut parts = [0.25 * area; 3];
+        parts[obtuse] = 0.5 * area;
+        return parts;
+    }
+    let opposite = [0, 1, 2].map(|i| 0.125 * l[i] * l[i] * cotangents[i]);
+    [opposite[1] + opposite[2], opposite[2] + opposite[0], opposite[0] + opposite[1]]
+}

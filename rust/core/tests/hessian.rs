@@ -1,0 +1,96 @@
+//! What the surface Hessian must satisfy exactly.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use ridgeform_core::mesh::{triangle, Mesh};
+use ridgeform_core::operators::{energy, hessian, hessian_norm, Dual};
+use ridgeform_core::shapes::{self, Shape};
+
+/// `H u` of a scalar function given at the vertices.
+fn hessian_of(mesh: &Mesh, u: &[f64], dual: Dual) -> Vec<[f64; 4]> {
+    let h = hessian(mesh, dual).unwrap();
+    let entries: Vec<f64> = h.outer_iterator().map(|row| row.iter().map(|(c, v)| v * u[c]).sum::<f64>()).collect();
+    entries.chunks_exact(4).map(|e| [e[0], e[1], e[2], e[3]]).collect()
+}
+
+/// The sum of the absolute values that cancel in each entry of `H u`: the scale of its rounding error.
+fn magnitude(mesh: &Mesh, u: &[f64], dual: Dual) -> f64 {
+    let h = hessian(mesh, dual).unwrap();
+    h.outer_iterator().map(|row| row.iter().map(|(c, v)| (v * u[c]).abs()).sum::<f64>()).fold(0.0, f64::max)
+}
+
+fn largest(entries: &[[f64; 4]]) -> f64 {
+    entries.iter().flatten().fold(0.0, |a, x| a.max(x.abs()))
+}
+
+fn at_vertices(shape: &Shape, u: impl Fn([f64; 3]) -> f64) -> Vec<f64> {
+    shape.vertices.iter().map(|&p| u(p)).collect()
+}
+
+/// A flat grid with irregular triangles.
+fn irregular_sheet(n: usize, seed: u64) -> Shape {
+    shapes::grid(n, n).noisy(0.3, seed).map(|[x, y, _]| [x, y, 0.0])
+}
+
+#[test]
+fn affine_functions_on_a_flat_mesh_have_no_hessian() {
+    for dual in [Dual::Barycentric, Dual::Circumcentric] {
+        let shape = irregular_sheet(12, 1);
+        let u = at_vertices(&shape, |[x, y, _]| 3.0 * x - 2.0 * y + 5.0);
+        let mesh = shape.rotated([1.0, 2.0, 3.0], 0.7).mesh().unwrap();
+        assert!(largest(&hessian_of(&mesh, &u, dual)) <= 4e-15 * magnitude(&mesh, &u, dual));
+    }
+}
+
+#[test]
+fn constants_have_no_hessian_on_any_mesh() {
+    for shape in
+        [shapes::icosphere(2).noisy(0.05, 2), shapes::cube(4), shapes::torus(9, 7, 2.0, 0.7), shapes::tetrahedron()]
+    {
+        let mesh = shape.mesh().unwrap();
+        let u = vec![1.0; shape.vertices.len()];
+        let scale = magnitude(&mesh, &u, Dual::Barycentric);
+        assert!(scale > 0.1);
+        assert!(largest(&hessian_of(&mesh, &u, Dual::Barycentric)) <= 1e-15 * scale);
+    }
+}
+
+#[test]
+fn quadratics_on_the_equilateral_lattice_give_one_and_a_half_times_their_hessian() {
+    let shape = shapes::lattice(9, 8);
+    let mesh = shape.mesh().unwrap();
+    let area = 0.75_f64.sqrt() / 2.0;
+    for dual in [Dual::Barycentric, Dual::Circumcentric] {
+        for (a, b, c) in [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.3, -0.8, 1.7)] {
+            let u = at_vertices(&shape, |[x, y, _]| a * x * x + b * x * y + c * y * y);
+            let inner: f64 = (2.0 * a).hypot(2.0 * c).hypot(b * 2.0_f64.sqrt());
+            let mut n_inner = 0;
+            for (f, h) in hessian_of(&mesh, &u, dual).iter().enumerate() {
+                if (0..3).all(|i| mesh.connectivity().twin(3 * f + i).is_some()) {
+                    n_inner += 1;
+                    let norm = h.iter().map(|x| x * x).sum::<f64>().sqrt() / area;
+                    assert!((norm - 1.5 * inner).abs() < 1e-12, "{norm} {inner}");
+                    // The trace does not depend on the face's frame.
+                    assert!(((h[0] + h[3]) / area - 1.5 * (2.0 * a + 2.0 * c)).abs() < 1e-12);
+                }
+            }
+            assert!(n_inner > 80);
+        }
+    }
+}
+
+#[test]
+fn degenerate_faces_have_zero_rows_and_nothing_is_nan() {
+    let mut shape = shapes::icosphere(1);
+    let n = shape.vertices.len() as u32;
+    shape.faces.extend([[0, 0, 5], [1, 1, 1], [2, n, n + 1]]);
+    shape.vertices.extend([shape.vertices[2], shape.vertices[3]]);
+    let mesh = shape.mesh().unwrap();
+    let h = hessian(&mesh, Dual::Barycentric).unwrap();
+    assert!(h.data().iter().all(|x| x.is_finite()));
+    let x = at_vertices(&shape, |p| p[0]);
+    let norms = hessian_norm(&mesh, &x, Dual::Barycentric).unwrap();
+    assert!(norms.iter().take(80).all(|&norm| norm > 0.0));
+    assert_eq!(norms[80..], [0.0; 3]);
+    let expected: f64 = norms.iter().zip(mesh.edge_lengths()).map(|(norm, &l)| norm * triangle::area(l)).sum();
+    assert!((energy(&mesh, &x, Dual::Barycentric).unwrap() / expected - 1.0).abs() < 1e-14);
+}
