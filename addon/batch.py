@@ -7,6 +7,7 @@ wheel and the `bpy` package installed, `python -m addon stylize FILES -o OUT`.
 
 import argparse
 import contextlib
+import ctypes
 import json
 import math
 import os
@@ -123,16 +124,26 @@ def _clean_output(as_json: bool) -> Iterator[object]:
     if not as_json:
         yield lambda record: print(_sentence(record), flush=True)
         return
-    sys.stdout.flush()
+    flush_output()
     saved = os.dup(1)
     os.dup2(2, 1)
     try:
-        with os.fdopen(os.dup(saved), "w", encoding="utf-8") as stream:
+        # Blender's add-ons print through Python, Blender itself through C: both are sent away.
+        with (
+            contextlib.redirect_stdout(sys.stderr),
+            os.fdopen(os.dup(saved), "w", encoding="utf-8") as stream,
+        ):
             yield lambda record: print(json.dumps(record, ensure_ascii=False), file=stream, flush=True)
     finally:
-        sys.stdout.flush()
+        flush_output()
         os.dup2(saved, 1)
         os.close(saved)
+
+
+def flush_output() -> None:
+    """Write out what Python and Blender have printed; Blender's own output has a buffer in C."""
+    sys.stdout.flush()
+    ctypes.CDLL("ucrtbase" if os.name == "nt" else None).fflush(None)
 
 
 def _sentence(record: dict[str, object]) -> str:

@@ -10,7 +10,8 @@ from bl_ui.utils import PresetPanel
 from ..settings import SETTING_NAMES
 
 SUBDIRECTORY = "ridgeform/stylize"
-_SHIPPED = str(Path(__file__).parents[1] / "presets")
+# The folder that holds the folder "presets".
+_SHIPPED = str(Path(__file__).parents[1])
 
 
 class RIDGEFORM_MT_stylize_presets(bpy.types.Menu):  # noqa: N801

@@ -1,0 +1,124 @@
+"""The batch command: many formats, one record each, bad files among good ones."""
+
+import json
+
+import addon_kit as kit
+import bpy
+import pytest
+
+from addon import batch, files
+
+STEPS = ("--steps", "2")
+
+
+@pytest.fixture(autouse=True)
+def scene():
+    """An empty file."""
+    kit.empty_scene()
+
+
+def run(capfd, *arguments):
+    """Exit code and records of a command with JSON."""
+    batch.flush_output()
+    capfd.readouterr()
+    code = batch.main(["stylize", *map(str, arguments), *STEPS, "--json"])
+    lines = capfd.readouterr().out.splitlines()
+    return code, [json.loads(line) for line in lines]
+
+
+def saved(folder, *suffixes):
+    """A box with noise, saved in some formats."""
+    kit.empty_scene()
+    kit.bumpy_box()
+    paths = [folder / f"box{suffix}" for suffix in suffixes]
+    for path in paths:
+        files.write_file(path)
+    return paths
+
+
+@pytest.mark.parametrize("suffix", list(files.FORMATS))
+def test_every_format_is_read_and_written(tmp_path, capfd, suffix):
+    (source,) = saved(tmp_path, suffix)
+    target = tmp_path / "made" / f"flat{suffix}"
+    code, (record,) = run(capfd, source, "-o", target)
+    assert code == 0, record
+    assert record["error"] is None
+    assert record["output"] == str(target)
+    assert record["energy_after"] < record["energy_before"]
+    assert record["vertices"] >= 152
+    (obj,) = files.read_file(target)
+    assert len(obj.data.vertices) == record["vertices"]
+
+
+def test_one_bad_file_does_not_stop_the_others(tmp_path, capfd):
+    good = saved(tmp_path, ".obj", ".ply")
+    bad = tmp_path / "bad.obj"
+    bad.write_text("this is no mesh\n")
+    gone, odd = tmp_path / "gone.stl", tmp_path / "odd.txt"
+    odd.write_text("odd")
+    code, records = run(capfd, bad, good[0], gone, odd, good[1], "-o", tmp_path / "out")
+    assert code == 1
+    assert [record["file"] for record in records] == list(map(str, (bad, good[0], gone, odd, good[1])))
+    errors = [record["error"] for record in records]
+    assert errors[1] is errors[4] is None
+    assert "holds no mesh" in errors[0]
+    assert "does not exist" in errors[2]
+    assert "cannot be read" in errors[3]
+    assert sorted(path.name for path in (tmp_path / "out").glob("box.*")) == ["box.mtl", "box.obj", "box.ply"]
+
+
+def test_all_meshes_of_a_file_are_stylized(tmp_path, capfd):
+    first, second = kit.bumpy_box("A", 1), kit.bumpy_box("B", 2)
+    kit.link(bpy.data.objects.new("C", first.data))
+    kit.add_object("Points", [[0, 0, 0]], [])
+    old = {obj.name: kit.coordinates(obj) for obj in (first, second)}
+    source, target = tmp_path / "scene.blend", tmp_path / "flat.blend"
+    files.write_file(source)
+    code, (record,) = run(capfd, source, "-o", target)
+    assert code == 0
+    assert [entry["name"] for entry in record["meshes"]] == ["A", "B"]
+    assert record["warnings"] == ['"Points" has no faces']
+    files.read_file(target)
+    for name, before in old.items():
+        assert (kit.coordinates(bpy.data.objects[name]) != before).any()
+
+
+def test_options_reach_the_tool(tmp_path, capfd):
+    (source,) = saved(tmp_path, ".blend")
+    target = tmp_path / "flat.blend"
+    options = ("--shape-key", "--keep-volume", "--mark", "sharp", "--mark-angle", "30", "--fidelity", "700")
+    code, (record,) = run(capfd, source, "-o", target, *options)
+    assert code == 0, record
+    (obj,) = files.read_file(target)
+    assert list(obj.data.shape_keys.key_blocks.keys()) == ["Basis", "Stylized"]
+    assert any(item.value for item in obj.data.attributes["sharp_edge"].data)
+
+
+def test_another_format_into_a_folder(tmp_path, capfd):
+    sources = saved(tmp_path, ".obj", ".ply")
+    code, records = run(capfd, sources[0], "-o", tmp_path / "out", "--format", "stl")
+    assert code == 0
+    assert records[0]["output"] == str(tmp_path / "out" / "box.stl")
+    code, records = run(capfd, *sources, "-o", tmp_path / "out", "--format", "stl")
+    assert code == 1
+    assert "already the output of another file" in records[1]["error"]
+
+
+def test_the_input_is_never_overwritten(tmp_path, capfd):
+    (source,) = saved(tmp_path, ".obj")
+    content = source.read_bytes()
+    code, (record,) = run(capfd, source, "-o", tmp_path)
+    assert code == 1
+    assert "would be overwritten" in record["error"]
+    assert source.read_bytes() == content
+
+
+def test_plain_output_and_wrong_command_line(tmp_path, capfd):
+    (source,) = saved(tmp_path, ".obj")
+    batch.flush_output()
+    capfd.readouterr()
+    assert batch.main(["stylize", str(source), "-o", str(tmp_path / "flat.obj"), *STEPS]) == 0
+    assert "152 vertices, energy" in capfd.readouterr().out
+    assert batch.main(["stylize", str(source)]) == 2
+    assert batch.main(["melt", str(source)]) == 2
+    assert batch.main(["--help"]) == 0

@@ -1,0 +1,221 @@
+"""The optional last steps: volume, ridge marks, fewer triangles."""
+
+import addon_kit as kit
+import bpy
+import numpy as np
+import pytest
+
+from addon import job, mesh_io
+from addon.finishing.ridges import ridge_edges
+from addon.finishing.volume import is_closed, keep_volume, volume_and_centroid
+
+CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+CUBE_FACES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+CUBE_TRIANGLES = np.array([[f[0], f[i], f[i + 1]] for f in CUBE_FACES for i in (1, 2)])
+
+
+@pytest.fixture(autouse=True)
+def scene():
+    """An empty file."""
+    kit.empty_scene()
+
+
+def notes():
+    return job.last_summary()[0]["warnings"]
+
+
+def volume_of(obj):
+    return volume_and_centroid(kit.coordinates(obj), mesh_io.triangles(obj.data))[0]
+
+
+def test_volume_and_centroid_of_a_box():
+    box = CUBE * [1, 2, 3] + [100, 0, 0]
+    volume, centroid = volume_and_centroid(box, CUBE_TRIANGLES)
+    assert volume == pytest.approx(6, rel=1e-12)
+    assert np.allclose(centroid, [100.5, 1, 1.5], rtol=1e-12)
+
+
+def test_closed_means_two_agreeing_faces_at_every_edge():
+    assert is_closed(CUBE_TRIANGLES, 8)
+    assert not is_closed(CUBE_TRIANGLES[1:], 8)
+    flipped = CUBE_TRIANGLES.copy()
+    flipped[0] = flipped[0, ::-1]
+    assert not is_closed(flipped, 8)
+    assert not is_closed(np.concatenate([CUBE_TRIANGLES, CUBE_TRIANGLES]), 8)
+
+
+def test_keep_volume_scales_about_the_centroid():
+    small, reason = keep_volume(CUBE, 0.5 * CUBE, CUBE_TRIANGLES)
+    assert reason is None
+    assert np.allclose(small, CUBE - 0.25)
+    _, reason = keep_volume(CUBE, 0.01 * CUBE, CUBE_TRIANGLES)
+    assert "hardly any is left" in reason
+
+
+def test_operator_keeps_the_volume():
+    obj = kit.bumpy_box()
+    before = volume_of(obj)
+    bpy.ops.ridgeform.stylize(steps=4, strength=0.8, keep_volume=True)
+    assert volume_of(obj) == pytest.approx(before, rel=1e-5)
+    assert notes() == []
+
+
+def test_volume_is_left_with_a_reason():
+    open_box = kit.add_object("Open", CUBE, CUBE_FACES[1:])
+    bpy.ops.ridgeform.stylize(steps=1, keep_volume=True)
+    assert any("the mesh is open" in note for note in notes())
+    open_box.select_set(False)
+    obj = kit.bumpy_box()
+    open_box.select_set(False)
+    before = kit.coordinates(obj)
+    chosen = before[:, 0] > 0
+    kit.select_only(obj, chosen)
+    bpy.ops.ridgeform.stylize(steps=1, keep_volume=True)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert any("only a part" in note for note in notes())
+    assert kit.same_bits(kit.coordinates(obj)[~chosen], before[~chosen])
+
+
+def ridges_of(vertices, faces, angle):
+    obj = kit.add_object("Fold", vertices, faces)
+    ends = mesh_io.edges(obj.data)
+    found = ridge_edges(kit.coordinates(obj), mesh_io.face_corners(obj.data), len(ends), np.radians(angle))
+    return {tuple(sorted(pair)) for pair in ends[found].tolist()}
+
+
+def test_ridges_by_angle():
+    roof = [
+        [0, 0, 0],
+        [1, 0, 0],
+        [1, 1, 0],
+        [0, 1, 0],
+        [1, 2, np.tan(np.radians(30))],
+        [0, 2, np.tan(np.radians(30))],
+    ]
+    faces = [[0, 1, 2, 3], [3, 2, 4, 5]]
+    assert ridges_of(roof, faces, 29.9) == {(2, 3)}
+    assert ridges_of(roof, faces, 30.1) == set()
+    assert ridges_of(roof, [faces[0], faces[1][::-1]], 29.9) == {(2, 3)}
+    assert ridges_of(roof, [faces[0], faces[1][::-1]], 30.1) == set()
+
+
+def test_ridges_of_odd_edges():
+    three = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, -1, -1]]
+    assert ridges_of(three, [[0, 1, 2], [0, 1, 3], [0, 1, 4]], 0) == set()
+    no_area = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [2, 0, 0]]
+    assert ridges_of(no_area, [[0, 1, 2], [1, 0, 3]], 0) == set()
+
+
+@pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+def test_marks_are_added_to_those_that_exist(mode):
+    obj = kit.add_object("Cube", CUBE, CUBE_FACES)
+    mesh = obj.data
+    mesh.attributes.new("crease_edge", "FLOAT", "EDGE").data.foreach_set(
+        "value", np.full(12, 0.25, np.float32)
+    )
+    chosen = CUBE[:, 2] == 1 if mode == "EDIT" else np.ones(8, bool)
+    if mode == "EDIT":
+        kit.select_only(obj, chosen)
+    bpy.ops.ridgeform.stylize(steps=1, strength=0.0, marks={"SHARP", "CREASE", "BEVEL"})
+    bpy.ops.object.mode_set(mode="OBJECT")
+    ridges = chosen[mesh_io.edges(mesh)].any(axis=1)
+    values = {}
+    for name, dtype in (("sharp_edge", bool), ("crease_edge", np.float32), ("bevel_weight_edge", np.float32)):
+        values[name] = np.empty(12, dtype)
+        mesh.attributes[name].data.foreach_get("value", values[name])
+    assert np.array_equal(values["sharp_edge"], ridges)
+    assert np.array_equal(values["crease_edge"], np.where(ridges, 1, 0.25).astype(np.float32))
+    assert np.array_equal(values["bevel_weight_edge"], ridges.astype(np.float32))
+
+
+def test_reduce_carries_everything_over():
+    obj = kit.bumpy_box(cuts=16)
+    mesh = obj.data
+    for name in ("left", "right"):
+        mesh.materials.append(bpy.data.materials.new(name))
+    centers = np.array([face.center[:] for face in mesh.polygons])
+    mesh.polygons.foreach_set("material_index", (centers[:, 0] > 0).astype(np.int32))
+    before = kit.coordinates(obj)
+    heat = mesh.attributes.new("heat", "FLOAT", "POINT")
+    heat.data.foreach_set("value", before[:, 2].copy())
+    tint = mesh.color_attributes.new("tint", "FLOAT_COLOR", "CORNER")
+    corner_vertices = mesh_io.face_corners(mesh)[1]
+    colors = np.c_[(before[corner_vertices] + 1) / 2, np.ones(len(corner_vertices))].astype(np.float32)
+    tint.data.foreach_set("color", colors.ravel())
+    bone = obj.vertex_groups.new(name="bone")
+    for vertex in np.flatnonzero(before[:, 1] > 0).tolist():
+        bone.add([vertex], 0.75, "REPLACE")
+    obj.vertex_groups.new(name="none")
+    n_triangles = len(mesh_io.triangles(mesh))
+    assert bpy.ops.ridgeform.stylize(steps=2, strength=0.0, reduce=True, reduce_ratio=0.2) == {"FINISHED"}
+
+    assert len(mesh.polygons) == pytest.approx(0.2 * n_triangles, rel=0.02)
+    assert all(len(face.vertices) == 3 for face in mesh.polygons)
+    assert not mesh.validate(verbose=True)
+    after, spacing = kit.coordinates(obj), 2 / 17
+    assert [material.name for material in mesh.materials] == ["left", "right"]
+    centers = np.array([face.center[:] for face in mesh.polygons])
+    clear = np.abs(centers[:, 0]) > spacing
+    index = np.array([face.material_index for face in mesh.polygons])
+    assert np.array_equal(index[clear], (centers[clear, 0] > 0).astype(int))
+    values = np.empty(len(after), np.float32)
+    mesh.attributes["heat"].data.foreach_get("value", values)
+    assert np.abs(values - after[:, 2]).max() < spacing
+    corner_vertices = mesh_io.face_corners(mesh)[1]
+    values = np.empty(4 * len(corner_vertices), np.float32)
+    mesh.color_attributes["tint"].data.foreach_get("color", values)
+    assert np.abs(values.reshape(-1, 4)[:, :3] - (after[corner_vertices] + 1) / 2).max() < spacing
+    assert [group.name for group in obj.vertex_groups] == ["bone", "none"]
+    weights = mesh_io.group_weights(obj, "bone")
+    assert np.allclose(weights[after[:, 1] > spacing], 0.75)
+    assert not weights[after[:, 1] < -spacing].any()
+    assert "quads and n-gons became triangles" in " ".join(notes())
+
+
+def test_reduce_keeps_uv_charts_apart():
+    obj = kit.bumpy_box(cuts=12)
+    mesh = obj.data
+    starts, vertices, _ = mesh_io.face_corners(mesh)
+    assert np.array_equal(np.diff(starts), np.full(len(starts) - 1, 4))
+    side = np.array([2 * int(np.argmax(np.abs(face.normal))) for face in mesh.polygons])
+    chart = np.repeat(side, 4)
+    uv = np.empty((len(vertices), 2), np.float32)
+    positions = kit.coordinates(obj)[vertices]
+    for axis in (0, 2, 4):
+        rows = chart == axis
+        uv[rows] = 10 * axis + np.delete(positions[rows], axis // 2, axis=1)
+    mesh.uv_layers["UVMap"].data.foreach_set("uv", uv.ravel())
+    bpy.ops.ridgeform.stylize(steps=1, strength=0.0, reduce=True, reduce_ratio=0.3)
+    values = np.empty(2 * len(mesh.loops), np.float32)
+    mesh.uv_layers["UVMap"].data.foreach_get("uv", values)
+    faces = values.reshape(-1, 3, 2)
+    assert np.ptp(faces, axis=1).max() < 3, "a triangle stretches from one chart to another"
+    assert mesh.uv_layers.active.name == "UVMap"
+
+
+def test_reduce_keeps_seams():
+    obj = kit.bumpy_box(cuts=16)
+    mesh = obj.data
+    ends, points = mesh_io.edges(mesh), kit.coordinates(obj)
+    corners = np.abs(np.round(points)) == 1
+    seam = (corners[ends[:, 0]] & corners[ends[:, 1]]).sum(axis=1) >= 2
+    mesh.edges.foreach_set("use_seam", seam)
+    bpy.ops.ridgeform.stylize(steps=1, strength=0.0, reduce=True, reduce_ratio=0.3)
+    kept = np.empty(len(mesh.edges), bool)
+    mesh.edges.foreach_get("use_seam", kept)
+    middles = kit.coordinates(obj)[mesh_io.edges(mesh)].mean(axis=1)
+    assert kept.any()
+    assert ((np.abs(middles[kept]) > 0.85).sum(axis=1) >= 2).all()
+
+
+def test_reduce_is_left_with_a_reason():
+    obj = kit.bumpy_box()
+    faces = len(obj.data.polygons)
+    kit.select_only(obj, np.ones(len(obj.data.vertices), bool))
+    bpy.ops.ridgeform.stylize(steps=1, reduce=True)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert any("Object Mode only" in note for note in notes())
+    obj.shape_key_add(name="Basis")
+    bpy.ops.ridgeform.stylize(steps=1, reduce=True)
+    assert any("has shape keys" in note for note in notes())
+    assert len(obj.data.polygons) == faces
