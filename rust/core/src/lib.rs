@@ -8,6 +8,8 @@ pub mod operators;
 pub mod progress;
 #[doc(hidden)]
 pub mod shapes;
+pub mod solve;
+pub mod tools;
 
 pub use error::{Error, Result};
 pub use progress::Progress;

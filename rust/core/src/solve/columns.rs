@@ -1,0 +1,103 @@
+//! A dense matrix of a few columns: one column a function on the vertices.
+
+use crate::{Error, Result};
+
+/// A dense `n_rows × n_columns` matrix, stored column by column.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Columns {
+    /// Number of rows.
+    pub n_rows: usize,
+    /// Number of columns.
+    pub n_columns: usize,
+    /// The entries, column by column.
+    pub data: Vec<f64>,
+}
+
+impl Columns {
+    /// A matrix of zeros.
+    #[must_use]
+    pub fn zeros(n_rows: usize, n_columns: usize) -> Self {
+        Self {
+            n_rows,
+            n_columns,
+            data: vec![0.0; n_rows * n_columns],
+        }
+    }
+
+    /// One column.
+    #[must_use]
+    pub fn from_column(data: Vec<f64>) -> Self {
+        Self {
+            n_rows: data.len(),
+            n_columns: 1,
+            data,
+        }
+    }
+
+    /// The three coordinates of points as three columns.
+    #[must_use]
+    pub fn from_points(points: &[[f64; 3]]) -> Self {
+        let data = (0..3)
+            .flat_map(|axis| points.iter().map(move |p| p[axis]))
+            .collect();
+        Self {
+            n_rows: points.len(),
+            n_columns: 3,
+            data,
+        }
+    }
+
+    /// The rows of a three-column matrix as points.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] when there are not three columns.
+    pub fn to_points(&self) -> Result<Vec<[f64; 3]>> {
+        if self.n_columns != 3 {
+            return Err(Error::argument(
+                "values",
+                format!("has {} columns, points need 3", self.n_columns),
+            ));
+        }
+        Ok((0..self.n_rows)
+            .map(|i| std::array::from_fn(|axis| self.column(axis)[i]))
+            .collect())
+    }
+
+    /// Column `c`.
+    #[must_use]
+    pub fn column(&self, c: usize) -> &[f64] {
+        &self.data[c * self.n_rows..(c + 1) * self.n_rows]
+    }
+
+    /// Column `c`, to be written.
+    pub fn column_mut(&mut self, c: usize) -> &mut [f64] {
+        &mut self.data[c * self.n_rows..(c + 1) * self.n_rows]
+    }
+
+    /// Refuses a matrix of the wrong shape or with entries that are not finite.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] with the `name` given and what is wrong.
+    pub fn check(&self, name: &'static str, n_rows: usize) -> Result<()> {
+        if self.n_rows != n_rows {
+            return Err(Error::argument(
+                name,
+                format!("has {} rows, expected {n_rows}", self.n_rows),
+            ));
+        }
+        if self.n_columns == 0 {
+            return Err(Error::argument(name, "has no columns"));
+        }
+        match self.data.iter().position(|x| !x.is_finite()) {
+            Some(k) => Err(Error::argument(
+                name,
+                format!(
+                    "row {} column {} is not finite; remove or replace it",
+                    k % n_rows,
+                    k / n_rows
+                ),
+            )),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! The problem as a second-order cone program for Clarabel, an interior-point method: slow, exact, and independent.
+//!
+//! Variables `(u, s)`, a cone `s_b ≥ ‖(H u + c)_b‖` of `1 + BLOCK·k` entries per block, `2a` in the quadratic term.
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
+    SupportedConeT::SecondOrderConeT, SupportedConeT::ZeroConeT,
+};
+
+use crate::block_rows::BLOCK;
+use crate::error::SolveError;
+use crate::progress::Progress;
+use crate::solve::certificate::bound_along_ray;
+use crate::solve::cones::Block;
+use crate::solve::fast::Outcome;
+use crate::solve::problem::{Settings, Status};
+use crate::solve::reduced::Reduced;
+use crate::{Error, Result};
+
+/// Below this many rows `qdldl` is faster, above it `faer` (measured, see the benchmarks).
+pub const QDLDL_BELOW: usize = 20_000;
+
+/// Solves the reduced problem with Clarabel and the factorisation called `method`.
+///
+/// # Errors
+/// [`SolveError`] when Clarabel cannot make anything of the problem; [`Error::Cancelled`].
+pub fn minimise<const K: usize>(
+    reduced: &Reduced<'_, K>,
+    n_columns: usize,
+    method: &str,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Outcome<K>> {
+    let program = Program::new(reduced, n_columns);
+    let tolerance = settings.tolerance.unwrap_or(1e-8).clamp(1e-10, 1e-2) * 0.1;
+    let options = DefaultSettings {
+        verbose: false,
+        direct_solve_method: method.to_string(),
+        tol_gap_abs: tolerance * 1e-2,
+        tol_gap_rel: tolerance,
+        tol_feas: tolerance.min(1e-8),
+        max_iter: settings
+            .max_iterations
+            .map_or(200, |n| u32::try_from(n).unwrap_or(u32::MAX)),
+        max_threads: 1,
+        ..DefaultSettings::default()
+    };
+    let failed = |e: &dyn std::fmt::Debug| SolveError::Factorisation {
+        reason: format!("Clarabel refused it: {e:?}"),
+    };
+    let mut solver = DefaultSolver::new(
+        &program.quadratic,
+        &program.linear,
+        &program.rows,
+        &program.right,
+        &program.cones,
+        options,
+    )
+    .map_err(|e| failed(&e))?;
+    let watch = progress.clone();
+    solver.set_termination_callback(move |_: &_| watch.is_cancelled() || watch.is_finishing());
+    solver.solve();
+    progress.check()?;
+    let found = &solver.solution;
+    let status = match found.status {
+        SolverStatus::Solved => Status::Solved,
+        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
+            return Err(Error::Solve(SolveError::Infeasible {
+                reason: "no values satisfy all linear constraints and fixed values".into(),
+            }));
+        }
+        _ if progress.is_finishing() => Status::Stopped,
+        _ => Status::Inaccurate,
+    };
+    let n = reduced.n();
+    let u: Vec<[f64; K]> = (0..n)
+        .map(|i| {
+            std::array::from_fn(|c| {
+                if c < n_columns {
+                    found.x[c * n + i]
+                } else {
+                    0.0
+                }
+            })
+        })
+        .collect();
+    let (q, y) = program.multipliers(&found.z);
+    Ok(certified(
+        reduced,
+        u,
+        &q,
+        &y,
+        found.iterations as usize,
+        status,
+    ))
+}
+
+fn certified<const K: usize>(
+    reduced: &Reduced<'_, K>,
+    u: Vec<[f64; K]>,
+    q: &[Block<K>],
+    y: &[[f64; K]],
+    iterations: usize,
+    status: Status,
+) -> Outcome<K> {
+    let mut h = Vec::new();
+    reduced.apply(&u, &mut h);
+    let primal = reduced.objective(&u, &h);
+    let mut at_target = Vec::new();
+    reduced.apply(&reduced.target, &mut at_target);
+    let start = reduced.objective(&reduced.target, &at_target);
+    let mut g = Vec::new();
+    reduced.apply_transposed(|b| q[b], &mut g);
+    if let Some(constraints) = &reduced.constraints {
+        constraints.add_transposed(y, &mut g);
+    }
+    let dual = bound_along_ray(reduced, q, y, &g, &u);
+    Outcome {
+        u,
+        primal,
+        dual,
+        start,
+        iterations,
+        status,
+        warm: None,
+    }
+}
+
+struct Program<const K: usize> {
+    quadratic: CscMatrix<f64>,
+    linear: Vec<f64>,
+    rows: CscMatrix<f64>,
+    right: Vec<f64>,
+    cones: Vec<SupportedConeT<f64>>,
+    n_columns: usize,
+    n_equalities: usize,
+}
+
+impl<const K: usize> Program<K> {
+    fn new(reduced: &Reduced<'_, K>, k: usize) -> Self {
+        let (n, m) = (reduced.n(), reduced.constant.len());
+        let n_variables = k * n + m;
+        let mut linear = vec![0.0; n_variables];
+        let mut diagonal = Vec::new();
+        for c in 0..k {
+            for (i, a) in reduced.fidelity.iter().enumerate() {
+                linear[c * n + i] = -2.0 * a * reduced.target[i][c];
+                if *a > 0.0 {
+                    diagonal.push((c * n + i, 2.0 * a));
+                }
+            }
+        }
+        linear[k * n..].copy_from_slice(reduced.weights);
+        let (at, values): (Vec<usize>, Vec<f64>) = diagonal.into_iter().unzip();
+        let quadratic =
+            CscMatrix::new_from_triplets(n_variables, n_variables, at.clone(), at, values);
+
+        // Clarabel's rows are `A x + s = b, s in cones`: equalities first, then (s_b, H u + c) of every block.
+        let (mut row, mut column, mut value, mut right) =
+            (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut cones = Vec::new();
+        let mut n_equalities = 0;
+        if let Some(constraints) = &reduced.constraints {
+            for (entries, b) in constraints.rows().iter().zip(&constraints.right) {
+                for (c, b) in b.iter().take(k).enumerate() {
+                    for &(i, v) in entries {
+                        row.push(n_equalities);
+                        column.push(c * n + i as usize);
+                        value.push(v);
+                    }
+                    right.push(*b);
+                    n_equalities += 1;
+                }
+            }
+            cones.push(ZeroConeT(n_equalities));
+        }
+        for (b, constant) in reduced.constant.iter().enumerate() {
+            row.push(right.len());
+            column.push(k * n + b);
+            value.push(-1.0);
+            right.push(0.0);
+            let (block_columns, entries) = reduced.free.operator.block(b);
+            for r in 0..BLOCK {
+                for c in 0..k {
+                    for (&i, entry) in block_columns.iter().zip(entries) {
+                        row.push(right.len());
+                        column.push(c * n + i as usize);
+                        value.push(-entry[r]);
+                    }
+                    right.push(constant[r][c]);
+                }
+            }
+            cones.push(SecondOrderConeT(1 + BLOCK * k));
+        }
+        let rows = CscMatrix::new_from_triplets(right.len(), n_variables, row, column, value);
+        Self {
+            quadratic,
+            linear,
+            rows,
+            right,
+            cones,
+            n_columns: k,
+            n_equalities,
+        }
+    }
+
+    /// Clarabel's dual variables as `q` (one block each) and `y` (one row per constraint).
+    fn multipliers(&self, z: &[f64]) -> (Vec<Block<K>>, Vec<[f64; K]>) {
+        let k = self.n_columns;
+        let entry = |row: &[f64], c: usize| if c < k { row[c] } else { 0.0 };
+        let y = z[..self.n_equalities]
+            .chunks_exact(k)
+            .map(|row| std::array::from_fn(|c| entry(row, c)))
+            .collect();
+        let q = z[self.n_equalities..]
+            .chunks_exact(1 + BLOCK * k)
+            .map(|cone| {
+                std::array::from_fn(|r| {
+                    std::array::from_fn(|c| -entry(&cone[1 + r * k..1 + (r + 1) * k], c))
+                })
+            })
+            .collect();
+        (q, y)
+    }
+}

@@ -1,0 +1,284 @@
+//! The fast solver for whole problems: fixed rows, joint or separate columns, and what one run leaves to the next.
+
+use crate::block_rows::BLOCK;
+use crate::progress::Progress;
+use crate::solve::conic;
+use crate::solve::fast::{self, Outcome, Warm};
+use crate::solve::problem::{Coupling, Problem, Settings, Solution, Solver, Status};
+use crate::solve::reduced::{FreeOperator, Reduced};
+use crate::solve::system::System;
+use crate::solve::transposed::Transposed;
+use crate::solve::Columns;
+use crate::{Error, Result};
+
+/// At most this many columns in one joint norm.
+pub const MAX_JOINT_COLUMNS: usize = 16;
+
+/// A solver that keeps the symbolic factorisation while the operator's pattern stays, and starts each run from the
+/// multipliers of the last one while the problems stay alike.
+#[derive(Debug, Default)]
+pub struct FastSolver {
+    structure: Option<Structure>,
+    warm: Vec<StoredWarm>,
+}
+
+#[derive(Debug)]
+struct Structure {
+    free: FreeOperator,
+    transposed: Transposed,
+    system: Option<System>,
+}
+
+/// Who minimises the reduced problem.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Method {
+    /// [`crate::solve::fast`].
+    Fast,
+    /// [`crate::solve::conic`] with this factorisation.
+    Clarabel(Solver),
+}
+
+struct Call<'c> {
+    method: Method,
+    settings: &'c Settings,
+    progress: &'c Progress,
+}
+
+/// A [`Warm`] of any number of columns.
+#[derive(Debug, Clone)]
+struct StoredWarm {
+    columns: usize,
+    z: Vec<f64>,
+    p: Vec<f64>,
+    length: Vec<f64>,
+}
+
+impl FastSolver {
+    /// A solver that knows nothing yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Forgets the last solution, but not the symbolic factorisation.
+    pub fn forget(&mut self) {
+        self.warm.clear();
+    }
+
+    /// Solves `problem`, starting from the last solution if it had as many blocks and columns.
+    ///
+    /// # Errors
+    /// Arguments that do not fit, a failed factorisation, contradicting constraints, or [`Error::Cancelled`].
+    pub fn solve(
+        &mut self,
+        problem: &Problem<'_>,
+        settings: &Settings,
+        progress: &Progress,
+    ) -> Result<Solution> {
+        self.run(problem, Method::Fast, settings, progress)
+    }
+
+    pub(super) fn run(
+        &mut self,
+        problem: &Problem<'_>,
+        method: Method,
+        settings: &Settings,
+        progress: &Progress,
+    ) -> Result<Solution> {
+        problem.check()?;
+        let k = problem.target.n_columns;
+        let groups: Vec<Vec<usize>> = match problem.coupling {
+            Coupling::Joint if k > MAX_JOINT_COLUMNS => {
+                return Err(Error::argument(
+                    "values",
+                    format!("has {k} columns, one joint norm takes at most {MAX_JOINT_COLUMNS}; use separate coupling"),
+                ));
+            }
+            Coupling::Joint => vec![(0..k).collect()],
+            Coupling::Separate => (0..k).map(|c| vec![c]).collect(),
+        };
+        self.prepare(problem);
+        let stored = std::mem::take(&mut self.warm);
+        let fits = stored.len() == groups.len();
+        let mut total = Total::new(problem, method);
+        let call = Call {
+            method,
+            settings,
+            progress,
+        };
+        for (g, columns) in groups.iter().enumerate() {
+            let warm = if fits { stored.get(g) } else { None };
+            match columns.len() {
+                1 => self.group::<1>(problem, columns, warm, &call, &mut total)?,
+                2 => self.group::<2>(problem, columns, warm, &call, &mut total)?,
+                3 => self.group::<3>(problem, columns, warm, &call, &mut total)?,
+                4 => self.group::<4>(problem, columns, warm, &call, &mut total)?,
+                5..=8 => self.group::<8>(problem, columns, warm, &call, &mut total)?,
+                _ => self.group::<MAX_JOINT_COLUMNS>(problem, columns, warm, &call, &mut total)?,
+            }
+        }
+        Ok(total.into_solution())
+    }
+
+    fn prepare(&mut self, problem: &Problem<'_>) {
+        let free = FreeOperator::new(problem.operator, &problem.fixed);
+        match &mut self.structure {
+            Some(s)
+                if s.free.free == free.free
+                    && s.free.operator.starts == free.operator.starts
+                    && s.free.operator.columns == free.operator.columns =>
+            {
+                s.free = free;
+            }
+            structure => {
+                let transposed = Transposed::new(&free.operator);
+                *structure = Some(Structure {
+                    free,
+                    transposed,
+                    system: None,
+                });
+            }
+        }
+    }
+
+    fn group<const K: usize>(
+        &mut self,
+        problem: &Problem<'_>,
+        columns: &[usize],
+        warm: Option<&StoredWarm>,
+        call: &Call<'_>,
+        total: &mut Total,
+    ) -> Result<()> {
+        let Some(structure) = &mut self.structure else {
+            return Ok(());
+        };
+        let reduced = Reduced::<K>::new(problem, &structure.free, &structure.transposed, columns)?;
+        if reduced.n() == 0 {
+            total.add_fixed(&reduced);
+            return Ok(());
+        }
+        let outcome = match call.method {
+            Method::Clarabel(solver) => {
+                let method = if solver == Solver::ClarabelFaer {
+                    "faer"
+                } else {
+                    "qdldl"
+                };
+                conic::minimise(
+                    &reduced,
+                    columns.len(),
+                    method,
+                    call.settings,
+                    call.progress,
+                )?
+            }
+            Method::Fast => {
+                let system = match &mut structure.system {
+                    Some(system) => system,
+                    empty => empty.insert(System::new(&structure.free, K)?),
+                };
+                let before = system.n_factorisations();
+                let warm = warm.and_then(|w| w.restore(problem.operator.n_blocks()));
+                let outcome = fast::minimise(reduced, system, warm, call.settings, call.progress)?;
+                total.factorisations += system.n_factorisations() - before;
+                outcome
+            }
+        };
+        total.add(&outcome, &structure.free.free, columns);
+        self.warm.extend(outcome.warm.map(StoredWarm::new));
+        Ok(())
+    }
+}
+
+impl StoredWarm {
+    fn new<const K: usize>(warm: Warm<K>) -> Self {
+        let flat = |blocks: Vec<[[f64; K]; BLOCK]>| blocks.as_flattened().as_flattened().to_vec();
+        Self {
+            columns: K,
+            z: flat(warm.z),
+            p: flat(warm.p),
+            length: warm.length,
+        }
+    }
+
+    fn restore<const K: usize>(&self, n_blocks: usize) -> Option<Warm<K>> {
+        if self.columns != K || self.length.len() != n_blocks {
+            return None;
+        }
+        let blocks = |flat: &[f64]| {
+            flat.chunks_exact(BLOCK * K)
+                .map(|b| std::array::from_fn(|r| std::array::from_fn(|c| b[r * K + c])))
+                .collect()
+        };
+        Some(Warm {
+            z: blocks(&self.z),
+            p: blocks(&self.p),
+            length: self.length.clone(),
+        })
+    }
+}
+
+/// The sums over groups of columns.
+struct Total {
+    values: Columns,
+    primal: f64,
+    dual: f64,
+    start: f64,
+    iterations: usize,
+    factorisations: usize,
+    status: Status,
+    solver: Solver,
+}
+
+impl Total {
+    fn new(problem: &Problem<'_>, method: Method) -> Self {
+        Self {
+            values: problem.target.clone(),
+            primal: 0.0,
+            dual: 0.0,
+            start: 0.0,
+            iterations: 0,
+            factorisations: 0,
+            status: Status::Solved,
+            solver: match method {
+                Method::Fast => Solver::Fast,
+                Method::Clarabel(solver) => solver,
+            },
+        }
+    }
+
+    fn add<const K: usize>(&mut self, outcome: &Outcome<K>, free: &[u32], columns: &[usize]) {
+        for (c, &column) in columns.iter().enumerate() {
+            let values = self.values.column_mut(column);
+            for (&i, x) in free.iter().zip(&outcome.u) {
+                values[i as usize] = x[c];
+            }
+        }
+        self.primal += outcome.primal;
+        self.dual += outcome.dual;
+        self.start += outcome.start;
+        self.iterations += outcome.iterations;
+        self.status = self.status.worse(outcome.status);
+    }
+
+    /// Everything is fixed: the objective is a constant and its own bound.
+    fn add_fixed<const K: usize>(&mut self, reduced: &Reduced<'_, K>) {
+        let objective = reduced.objective(&[], &reduced.constant);
+        self.primal += objective;
+        self.dual += objective;
+        self.start += objective;
+    }
+
+    fn into_solution(self) -> Solution {
+        Solution {
+            gap: (self.primal - self.dual) / Problem::gap_scale(self.primal, self.start),
+            values: self.values,
+            objective: self.primal,
+            dual_objective: self.dual,
+            iterations: self.iterations,
+            factorisations: self.factorisations,
+            status: self.status,
+            solver: self.solver,
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! `HᵀRH + D` for a block operator `H`, a scalar `R` per block and a diagonal `D`, on a pattern found once.
+
+use crate::block_rows::BlockRows;
+use crate::solve::cholesky::LowerPattern;
+
+/// Where each product of two entries of a block lands in the lower triangle of `HᵀRH`.
+#[derive(Debug, Clone)]
+pub struct NormalMatrix {
+    /// Per block, for its entries `i >= j` in row order, the index into the values.
+    landing: Vec<u32>,
+    pattern: LowerPattern,
+}
+
+impl NormalMatrix {
+    /// Finds the pattern in one pass over the blocks and one sort of each column.
+    #[must_use]
+    pub fn new(operator: &BlockRows) -> Self {
+        let n = operator.n_columns;
+        let mut counts = vec![1usize; n];
+        let pairs = |visit: &mut dyn FnMut(usize, usize)| {
+            for b in 0..operator.n_blocks() {
+                let columns = &operator.columns[operator.starts[b]..operator.starts[b + 1]];
+                for (i, &row) in columns.iter().enumerate() {
+                    for &column in &columns[..i] {
+                        visit(row as usize, column as usize);
+                    }
+                }
+            }
+        };
+        pairs(&mut |_, column| counts[column] += 1);
+        let mut begin = vec![0usize; n + 1];
+        for j in 0..n {
+            begin[j + 1] = begin[j] + counts[j];
+        }
+        let mut gathered = vec![0u32; begin[n]];
+        let mut fill: Vec<usize> = begin[..n].to_vec();
+        for j in 0..n {
+            gathered[fill[j]] = j as u32;
+            fill[j] += 1;
+        }
+        pairs(&mut |row, column| {
+            gathered[fill[column]] = row as u32;
+            fill[column] += 1;
+        });
+        let mut starts = Vec::with_capacity(n + 1);
+        let mut rows: Vec<usize> = Vec::new();
+        starts.push(0);
+        for j in 0..n {
+            let column = &mut gathered[begin[j]..begin[j + 1]];
+            column.sort_unstable();
+            let first = rows.len();
+            for &row in column.iter() {
+                if rows.len() == first || rows[rows.len() - 1] != row as usize {
+                    rows.push(row as usize);
+                }
+            }
+            starts.push(rows.len());
+        }
+        let mut landing = Vec::new();
+        for b in 0..operator.n_blocks() {
+            let columns = &operator.columns[operator.starts[b]..operator.starts[b + 1]];
+            for (i, &row) in columns.iter().enumerate() {
+                for &column in &columns[..=i] {
+                    let range = starts[column as usize]..starts[column as usize + 1];
+                    let offset = rows[range.clone()].partition_point(|&r| r < row as usize);
+                    landing.push((range.start + offset) as u32);
+                }
+            }
+        }
+        Self {
+            landing,
+            pattern: LowerPattern { n, starts, rows },
+        }
+    }
+
+    /// The lower triangle's pattern; every diagonal entry is there.
+    #[must_use]
+    pub fn pattern(&self) -> &LowerPattern {
+        &self.pattern
+    }
+
+    /// The values of `HᵀRH + diag(d)`, one per entry of the pattern.
+    pub fn assemble(
+        &self,
+        operator: &BlockRows,
+        r: &[f64],
+        diagonal: &[f64],
+        values: &mut Vec<f64>,
+    ) {
+        values.clear();
+        values.resize(self.pattern.rows.len(), 0.0);
+        let mut landing = self.landing.iter();
+        for (b, &weight) in r.iter().enumerate() {
+            let (_, entries) = operator.block(b);
+            for (i, x) in entries.iter().enumerate() {
+                let scaled = x.map(|v| v * weight);
+                for (y, &at) in entries[..=i].iter().zip(&mut landing) {
+                    values[at as usize] += scaled[0] * y[0] + scaled[1] * y[1] + scaled[2] * y[2];
+                }
+            }
+        }
+        for (j, d) in diagonal.iter().enumerate() {
+            values[self.pattern.starts[j]] += d;
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! The conic program (21) of Rowe et al. 2024, as matrices: what is asked, how exactly, and what came out.
+
+use sprs::CsMat;
+
+use crate::block_rows::BlockRows;
+use crate::solve::Columns;
+use crate::{Error, Result};
+
+/// How the norms of several columns add up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Coupling {
+    /// One norm per block over all columns: invariant under rotations of the columns.
+    #[default]
+    Joint,
+    /// One norm per block and column, as Rowe et al. 2024, eq. (24): each column is a problem of its own.
+    Separate,
+}
+
+/// Which solver to use.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Solver {
+    /// The fast one.
+    #[default]
+    Auto,
+    /// Alternating directions with a penalty per block and a reused factorisation.
+    Fast,
+    /// Clarabel's interior-point method; `qdldl` below about 20 000 columns of the operator, `faer` above.
+    Clarabel,
+    /// Clarabel with the factorisation `qdldl`.
+    ClarabelQdldl,
+    /// Clarabel with the factorisation of `faer`.
+    ClarabelFaer,
+}
+
+/// How a solution was left.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// The tolerance was reached.
+    Solved,
+    /// The iterations ran out first; the best point found is returned with its true gap.
+    Inaccurate,
+    /// The caller asked to finish early; the best point so far is returned with its true gap.
+    Stopped,
+}
+
+impl Status {
+    /// The name that users see.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Solved => "solved",
+            Self::Inaccurate => "inaccurate",
+            Self::Stopped => "stopped",
+        }
+    }
+
+    /// The less good of two.
+    #[must_use]
+    pub fn worse(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Stopped, _) | (_, Self::Stopped) => Self::Stopped,
+            (Self::Inaccurate, _) | (_, Self::Inaccurate) => Self::Inaccurate,
+            _ => Self::Solved,
+        }
+    }
+}
+
+/// `min_u Σ_b w_b ‖(H u)_b‖ + Σ_i a_i ‖u_i − t_i‖²` subject to fixed rows of `u` and `A u = b`.
+///
+/// Rowe et al. 2024, eq. (21), with `a = α·mass`, weights per block, and one or several columns.
+#[derive(Debug, Clone)]
+pub struct Problem<'a> {
+    /// The operator `H`, a block a cone.
+    pub operator: &'a BlockRows,
+    /// `w`, one per block, at least zero.
+    pub weights: Vec<f64>,
+    /// `a`, one per row of `u`, at least zero; zero everywhere for interpolation.
+    pub fidelity: Vec<f64>,
+    /// `t`; also the values of the fixed rows, and where the iteration starts if there is no fidelity.
+    pub target: Columns,
+    /// Which rows of `u` keep the values of `target`.
+    pub fixed: Vec<bool>,
+    /// `A` (p × n) and `b` (p × k).
+    pub linear_constraints: Option<(CsMat<f64>, Columns)>,
+    /// Joint or separate norms.
+    pub coupling: Coupling,
+}
+
+/// When to stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// The relative duality gap to certify; `None` stops on residuals (true error about 1e-4).
+    pub tolerance: Option<f64>,
+    /// At most this many iterations; the solver's own bound where `None`.
+    pub max_iterations: Option<usize>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            tolerance: Some(1e-3),
+            max_iterations: None,
+        }
+    }
+}
+
+/// A point, how good it is, and what it cost.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// The minimiser found, fixed rows included.
+    pub values: Columns,
+    /// The objective there.
+    pub objective: f64,
+    /// A lower bound on the objective of every feasible point.
+    pub dual_objective: f64,
+    /// `(objective − dual_objective) / scale`, computed from the point that is returned; `scale` is the objective, or a
+    /// millionth of the objective at the target where that is larger, so that the gap has no unit.
+    pub gap: f64,
+    /// Iterations, summed over separate columns.
+    pub iterations: usize,
+    /// Numeric factorisations, summed over separate columns.
+    pub factorisations: usize,
+    /// How the solver stopped.
+    pub status: Status,
+    /// Which solver it was.
+    pub solver: Solver,
+}
+
+impl Problem<'_> {
+    /// Number of rows of `u`.
+    #[must_use]
+    pub fn n_rows(&self) -> usize {
+        self.operator.n_columns
+    }
+
+    /// Refuses shapes that do not fit, weights or fidelities below zero, and entries that are not finite.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] naming the culprit.
+    pub fn check(&self) -> Result<()> {
+        let (n, m) = (self.n_rows(), self.operator.n_blocks());
+        self.target.check("values", n)?;
+        check_nonnegative("face_weights", &self.weights, m)?;
+        check_nonnegative("fidelity", &self.fidelity, n)?;
+        if self.fixed.len() != n {
+            return Err(Error::argument(
+                "fixed",
+                format!("has {} entries, expected {n}", self.fixed.len()),
+            ));
+        }
+        if let Some((matrix, right)) = &self.linear_constraints {
+            if matrix.cols() != n {
+                return Err(Error::argument(
+                    "linear_constraints",
+                    format!("the matrix has {} columns, expected {n}", matrix.cols()),
+                ));
+            }
+            right.check("linear_constraints", matrix.rows())?;
+            if right.n_columns != self.target.n_columns {
+                return Err(Error::argument(
+                    "linear_constraints",
+                    format!(
+                        "the right side has {} columns, expected {}",
+                        right.n_columns, self.target.n_columns
+                    ),
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// The scale that makes a gap relative, from the objective and the objective at the start.
+    #[must_use]
+    pub fn gap_scale(objective: f64, start: f64) -> f64 {
+        objective
+            .abs()
+            .max(1e-6 * start.abs())
+            .max(f64::MIN_POSITIVE)
+    }
+}
+
+fn check_nonnegative(name: &'static str, values: &[f64], n: usize) -> Result<()> {
+    if values.len() != n {
+        return Err(Error::argument(
+            name,
+            format!("has {} entries, expected {n}", values.len()),
+        ));
+    }
+    match values.iter().position(|x| !(x.is_finite() && *x >= 0.0)) {
+        Some(i) => Err(Error::argument(
+            name,
+            format!(
+                "entry {i} is {}; it must be finite and at least 0",
+                values[i]
+            ),
+        )),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,205 @@
+//! The problem without its fixed rows: `min Σ w_b ‖(H u + c)_b‖ + Σ a_i ‖u_i − t_i‖²` subject to `A u = b`.
+
+use crate::block_rows::{BlockRows, BLOCK};
+use crate::error::SolveError;
+use crate::solve::cones::{norm, Block};
+use crate::solve::linear_constraints::LinearConstraints;
+use crate::solve::problem::Problem;
+use crate::solve::transposed::Transposed;
+use crate::solve::Columns;
+use rayon::prelude::*;
+
+/// Blocks or rows that one thread takes at least: below that the hand-over costs more than the work.
+pub const GRAIN: usize = 4096;
+
+/// The free rows of the operator, shared by all columns of a problem.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FreeOperator {
+    /// `H` on the free rows of `u`.
+    pub operator: BlockRows,
+    /// Per row of the whole `u`, its place among the free ones.
+    pub place: Vec<Option<u32>>,
+    /// The free rows.
+    pub free: Vec<u32>,
+}
+
+impl FreeOperator {
+    /// Drops the columns of `operator` whose rows of `u` are fixed.
+    #[must_use]
+    pub fn new(operator: &BlockRows, fixed: &[bool]) -> Self {
+        let free: Vec<u32> = (0..operator.n_columns as u32)
+            .filter(|&i| !fixed[i as usize])
+            .collect();
+        let mut place = vec![None; operator.n_columns];
+        for (k, &i) in free.iter().enumerate() {
+            place[i as usize] = Some(k as u32);
+        }
+        if free.len() == operator.n_columns {
+            return Self {
+                operator: operator.clone(),
+                place,
+                free,
+            };
+        }
+        let mut kept = BlockRows {
+            n_columns: free.len(),
+            starts: vec![0],
+            columns: Vec::new(),
+            values: Vec::new(),
+        };
+        for b in 0..operator.n_blocks() {
+            let (columns, values) = operator.block(b);
+            for (&column, value) in columns.iter().zip(values) {
+                if let Some(k) = place[column as usize] {
+                    kept.columns.push(k);
+                    kept.values.push(*value);
+                }
+            }
+            kept.starts.push(kept.columns.len());
+        }
+        Self {
+            operator: kept,
+            place,
+            free,
+        }
+    }
+}
+
+/// One convex problem in `K` columns with joint norms, free rows only.
+#[derive(Debug)]
+pub struct Reduced<'a, const K: usize> {
+    /// `H` and who is free.
+    pub free: &'a FreeOperator,
+    /// The transposed access to `H`.
+    pub transposed: &'a Transposed,
+    /// `c`: what the fixed rows contribute.
+    pub constant: Vec<Block<K>>,
+    /// `w`.
+    pub weights: &'a [f64],
+    /// `a` on the free rows.
+    pub fidelity: Vec<f64>,
+    /// `t` on the free rows.
+    pub target: Vec<[f64; K]>,
+    /// `A` and `b` on the free rows.
+    pub constraints: Option<LinearConstraints<K>>,
+}
+
+impl<'a, const K: usize> Reduced<'a, K> {
+    /// Eliminates the fixed rows of the `columns` of `problem` (at most `K`; missing ones count as zero).
+    ///
+    /// # Errors
+    /// [`SolveError::Infeasible`] when a linear constraint speaks of fixed rows only and contradicts them.
+    pub fn new(
+        problem: &'a Problem<'_>,
+        free: &'a FreeOperator,
+        transposed: &'a Transposed,
+        columns: &[usize],
+    ) -> Result<Self, SolveError> {
+        let row_of = |i: usize| -> [f64; K] {
+            std::array::from_fn(|c| {
+                columns
+                    .get(c)
+                    .map_or(0.0, |&column| problem.target.column(column)[i])
+            })
+        };
+        let target: Vec<[f64; K]> = free.free.iter().map(|&i| row_of(i as usize)).collect();
+        let fidelity = free
+            .free
+            .iter()
+            .map(|&i| problem.fidelity[i as usize])
+            .collect();
+        let mut constant = vec![[[0.0; K]; BLOCK]; problem.operator.n_blocks()];
+        if free.free.len() < problem.n_rows() {
+            for (b, sum) in constant.iter_mut().enumerate() {
+                let (block_columns, values) = problem.operator.block(b);
+                for (&column, value) in block_columns.iter().zip(values) {
+                    if free.place[column as usize].is_none() {
+                        add_outer(sum, value, &row_of(column as usize));
+                    }
+                }
+            }
+        }
+        let constraints = match &problem.linear_constraints {
+            None => None,
+            Some((matrix, right)) => Some(LinearConstraints::new(
+                matrix, right, free, columns, &row_of,
+            )?),
+        };
+        Ok(Self {
+            free,
+            transposed,
+            constant,
+            weights: &problem.weights,
+            fidelity,
+            target,
+            constraints,
+        })
+    }
+
+    /// Number of free rows.
+    #[must_use]
+    pub fn n(&self) -> usize {
+        self.target.len()
+    }
+
+    /// `out = H u + c`.
+    pub fn apply(&self, u: &[[f64; K]], out: &mut Vec<Block<K>>) {
+        let operator = &self.free.operator;
+        (0..self.constant.len())
+            .into_par_iter()
+            .with_min_len(GRAIN)
+            .map(|b| {
+                let (columns, values) = operator.block(b);
+                let mut sum = self.constant[b];
+                for (&column, value) in columns.iter().zip(values) {
+                    add_outer(&mut sum, value, &u[column as usize]);
+                }
+                sum
+            })
+            .collect_into_vec(out);
+    }
+
+    /// `out = Hᵀ y`, for a `y` given block by block.
+    pub fn apply_transposed(&self, y: impl Fn(usize) -> Block<K> + Sync, out: &mut Vec<[f64; K]>) {
+        self.transposed.apply(&self.free.operator, y, out);
+    }
+
+    /// The objective at `u`, where `h = H u + c`.
+    #[must_use]
+    pub fn objective(&self, u: &[[f64; K]], h: &[Block<K>]) -> f64 {
+        let norms: f64 = h.iter().zip(self.weights).map(|(x, w)| w * norm(x)).sum();
+        norms + self.fidelity_term(u)
+    }
+
+    /// `Σ a_i ‖u_i − t_i‖²`.
+    #[must_use]
+    pub fn fidelity_term(&self, u: &[[f64; K]]) -> f64 {
+        let mut sum = 0.0;
+        for ((x, t), a) in u.iter().zip(&self.target).zip(&self.fidelity) {
+            if *a > 0.0 {
+                sum += a * x.iter().zip(t).map(|(p, q)| (p - q) * (p - q)).sum::<f64>();
+            }
+        }
+        sum
+    }
+
+    /// Writes the free rows `u` into the `columns` of a whole matrix.
+    pub fn expand(&self, u: &[[f64; K]], columns: &[usize], out: &mut Columns) {
+        for (c, &column) in columns.iter().enumerate() {
+            let values = out.column_mut(column);
+            for (&i, x) in self.free.free.iter().zip(u) {
+                values[i as usize] = x[c];
+            }
+        }
+    }
+}
+
+/// `sum += value ⊗ x`.
+#[inline]
+fn add_outer<const K: usize>(sum: &mut Block<K>, value: &[f64; BLOCK], x: &[f64; K]) {
+    for (s, v) in sum.iter_mut().zip(value) {
+        for (t, y) in s.iter_mut().zip(x) {
+            *t += v * y;
+        }
+    }
+}

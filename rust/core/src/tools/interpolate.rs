@@ -1,0 +1,119 @@
+//! Scattered data interpolation (Rowe et al. 2024, eq. (22)).
+
+use sprs::CsMat;
+
+use super::denoise::ScalarProblem;
+use super::SolveOptions;
+use crate::mesh::{Connectivity, Mesh};
+use crate::operators::Dual;
+use crate::progress::Progress;
+use crate::solve::{Columns, Coupling, Solution};
+use crate::{Error, Result};
+
+/// How to interpolate.
+#[derive(Debug, Clone, Default)]
+pub struct InterpolateOptions {
+    /// A weight for each face: smaller where ridges are welcome.
+    pub face_weights: Option<Vec<f64>>,
+    /// `A` (p × n) and `b` (p × k) of `A u = b`.
+    pub linear_constraints: Option<(CsMat<f64>, Columns)>,
+    /// Joint or separate norms of several columns.
+    pub coupling: Coupling,
+    /// Dual edges of the operator.
+    pub dual: Dual,
+    /// 0: the convex energy; towards 1: reweighted rounds with ever sharper ridges.
+    pub sharpness: f64,
+    /// The solver.
+    pub solve: SolveOptions,
+}
+
+/// `min_u Σ_f w_f A_f ‖H_f u‖` with `u` given at the vertices `indices`: row `r` of `values` belongs to `indices[r]`.
+/// Vertices that no face uses get the mean of the given values.
+///
+/// Source: Rowe et al. 2024, eq. (22).
+///
+/// # Errors
+/// Indices out of range, repeated or none, a connected part of the mesh without any given value, and the errors of
+/// [`super::denoise`].
+pub fn interpolate(
+    mesh: &Mesh,
+    indices: &[usize],
+    values: &Columns,
+    options: &InterpolateOptions,
+    progress: &Progress,
+) -> Result<Solution> {
+    let connectivity = mesh.connectivity();
+    let n = connectivity.n_vertices();
+    if indices.is_empty() {
+        return Err(Error::argument("indices", "is empty; give the value of at least one vertex"));
+    }
+    values.check("values", indices.len())?;
+    let mut fixed = vec![false; n];
+    let k = values.n_columns;
+    let mut target = Columns::zeros(n, k);
+    for c in 0..k {
+        let mean = values.column(c).iter().sum::<f64>() / indices.len() as f64;
+        target.column_mut(c).fill(mean);
+    }
+    for (row, &i) in indices.iter().enumerate() {
+        if i >= n {
+            return Err(Error::argument("indices", format!("entry {row} is {i}, but there are only {n} vertices")));
+        }
+        if std::mem::replace(&mut fixed[i], true) {
+            return Err(Error::argument("indices", format!("names vertex {i} twice; give each value once")));
+        }
+        for c in 0..k {
+            target.column_mut(c)[i] = values.column(c)[row];
+        }
+    }
+    if options.linear_constraints.is_none() {
+        refuse_unknown_component(connectivity, &fixed)?;
+    }
+    let problem = ScalarProblem {
+        mesh,
+        face_weights: options.face_weights.as_ref(),
+        fidelity: vec![0.0; n],
+        target,
+        fixed,
+        linear_constraints: options.linear_constraints.clone(),
+        coupling: options.coupling,
+        dual: options.dual,
+        sharpness: options.sharpness,
+        solve: &options.solve,
+    };
+    problem.run(progress)
+}
+
+/// Refuses a connected part with faces but without a known vertex: nothing would determine its values.
+fn refuse_unknown_component(connectivity: &Connectivity, known: &[bool]) -> Result<()> {
+    let mut parent: Vec<u32> = (0..connectivity.n_vertices() as u32).collect();
+    fn root(parent: &mut [u32], mut v: u32) -> u32 {
+        while parent[v as usize] != v {
+            parent[v as usize] = parent[parent[v as usize] as usize];
+            v = parent[v as usize];
+        }
+        v
+    }
+    for &[a, b, c] in connectivity.faces() {
+        let r = root(&mut parent, a);
+        for v in [b, c] {
+            let s = root(&mut parent, v);
+            parent[s as usize] = r;
+        }
+    }
+    let mut has_value = vec![false; parent.len()];
+    for (v, _) in known.iter().enumerate().filter(|(_, known)| **known) {
+        let r = root(&mut parent, v as u32);
+        has_value[r as usize] = true;
+    }
+    for (f, &[a, _, _]) in connectivity.faces().iter().enumerate() {
+        let r = root(&mut parent, a);
+        if !has_value[r as usize] {
+            return Err(Error::argument(
+                "indices",
+                format!("gives no value on the connected part of the mesh with face {f}; give at least one there"),
+            ));
+        }
+    }
+    Ok(())
+}

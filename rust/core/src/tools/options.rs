@@ -1,0 +1,79 @@
+//! What every tool can be told about the solver and the machine.
+
+use crate::solve::{Settings, Solver};
+use crate::{Error, Result};
+
+/// Which solver, how exact, how long, on how many threads.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SolveOptions {
+    /// The solver.
+    pub solver: Solver,
+    /// The relative duality gap to certify; `None` stops on residuals and reports the gap reached.
+    pub tolerance: Option<f64>,
+    /// At most this many iterations of the solver.
+    pub max_iterations: Option<usize>,
+    /// Threads to use; all where `None`. The result does not depend on it.
+    pub threads: Option<usize>,
+}
+
+impl Default for SolveOptions {
+    fn default() -> Self {
+        Self { solver: Solver::Auto, tolerance: Some(1e-3), max_iterations: None, threads: None }
+    }
+}
+
+impl SolveOptions {
+    /// What the solver itself needs to know.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] for a tolerance that is not positive, or no iterations or threads at all.
+    pub fn settings(&self) -> Result<Settings> {
+        if let Some(tolerance) = self.tolerance {
+            if !(tolerance > 0.0 && tolerance.is_finite()) {
+                return Err(Error::argument("tolerance", format!("is {tolerance}; it must be positive, say 1e-3")));
+            }
+        }
+        if self.max_iterations == Some(0) {
+            return Err(Error::argument("max_iterations", "is 0; allow at least one iteration"));
+        }
+        if self.threads == Some(0) {
+            return Err(Error::argument("threads", "is 0; use at least one thread, or None for all"));
+        }
+        Ok(Settings { tolerance: self.tolerance, max_iterations: self.max_iterations })
+    }
+
+    /// Runs `work` on the number of threads asked for.
+    ///
+    /// # Errors
+    /// What `work` returns, or [`Error::Argument`] when the threads cannot be started.
+    pub fn run<T: Send>(&self, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
+        match self.threads {
+            None => work(),
+            Some(n) => rayon::ThreadPoolBuilder::new()
+                .num_threads(n)
+                .build()
+                .map_err(|e| Error::argument("threads", format!("cannot start {n} threads: {e}")))?
+                .install(work),
+        }
+    }
+}
+
+/// Refuses a number outside `range`.
+pub(super) fn check_range(name: &'static str, value: f64, least: f64, most: f64) -> Result<()> {
+    if value >= least && value <= most {
+        return Ok(());
+    }
+    Err(Error::argument(name, format!("is {value}; it must be between {least} and {most}")))
+}
+
+/// Refuses a weight list of the wrong length or with entries that are negative or not finite.
+pub(super) fn check_weights(name: &'static str, values: Option<&Vec<f64>>, n: usize, of: &str) -> Result<()> {
+    let Some(values) = values else { return Ok(()) };
+    if values.len() != n {
+        return Err(Error::argument(name, format!("has {} entries, expected one per {of}: {n}", values.len())));
+    }
+    match values.iter().position(|x| !(x.is_finite() && *x >= 0.0)) {
+        Some(i) => Err(Error::argument(name, format!("entry {i} is {}; it must be finite and at least 0", values[i]))),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,353 @@
+//! The flow towards piecewise flat shapes (Rowe et al. 2024, eq. (24)), with sharpness.
+
+use super::options::{check_range, check_weights};
+use super::sharpness::{block_norms, sharpened_weights};
+use super::SolveOptions;
+use crate::block_rows::BlockRows;
+use crate::error::MeshError;
+use crate::intrinsic::delaunay_flips;
+use crate::mesh::{edge_lengths, triangle, Connectivity, Mesh};
+use crate::operators::{mollify, voronoi_mass, Dual, HessianPattern};
+use crate::progress::{Progress, Report};
+use crate::solve::{solve, Columns, Coupling, FastSolver, Problem, Settings, Solution, Solver};
+use crate::{Error, Result};
+
+/// A step that moves the vertices by less than this part of the shape's size (root mean square) moves nothing.
+const STILL: f64 = 1e-7;
+
+/// A shape has collapsed when its size has fallen below this part of what it was.
+const COLLAPSED: f64 = 1e-2;
+
+/// The unit of length in which the fidelity weight is meant: the energy grows with length, the fidelity term with its
+/// fourth power.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Scale {
+    /// The longest edge before each step (Rowe et al. 2024, section 7.3).
+    #[default]
+    MaxEdge,
+    /// The longest side of the axis-aligned bounding box before each step.
+    BoundingBox,
+    /// The square root of the surface area before each step: like the bounding box, but independent of rotations.
+    Area,
+}
+
+/// How to stylize.
+#[derive(Debug, Clone)]
+pub struct StylizeOptions {
+    /// Steps of the flow.
+    pub iterations: usize,
+    /// `η`: a larger one moves less per step.
+    pub fidelity: f64,
+    /// 0: the energy of the paper; 1: the most angular.
+    pub sharpness: f64,
+    /// Joint norms are invariant under rotations; separate ones are those of eq. (24).
+    pub coupling: Coupling,
+    /// The unit of `fidelity`.
+    pub scale: Scale,
+    /// Vertices that do not move.
+    pub fixed: Option<Vec<bool>>,
+    /// How much each vertex takes part: 0 fixed, 1 fully.
+    pub strength: Option<Vec<f64>>,
+    /// A weight for each face: 1 neutral, smaller where ridges are welcome, larger where they are not.
+    pub ridge_weights: Option<Vec<f64>>,
+    /// Intrinsic Delaunay flips before each step.
+    pub delaunay: bool,
+    /// Dual edges of the operator.
+    pub dual: Dual,
+    /// The solver; the default stops on residuals.
+    pub solve: SolveOptions,
+}
+
+impl Default for StylizeOptions {
+    fn default() -> Self {
+        Self {
+            iterations: 20,
+            fidelity: 500.0,
+            sharpness: 0.5,
+            coupling: Coupling::Joint,
+            scale: Scale::MaxEdge,
+            fixed: None,
+            strength: None,
+            ridge_weights: None,
+            delaunay: false,
+            dual: Dual::Barycentric,
+            solve: SolveOptions { tolerance: None, ..SolveOptions::default() },
+        }
+    }
+}
+
+/// How a flow ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FlowStatus {
+    /// All steps were done.
+    Finished,
+    /// Nothing moves any more.
+    Converged,
+    /// The shape has shrunk to (almost) nothing; the last sound step is returned.
+    Collapsed,
+    /// The caller asked to finish early.
+    Stopped,
+}
+
+impl FlowStatus {
+    /// The name that users see.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Finished => "finished",
+            Self::Converged => "converged",
+            Self::Collapsed => "collapsed",
+            Self::Stopped => "stopped",
+        }
+    }
+}
+
+/// What came out of a flow.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stylized {
+    /// The vertices, as many and in the order of the input.
+    pub vertices: Vec<[f64; 3]>,
+    /// `E_H` of the coordinates (18), before the first and after every step.
+    pub energy: Vec<f64>,
+    /// The relative duality gap of every step's convex problem.
+    pub gap: Vec<f64>,
+    /// The solver's iterations in every step.
+    pub solver_iterations: Vec<usize>,
+    /// Numeric factorisations in all.
+    pub factorisations: usize,
+    /// How it ended.
+    pub status: FlowStatus,
+}
+
+/// Moves the vertices of `mesh` towards piecewise flat patches with crisp ridges.
+///
+/// Each step minimises `Σ_f w_f A_f ‖H_f x‖ + η ‖x − x⁽ⁱ⁾‖²_M` over the coordinates `x`, with operator and mass of the
+/// mesh as it is then. Rowe et al. 2024, eq. (24); the weights are those of [`sharpened_weights`].
+///
+/// # Errors
+/// [`MeshError::NoPositions`], [`MeshError::NoFaces`], arguments of the wrong shape or range, and the errors of the
+/// solver. Never a result that is not finite.
+pub fn stylize(mesh: &Mesh, options: &StylizeOptions, progress: &Progress) -> Result<Stylized> {
+    let start = mesh.positions().ok_or(MeshError::NoPositions)?;
+    check(mesh, options)?;
+    let settings = options.solve.settings()?;
+    options.solve.run(|| Flow::new(mesh, start, options)?.run(&settings, progress))
+}
+
+fn check(mesh: &Mesh, options: &StylizeOptions) -> Result<()> {
+    let (n, m) = (mesh.connectivity().n_vertices(), mesh.connectivity().n_faces());
+    if !(options.fidelity > 0.0 && options.fidelity.is_finite()) {
+        return Err(Error::argument("fidelity", format!("is {}; it must be positive", options.fidelity)));
+    }
+    check_range("sharpness", options.sharpness, 0.0, 1.0)?;
+    check_weights("strength", options.strength.as_ref(), n, "vertex")?;
+    check_weights("ridge_weights", options.ridge_weights.as_ref(), m, "face")?;
+    if let Some(strength) = &options.strength {
+        if let Some(i) = strength.iter().position(|s| *s > 1.0) {
+            return Err(Error::argument("strength", format!("entry {i} is {}; it must be at most 1", strength[i])));
+        }
+    }
+    match &options.fixed {
+        Some(fixed) if fixed.len() != n => {
+            Err(Error::argument("fixed", format!("has {} entries, expected one per vertex: {n}", fixed.len())))
+        }
+        _ => Ok(()),
+    }
+}
+
+struct Flow<'a> {
+    options: &'a StylizeOptions,
+    connectivity: &'a Connectivity,
+    points: Vec<[f64; 3]>,
+    base: Vec<f64>,
+    original: (Connectivity, HessianPattern),
+    solver: FastSolver,
+    size: f64,
+    result: Stylized,
+}
+
+/// One step's operator and what it was made from.
+struct Step {
+    operator: BlockRows,
+    areas: Vec<f64>,
+    mass: Vec<f64>,
+    norms: Vec<f64>,
+    unit: f64,
+}
+
+impl<'a> Flow<'a> {
+    fn new(mesh: &'a Mesh, start: &[[f64; 3]], options: &'a StylizeOptions) -> Result<Self> {
+        let connectivity = mesh.connectivity();
+        let base = options.ridge_weights.clone().unwrap_or_else(|| vec![1.0; connectivity.n_faces()]);
+        let flow = Self {
+            options,
+            connectivity,
+            points: start.to_vec(),
+            base,
+            original: (connectivity.clone(), HessianPattern::new(connectivity)),
+            solver: FastSolver::new(),
+            size: size(connectivity, start),
+            result: Stylized {
+                vertices: start.to_vec(),
+                energy: Vec::new(),
+                gap: Vec::new(),
+                solver_iterations: Vec::new(),
+                factorisations: 0,
+                status: FlowStatus::Finished,
+            },
+        };
+        if flow.size <= 0.0 {
+            return Err(MeshError::NoFaces.into());
+        }
+        Ok(flow)
+    }
+
+    fn run(mut self, settings: &Settings, progress: &Progress) -> Result<Stylized> {
+        let n_steps = self.options.iterations;
+        let mut step = self.prepare()?;
+        self.result.energy.push(step.energy());
+        for done in 0..n_steps {
+            progress.check()?;
+            if progress.is_finishing() {
+                self.result.status = FlowStatus::Stopped;
+                break;
+            }
+            let solution = self.solve(&step, settings, progress)?;
+            if progress.is_finishing() && solution.status == crate::solve::Status::Stopped {
+                self.result.status = FlowStatus::Stopped;
+                break;
+            }
+            let moved = solution.values.to_points()?;
+            if !moved.iter().flatten().all(|x| x.is_finite()) || size(self.connectivity, &moved) < COLLAPSED * self.size {
+                self.result.status = FlowStatus::Collapsed;
+                break;
+            }
+            let movement = root_mean_square(&self.points, &moved);
+            self.points = moved;
+            step = self.prepare()?;
+            self.result.vertices.clone_from(&self.points);
+            self.result.energy.push(step.energy());
+            self.result.gap.push(solution.gap);
+            self.result.solver_iterations.push(solution.iterations);
+            self.result.factorisations += solution.factorisations;
+            progress.set_snapshot(&self.points);
+            progress.report(Report {
+                fraction: (done + 1) as f64 / n_steps as f64,
+                stage: "stylizing".into(),
+                iteration: done + 1,
+                energy: self.result.energy.last().copied(),
+                gap: Some(solution.gap),
+            });
+            if movement < STILL * self.size {
+                self.result.status = FlowStatus::Converged;
+                break;
+            }
+        }
+        Ok(self.result)
+    }
+
+    /// Operator, mass and unit of the shape as it is now.
+    fn prepare(&mut self) -> Result<Step> {
+        let mut lengths = edge_lengths(self.connectivity.faces(), &self.points);
+        let unit = self.unit(&lengths);
+        let flipped;
+        let (connectivity, pattern) = if self.options.delaunay {
+            mollify(self.connectivity, &mut lengths);
+            let (connectivity, flipped_lengths, _) = delaunay_flips(self.connectivity, &lengths);
+            lengths = flipped_lengths;
+            let pattern = HessianPattern::new(&connectivity);
+            flipped = (connectivity, pattern);
+            (&flipped.0, &flipped.1)
+        } else {
+            (&self.original.0, &self.original.1)
+        };
+        mollify(connectivity, &mut lengths);
+        let operator = pattern.assemble(connectivity, &lengths, self.options.dual)?;
+        let areas = lengths.iter().map(|&l| triangle::area(l)).collect();
+        let mass = voronoi_mass(connectivity, &lengths);
+        let norms = block_norms(&operator, &Columns::from_points(&self.points), self.options.coupling);
+        Ok(Step { operator, areas, mass, norms, unit })
+    }
+
+    fn unit(&self, lengths: &[[f64; 3]]) -> f64 {
+        match self.options.scale {
+            Scale::MaxEdge => lengths.iter().flatten().fold(0.0, |a, &l| a.max(l)),
+            Scale::BoundingBox => longest_side(self.connectivity, &self.points),
+            Scale::Area => lengths.iter().map(|&l| triangle::area(l)).sum::<f64>().sqrt(),
+        }
+    }
+
+    fn solve(&mut self, step: &Step, settings: &Settings, progress: &Progress) -> Result<Solution> {
+        // In units of `unit` the step is `E + η‖·‖²_M`; in the mesh's own units that is `η / unit³`.
+        let fidelity = self.options.fidelity / step.unit.powi(3);
+        let strength = self.options.strength.as_ref();
+        let n = self.points.len();
+        let fixed: Vec<bool> = (0..n)
+            .map(|i| {
+                self.options.fixed.as_ref().is_some_and(|f| f[i])
+                    || strength.is_some_and(|s| s[i] <= 0.0)
+                    || step.mass[i] <= 0.0
+            })
+            .collect();
+        let problem = Problem {
+            operator: &step.operator,
+            weights: sharpened_weights(&step.norms, &step.areas, &self.base, self.options.sharpness),
+            fidelity: (0..n)
+                .map(|i| if fixed[i] { 0.0 } else { fidelity * step.mass[i] / strength.map_or(1.0, |s| s[i]) })
+                .collect(),
+            target: Columns::from_points(&self.points),
+            fixed,
+            linear_constraints: None,
+            coupling: self.options.coupling,
+        };
+        match self.options.solve.solver {
+            Solver::Auto | Solver::Fast => self.solver.solve(&problem, settings, progress),
+            solver => solve(&problem, solver, settings, progress),
+        }
+    }
+}
+
+impl Step {
+    fn energy(&self) -> f64 {
+        self.norms.iter().sum()
+    }
+}
+
+/// Root mean square distance of two point lists.
+fn root_mean_square(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+    let sum: f64 = a.iter().zip(b).flat_map(|(p, q)| p.iter().zip(q)).map(|(x, y)| (x - y) * (x - y)).sum();
+    (sum / a.len().max(1) as f64).sqrt()
+}
+
+/// Root mean square distance of the face barycentres, weighted by area, from their centre: a size that rotations do not
+/// change.
+fn size(connectivity: &Connectivity, points: &[[f64; 3]]) -> f64 {
+    let (mut total, mut first, mut second) = (0.0, [0.0; 3], 0.0);
+    for (face, l) in connectivity.faces().iter().zip(edge_lengths(connectivity.faces(), points)) {
+        let area = triangle::area(l);
+        let centre: [f64; 3] = std::array::from_fn(|c| face.iter().map(|&v| points[v as usize][c]).sum::<f64>() / 3.0);
+        total += area;
+        for (f, c) in first.iter_mut().zip(&centre) {
+            *f += area * c;
+        }
+        second += area * centre.iter().map(|c| c * c).sum::<f64>();
+    }
+    if total <= 0.0 {
+        return 0.0;
+    }
+    let mean = first.map(|f| f / total);
+    (second / total - mean.iter().map(|m| m * m).sum::<f64>()).max(0.0).sqrt()
+}
+
+/// The longest side of the bounding box of the vertices that faces use.
+fn longest_side(connectivity: &Connectivity, points: &[[f64; 3]]) -> f64 {
+    let mut low = [f64::INFINITY; 3];
+    let mut high = [f64::NEG_INFINITY; 3];
+    for &v in connectivity.faces().iter().flatten() {
+        for (c, x) in points[v as usize].iter().enumerate() {
+            low[c] = low[c].min(*x);
+            high[c] = high[c].max(*x);
+        }
+    }
+    (0..3).fold(0.0, |side: f64, c| side.max(high[c] - low[c]))
+}
