@@ -29,10 +29,7 @@ pub enum Error {
 impl Error {
     /// An [`Error::Argument`] for the argument `name`.
     pub fn argument(name: &'static str, problem: impl Into<String>) -> Self {
-        Self::Argument {
-            name,
-            problem: problem.into(),
-        }
+        Self::Argument { name, problem: problem.into() }
     }
 }
 

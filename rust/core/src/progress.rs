@@ -102,9 +102,6 @@ impl Progress {
 
     fn state(&self) -> MutexGuard<'_, State> {
         // A poisoned lock only means that a watcher panicked while reading: the state itself is plain data.
-        self.shared
-            .state
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner)
+        self.shared.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
     }
 }

@@ -28,12 +28,7 @@ pub fn bound_along_ray<const K: usize>(
         }
     }
     if let Some(constraints) = &reduced.constraints {
-        linear -= y
-            .iter()
-            .flatten()
-            .zip(constraints.right.iter().flatten())
-            .map(|(y, b)| y * b)
-            .sum::<f64>();
+        linear -= y.iter().flatten().zip(constraints.right.iter().flatten()).map(|(y, b)| y * b).sum::<f64>();
     }
     let mut quadratic = 0.0;
     for (i, g) in g.iter().enumerate() {
@@ -47,16 +42,8 @@ pub fn bound_along_ray<const K: usize>(
     if !longest.is_finite() {
         return 0.0;
     }
-    let best = if quadratic > 0.0 {
-        linear / (2.0 * quadratic)
-    } else {
-        f64::INFINITY
-    };
-    let s = if linear > 0.0 {
-        best.min(1.0 / longest)
-    } else {
-        0.0
-    };
+    let best = if quadratic > 0.0 { linear / (2.0 * quadratic) } else { f64::INFINITY };
+    let s = if linear > 0.0 { best.min(1.0 / longest) } else { 0.0 };
     let bound = s * linear - s * s * quadratic;
     if bound.is_finite() {
         bound.max(0.0)

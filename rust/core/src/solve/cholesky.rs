@@ -8,8 +8,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::sparse::linalg::cholesky::{
-    factorize_symbolic_cholesky, CholeskySymbolicParams, LltRef, SymbolicCholesky,
-    SymmetricOrdering,
+    factorize_symbolic_cholesky, CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Mat, MatMut, MatRef, Par, Side};
@@ -38,10 +37,7 @@ pub struct Cholesky {
 
 impl std::fmt::Debug for Cholesky {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Cholesky")
-            .field("n", &self.pattern.n)
-            .field("factor_len", &self.factor.len())
-            .finish()
+        f.debug_struct("Cholesky").field("n", &self.pattern.n).field("factor_len", &self.factor.len()).finish()
     }
 }
 
@@ -51,35 +47,17 @@ impl Cholesky {
     /// # Errors
     /// [`SolveError::Factorisation`] when memory runs out.
     pub fn analyse(pattern: LowerPattern, n_right: usize) -> Result<Self, SolveError> {
-        let failed = |e: &dyn std::fmt::Debug| SolveError::Factorisation {
-            reason: format!("{e:?}"),
-        };
-        let view = SymbolicSparseColMatRef::new_checked(
-            pattern.n,
-            pattern.n,
-            &pattern.starts,
-            None,
-            &pattern.rows,
-        );
-        let symbolic = factorize_symbolic_cholesky(
-            view,
-            Side::Lower,
-            SymmetricOrdering::Amd,
-            CholeskySymbolicParams::default(),
-        )
-        .map_err(|e| failed(&e))?;
+        let failed = |e: &dyn std::fmt::Debug| SolveError::Factorisation { reason: format!("{e:?}") };
+        let view = SymbolicSparseColMatRef::new_checked(pattern.n, pattern.n, &pattern.starts, None, &pattern.rows);
+        let symbolic =
+            factorize_symbolic_cholesky(view, Side::Lower, SymmetricOrdering::Amd, CholeskySymbolicParams::default())
+                .map_err(|e| failed(&e))?;
         let scratch = symbolic
             .factorize_numeric_llt_scratch::<f64>(Par::Seq, faer::Spec::default())
             .or(symbolic.solve_in_place_scratch::<f64>(n_right.max(1), Par::Seq));
         let memory = MemBuffer::try_new(scratch).map_err(|e| failed(&e))?;
         let factor = vec![0.0; symbolic.len_val()];
-        Ok(Self {
-            pattern,
-            symbolic,
-            factor,
-            memory,
-            n_factorisations: 0,
-        })
+        Ok(Self { pattern, symbolic, factor, memory, n_factorisations: 0 })
     }
 
     /// The pattern that was analysed.
@@ -121,9 +99,7 @@ impl Cholesky {
             )
             .map(|_| ())
             .map_err(|_| SolveError::Factorisation {
-                reason:
-                    "the matrix is not positive definite; fix more vertices or raise the fidelity"
-                        .into(),
+                reason: "the matrix is not positive definite; fix more vertices or raise the fidelity".into(),
             })
     }
 

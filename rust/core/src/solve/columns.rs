@@ -17,34 +17,20 @@ impl Columns {
     /// A matrix of zeros.
     #[must_use]
     pub fn zeros(n_rows: usize, n_columns: usize) -> Self {
-        Self {
-            n_rows,
-            n_columns,
-            data: vec![0.0; n_rows * n_columns],
-        }
+        Self { n_rows, n_columns, data: vec![0.0; n_rows * n_columns] }
     }
 
     /// One column.
     #[must_use]
     pub fn from_column(data: Vec<f64>) -> Self {
-        Self {
-            n_rows: data.len(),
-            n_columns: 1,
-            data,
-        }
+        Self { n_rows: data.len(), n_columns: 1, data }
     }
 
     /// The three coordinates of points as three columns.
     #[must_use]
     pub fn from_points(points: &[[f64; 3]]) -> Self {
-        let data = (0..3)
-            .flat_map(|axis| points.iter().map(move |p| p[axis]))
-            .collect();
-        Self {
-            n_rows: points.len(),
-            n_columns: 3,
-            data,
-        }
+        let data = (0..3).flat_map(|axis| points.iter().map(move |p| p[axis])).collect();
+        Self { n_rows: points.len(), n_columns: 3, data }
     }
 
     /// The rows of a three-column matrix as points.
@@ -53,14 +39,9 @@ impl Columns {
     /// [`Error::Argument`] when there are not three columns.
     pub fn to_points(&self) -> Result<Vec<[f64; 3]>> {
         if self.n_columns != 3 {
-            return Err(Error::argument(
-                "values",
-                format!("has {} columns, points need 3", self.n_columns),
-            ));
+            return Err(Error::argument("values", format!("has {} columns, points need 3", self.n_columns)));
         }
-        Ok((0..self.n_rows)
-            .map(|i| std::array::from_fn(|axis| self.column(axis)[i]))
-            .collect())
+        Ok((0..self.n_rows).map(|i| std::array::from_fn(|axis| self.column(axis)[i])).collect())
     }
 
     /// Column `c`.
@@ -80,10 +61,7 @@ impl Columns {
     /// [`Error::Argument`] with the `name` given and what is wrong.
     pub fn check(&self, name: &'static str, n_rows: usize) -> Result<()> {
         if self.n_rows != n_rows {
-            return Err(Error::argument(
-                name,
-                format!("has {} rows, expected {n_rows}", self.n_rows),
-            ));
+            return Err(Error::argument(name, format!("has {} rows, expected {n_rows}", self.n_rows)));
         }
         if self.n_columns == 0 {
             return Err(Error::argument(name, "has no columns"));
@@ -91,11 +69,7 @@ impl Columns {
         match self.data.iter().position(|x| !x.is_finite()) {
             Some(k) => Err(Error::argument(
                 name,
-                format!(
-                    "row {} column {} is not finite; remove or replace it",
-                    k % n_rows,
-                    k / n_rows
-                ),
+                format!("row {} column {} is not finite; remove or replace it", k % n_rows, k / n_rows),
             )),
             None => Ok(()),
         }

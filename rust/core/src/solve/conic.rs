@@ -4,8 +4,8 @@
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
-    SupportedConeT::SecondOrderConeT, SupportedConeT::ZeroConeT,
+    DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT, SupportedConeT::SecondOrderConeT,
+    SupportedConeT::ZeroConeT,
 };
 
 use crate::block_rows::BLOCK;
@@ -40,24 +40,14 @@ pub fn minimise<const K: usize>(
         tol_gap_abs: tolerance * 1e-2,
         tol_gap_rel: tolerance,
         tol_feas: tolerance.min(1e-8),
-        max_iter: settings
-            .max_iterations
-            .map_or(200, |n| u32::try_from(n).unwrap_or(u32::MAX)),
+        max_iter: settings.max_iterations.map_or(200, |n| u32::try_from(n).unwrap_or(u32::MAX)),
         max_threads: 1,
         ..DefaultSettings::default()
     };
-    let failed = |e: &dyn std::fmt::Debug| SolveError::Factorisation {
-        reason: format!("Clarabel refused it: {e:?}"),
-    };
-    let mut solver = DefaultSolver::new(
-        &program.quadratic,
-        &program.linear,
-        &program.rows,
-        &program.right,
-        &program.cones,
-        options,
-    )
-    .map_err(|e| failed(&e))?;
+    let failed = |e: &dyn std::fmt::Debug| SolveError::Factorisation { reason: format!("Clarabel refused it: {e:?}") };
+    let mut solver =
+        DefaultSolver::new(&program.quadratic, &program.linear, &program.rows, &program.right, &program.cones, options)
+            .map_err(|e| failed(&e))?;
     let watch = progress.clone();
     solver.set_termination_callback(move |_: &_| watch.is_cancelled() || watch.is_finishing());
     solver.solve();
@@ -74,26 +64,10 @@ pub fn minimise<const K: usize>(
         _ => Status::Inaccurate,
     };
     let n = reduced.n();
-    let u: Vec<[f64; K]> = (0..n)
-        .map(|i| {
-            std::array::from_fn(|c| {
-                if c < n_columns {
-                    found.x[c * n + i]
-                } else {
-                    0.0
-                }
-            })
-        })
-        .collect();
+    let u: Vec<[f64; K]> =
+        (0..n).map(|i| std::array::from_fn(|c| if c < n_columns { found.x[c * n + i] } else { 0.0 })).collect();
     let (q, y) = program.multipliers(&found.z);
-    Ok(certified(
-        reduced,
-        u,
-        &q,
-        &y,
-        found.iterations as usize,
-        status,
-    ))
+    Ok(certified(reduced, u, &q, &y, found.iterations as usize, status))
 }
 
 fn certified<const K: usize>(
@@ -116,15 +90,7 @@ fn certified<const K: usize>(
         constraints.add_transposed(y, &mut g);
     }
     let dual = bound_along_ray(reduced, q, y, &g, &u);
-    Outcome {
-        u,
-        primal,
-        dual,
-        start,
-        iterations,
-        status,
-        warm: None,
-    }
+    Outcome { u, primal, dual, start, iterations, status, warm: None }
 }
 
 struct Program<const K: usize> {
@@ -153,12 +119,10 @@ impl<const K: usize> Program<K> {
         }
         linear[k * n..].copy_from_slice(reduced.weights);
         let (at, values): (Vec<usize>, Vec<f64>) = diagonal.into_iter().unzip();
-        let quadratic =
-            CscMatrix::new_from_triplets(n_variables, n_variables, at.clone(), at, values);
+        let quadratic = CscMatrix::new_from_triplets(n_variables, n_variables, at.clone(), at, values);
 
         // Clarabel's rows are `A x + s = b, s in cones`: equalities first, then (s_b, H u + c) of every block.
-        let (mut row, mut column, mut value, mut right) =
-            (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (mut row, mut column, mut value, mut right) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let mut cones = Vec::new();
         let mut n_equalities = 0;
         if let Some(constraints) = &reduced.constraints {
@@ -194,32 +158,17 @@ impl<const K: usize> Program<K> {
             cones.push(SecondOrderConeT(1 + BLOCK * k));
         }
         let rows = CscMatrix::new_from_triplets(right.len(), n_variables, row, column, value);
-        Self {
-            quadratic,
-            linear,
-            rows,
-            right,
-            cones,
-            n_columns: k,
-            n_equalities,
-        }
+        Self { quadratic, linear, rows, right, cones, n_columns: k, n_equalities }
     }
 
     /// Clarabel's dual variables as `q` (one block each) and `y` (one row per constraint).
     fn multipliers(&self, z: &[f64]) -> (Vec<Block<K>>, Vec<[f64; K]>) {
         let k = self.n_columns;
         let entry = |row: &[f64], c: usize| if c < k { row[c] } else { 0.0 };
-        let y = z[..self.n_equalities]
-            .chunks_exact(k)
-            .map(|row| std::array::from_fn(|c| entry(row, c)))
-            .collect();
+        let y = z[..self.n_equalities].chunks_exact(k).map(|row| std::array::from_fn(|c| entry(row, c))).collect();
         let q = z[self.n_equalities..]
             .chunks_exact(1 + BLOCK * k)
-            .map(|cone| {
-                std::array::from_fn(|r| {
-                    std::array::from_fn(|c| -entry(&cone[1 + r * k..1 + (r + 1) * k], c))
-                })
-            })
+            .map(|cone| std::array::from_fn(|r| std::array::from_fn(|c| -entry(&cone[1 + r * k..1 + (r + 1) * k], c))))
             .collect();
         (q, y)
     }

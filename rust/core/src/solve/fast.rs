@@ -90,55 +90,26 @@ struct Best<const K: usize> {
 }
 
 impl<'r, 's, const K: usize> Run<'r, 's, K> {
-    fn new(
-        mut reduced: Reduced<'r, K>,
-        system: &'s mut System,
-        warm: Option<Warm<K>>,
-    ) -> Result<Self> {
+    fn new(mut reduced: Reduced<'r, K>, system: &'s mut System, warm: Option<Warm<K>>) -> Result<Self> {
         let m = reduced.constant.len();
         let mut h = Vec::new();
         reduced.apply(&reduced.target, &mut h);
         let start = reduced.objective(&reduced.target, &h);
         let (r, z, p) = match warm {
             Some(warm) => {
-                let p = warm
-                    .p
-                    .iter()
-                    .zip(reduced.weights)
-                    .map(|(p, w)| scaled(*w, p))
-                    .collect();
+                let p = warm.p.iter().zip(reduced.weights).map(|(p, w)| scaled(*w, p)).collect();
                 (reweighted(&warm.length, reduced.weights), warm.z, p)
             }
             None => {
                 let scale = uniform_scale(&mut reduced, system, &h)?;
                 let zero = vec![[[0.0; K]; BLOCK]; m];
-                (
-                    reduced.weights.iter().map(|w| scale * w).collect(),
-                    zero.clone(),
-                    zero,
-                )
+                (reduced.weights.iter().map(|w| scale * w).collect(), zero.clone(), zero)
             }
         };
         system.factorise(&mut reduced, &r)?;
-        let best = Best {
-            u: reduced.target.clone(),
-            primal: f64::INFINITY,
-            dual: 0.0,
-        };
+        let best = Best { u: reduced.target.clone(), primal: f64::INFINITY, dual: 0.0 };
         let u = reduced.target.clone();
-        Ok(Self {
-            reduced,
-            system,
-            r,
-            z,
-            p,
-            u,
-            h,
-            right: Vec::new(),
-            y: Vec::new(),
-            start,
-            best,
-        })
+        Ok(Self { reduced, system, r, z, p, u, h, right: Vec::new(), y: Vec::new(), start, best })
     }
 
     fn iterate(mut self, settings: &Settings, progress: &Progress) -> Result<Outcome<K>> {
@@ -198,19 +169,14 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
     /// Shrinkage and multipliers; returns `Σ w ‖H u + c − z‖` over `Σ w ‖H u + c‖`.
     fn step_z(&mut self) -> f64 {
         let (r, w, h) = (&self.r, self.reduced.weights, &self.h);
-        self.z
-            .par_iter_mut()
-            .zip(self.p.par_iter_mut())
-            .enumerate()
-            .with_min_len(GRAIN)
-            .for_each(|(b, (z, p))| {
-                if r[b] > 0.0 {
-                    let relaxed = combine(RELAXATION, &h[b], 1.0 - RELAXATION, z);
-                    let moved = combine(1.0, &relaxed, 1.0 / r[b], p);
-                    *z = shrink(&moved, w[b] / r[b]);
-                    *p = combine(r[b], &moved, -r[b], z);
-                }
-            });
+        self.z.par_iter_mut().zip(self.p.par_iter_mut()).enumerate().with_min_len(GRAIN).for_each(|(b, (z, p))| {
+            if r[b] > 0.0 {
+                let relaxed = combine(RELAXATION, &h[b], 1.0 - RELAXATION, z);
+                let moved = combine(1.0, &relaxed, 1.0 / r[b], p);
+                *z = shrink(&moved, w[b] / r[b]);
+                *p = combine(r[b], &moved, -r[b], z);
+            }
+        });
         let (mut off, mut all) = (0.0, 0.0);
         for ((h, z), w) in self.h.iter().zip(&self.z).zip(w) {
             off += w * norm(&combine(1.0, h, -1.0, z));
@@ -233,10 +199,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
                 std::array::from_fn(|c| a * (self.reduced.target[i][c] - self.u[i][c]))
             })
             .collect();
-        self.best.dual =
-            self.best
-                .dual
-                .max(bound_along_ray(&self.reduced, &q, &self.y, &g, &self.u));
+        self.best.dual = self.best.dual.max(bound_along_ray(&self.reduced, &q, &self.y, &g, &self.u));
     }
 
     /// The lower bound from the multipliers themselves, which are never too long; needs fidelity everywhere.
@@ -249,13 +212,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         if let Some(constraints) = &self.reduced.constraints {
             constraints.add_transposed(&self.y, &mut g);
         }
-        self.best.dual = self.best.dual.max(bound_along_ray(
-            &self.reduced,
-            &self.p,
-            &self.y,
-            &g,
-            &self.u,
-        ));
+        self.best.dual = self.best.dual.max(bound_along_ray(&self.reduced, &self.p, &self.y, &g, &self.u));
     }
 
     fn is_feasible(&self) -> bool {
@@ -271,19 +228,13 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
     }
 
     fn lengths(&self) -> Vec<f64> {
-        self.h
-            .iter()
-            .zip(&self.z)
-            .map(|(h, z)| 0.5 * (norm(h) + norm(z)))
-            .collect()
+        self.h.iter().zip(&self.z).map(|(h, z)| 0.5 * (norm(h) + norm(z))).collect()
     }
 
     fn outcome(self, iterations: usize, status: Status) -> Outcome<K> {
         let length = self.lengths();
         let p = self.p.iter().zip(self.reduced.weights);
-        let p = p
-            .map(|(p, w)| if *w > 0.0 { scaled(1.0 / w, p) } else { *p })
-            .collect();
+        let p = p.map(|(p, w)| if *w > 0.0 { scaled(1.0 / w, p) } else { *p }).collect();
         Outcome {
             u: self.best.u,
             primal: self.best.primal,
@@ -291,11 +242,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             start: self.start,
             iterations,
             status,
-            warm: Some(Warm {
-                z: self.z,
-                p,
-                length,
-            }),
+            warm: Some(Warm { z: self.z, p, length }),
         }
     }
 }

@@ -69,12 +69,7 @@ impl FastSolver {
     ///
     /// # Errors
     /// Arguments that do not fit, a failed factorisation, contradicting constraints, or [`Error::Cancelled`].
-    pub fn solve(
-        &mut self,
-        problem: &Problem<'_>,
-        settings: &Settings,
-        progress: &Progress,
-    ) -> Result<Solution> {
+    pub fn solve(&mut self, problem: &Problem<'_>, settings: &Settings, progress: &Progress) -> Result<Solution> {
         self.run(problem, Method::Fast, settings, progress)
     }
 
@@ -101,11 +96,7 @@ impl FastSolver {
         let stored = std::mem::take(&mut self.warm);
         let fits = stored.len() == groups.len();
         let mut total = Total::new(problem, method);
-        let call = Call {
-            method,
-            settings,
-            progress,
-        };
+        let call = Call { method, settings, progress };
         for (g, columns) in groups.iter().enumerate() {
             let warm = if fits { stored.get(g) } else { None };
             match columns.len() {
@@ -132,11 +123,7 @@ impl FastSolver {
             }
             structure => {
                 let transposed = Transposed::new(&free.operator);
-                *structure = Some(Structure {
-                    free,
-                    transposed,
-                    system: None,
-                });
+                *structure = Some(Structure { free, transposed, system: None });
             }
         }
     }
@@ -159,18 +146,8 @@ impl FastSolver {
         }
         let outcome = match call.method {
             Method::Clarabel(solver) => {
-                let method = if solver == Solver::ClarabelFaer {
-                    "faer"
-                } else {
-                    "qdldl"
-                };
-                conic::minimise(
-                    &reduced,
-                    columns.len(),
-                    method,
-                    call.settings,
-                    call.progress,
-                )?
+                let method = if solver == Solver::ClarabelFaer { "faer" } else { "qdldl" };
+                conic::minimise(&reduced, columns.len(), method, call.settings, call.progress)?
             }
             Method::Fast => {
                 let system = match &mut structure.system {
@@ -193,12 +170,7 @@ impl FastSolver {
 impl StoredWarm {
     fn new<const K: usize>(warm: Warm<K>) -> Self {
         let flat = |blocks: Vec<[[f64; K]; BLOCK]>| blocks.as_flattened().as_flattened().to_vec();
-        Self {
-            columns: K,
-            z: flat(warm.z),
-            p: flat(warm.p),
-            length: warm.length,
-        }
+        Self { columns: K, z: flat(warm.z), p: flat(warm.p), length: warm.length }
     }
 
     fn restore<const K: usize>(&self, n_blocks: usize) -> Option<Warm<K>> {
@@ -210,11 +182,7 @@ impl StoredWarm {
                 .map(|b| std::array::from_fn(|r| std::array::from_fn(|c| b[r * K + c])))
                 .collect()
         };
-        Some(Warm {
-            z: blocks(&self.z),
-            p: blocks(&self.p),
-            length: self.length.clone(),
-        })
+        Some(Warm { z: blocks(&self.z), p: blocks(&self.p), length: self.length.clone() })
     }
 }
 

@@ -36,8 +36,7 @@ impl<const K: usize> LinearConstraints<K> {
         let mut rows = Vec::new();
         let mut rights = Vec::new();
         for (p, row) in matrix.outer_iterator().enumerate() {
-            let mut rest: [f64; K] =
-                std::array::from_fn(|c| columns.get(c).map_or(0.0, |&k| right.column(k)[p]));
+            let mut rest: [f64; K] = std::array::from_fn(|c| columns.get(c).map_or(0.0, |&k| right.column(k)[p]));
             let size = rest.iter().fold(1.0f64, |a, x| a.max(x.abs()));
             let mut kept = Vec::new();
             for (i, &value) in row.iter() {
@@ -54,18 +53,11 @@ impl<const K: usize> LinearConstraints<K> {
                 rights.push(rest);
             } else if rest.iter().any(|r| r.abs() > 1e-9 * size) {
                 return Err(SolveError::Infeasible {
-                    reason: format!(
-                        "linear constraint {p} speaks of fixed values only and contradicts them"
-                    ),
+                    reason: format!("linear constraint {p} speaks of fixed values only and contradicts them"),
                 });
             }
         }
-        Ok(Self {
-            rows,
-            right: rights,
-            response: Vec::new(),
-            schur: None,
-        })
+        Ok(Self { rows, right: rights, response: Vec::new(), schur: None })
     }
 
     /// Number of constraints.
@@ -91,9 +83,7 @@ impl<const K: usize> LinearConstraints<K> {
     pub fn apply(&self, u: &[[f64; K]]) -> Vec<[f64; K]> {
         let times = |row: &Vec<(u32, f64)>| {
             row.iter().fold([0.0; K], |mut sum, &(i, v)| {
-                sum.iter_mut()
-                    .zip(&u[i as usize])
-                    .for_each(|(s, x)| *s += v * x);
+                sum.iter_mut().zip(&u[i as usize]).for_each(|(s, x)| *s += v * x);
                 sum
             })
         };
@@ -104,10 +94,7 @@ impl<const K: usize> LinearConstraints<K> {
     pub fn add_transposed(&self, y: &[[f64; K]], out: &mut [[f64; K]]) {
         for (row, y) in self.rows.iter().zip(y) {
             for &(i, v) in row {
-                out[i as usize]
-                    .iter_mut()
-                    .zip(y)
-                    .for_each(|(o, y)| *o += v * y);
+                out[i as usize].iter_mut().zip(y).for_each(|(o, y)| *o += v * y);
             }
         }
     }
@@ -120,11 +107,7 @@ impl<const K: usize> LinearConstraints<K> {
         let (n, p) = (cholesky.pattern().n, self.rows.len());
         self.response.clear();
         self.response.resize(n * p, 0.0);
-        for (row, column) in self
-            .rows
-            .iter()
-            .zip(self.response.chunks_exact_mut(n.max(1)))
-        {
+        for (row, column) in self.rows.iter().zip(self.response.chunks_exact_mut(n.max(1))) {
             for &(i, v) in row {
                 column[i as usize] += v;
             }
@@ -138,8 +121,7 @@ impl<const K: usize> LinearConstraints<K> {
             }
         }
         let dependent = || SolveError::Infeasible {
-            reason: "the linear constraints depend on each other; remove those that repeat others"
-                .into(),
+            reason: "the linear constraints depend on each other; remove those that repeat others".into(),
         };
         self.schur = Some(DenseCholesky::new(&schur, p).ok_or_else(dependent)?);
         Ok(())

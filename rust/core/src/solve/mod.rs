@@ -30,18 +30,11 @@ use fast_solver::Method;
 ///
 /// # Errors
 /// See [`FastSolver::solve`].
-pub fn solve(
-    problem: &Problem<'_>,
-    solver: Solver,
-    settings: &Settings,
-    progress: &Progress,
-) -> Result<Solution> {
+pub fn solve(problem: &Problem<'_>, solver: Solver, settings: &Settings, progress: &Progress) -> Result<Solution> {
     let method = match solver {
         Solver::Auto | Solver::Fast => Method::Fast,
         Solver::ClarabelQdldl | Solver::ClarabelFaer => Method::Clarabel(solver),
-        Solver::Clarabel if problem.n_rows() < conic::QDLDL_BELOW => {
-            Method::Clarabel(Solver::ClarabelQdldl)
-        }
+        Solver::Clarabel if problem.n_rows() < conic::QDLDL_BELOW => Method::Clarabel(Solver::ClarabelQdldl),
         Solver::Clarabel => Method::Clarabel(Solver::ClarabelFaer),
     };
     FastSolver::new().run(problem, method, settings, progress)

@@ -67,10 +67,7 @@ impl NormalMatrix {
                 }
             }
         }
-        Self {
-            landing,
-            pattern: LowerPattern { n, starts, rows },
-        }
+        Self { landing, pattern: LowerPattern { n, starts, rows } }
     }
 
     /// The lower triangle's pattern; every diagonal entry is there.
@@ -80,13 +77,7 @@ impl NormalMatrix {
     }
 
     /// The values of `HᵀRH + diag(d)`, one per entry of the pattern.
-    pub fn assemble(
-        &self,
-        operator: &BlockRows,
-        r: &[f64],
-        diagonal: &[f64],
-        values: &mut Vec<f64>,
-    ) {
+    pub fn assemble(&self, operator: &BlockRows, r: &[f64], diagonal: &[f64], values: &mut Vec<f64>) {
         values.clear();
         values.resize(self.pattern.rows.len(), 0.0);
         let mut landing = self.landing.iter();

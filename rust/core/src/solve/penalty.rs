@@ -20,11 +20,7 @@ pub fn reweighted(lengths: &[f64], weights: &[f64]) -> Vec<f64> {
     if mean <= 0.0 {
         return weights.to_vec();
     }
-    lengths
-        .iter()
-        .zip(weights)
-        .map(|(g, w)| BALANCE * w / g.clamp(CLIP[0] * mean, CLIP[1] * mean))
-        .collect()
+    lengths.iter().zip(weights).map(|(g, w)| BALANCE * w / g.clamp(CLIP[0] * mean, CLIP[1] * mean)).collect()
 }
 
 /// The uniform scale `ρ` of `R = ρ w` with `ρ · mean ‖H u(ρ) + c‖ ≈ BALANCE`, where `u(ρ)` is the quadratic minimiser;
@@ -34,26 +30,15 @@ pub fn reweighted(lengths: &[f64], weights: &[f64]) -> Vec<f64> {
 ///
 /// # Errors
 /// A failed factorisation.
-pub fn uniform_scale<const K: usize>(
-    reduced: &mut Reduced<'_, K>,
-    system: &mut System,
-    h: &[Block<K>],
-) -> Result<f64> {
+pub fn uniform_scale<const K: usize>(reduced: &mut Reduced<'_, K>, system: &mut System, h: &[Block<K>]) -> Result<f64> {
     let has_fidelity = reduced.fidelity.iter().any(|a| *a > 0.0);
-    let mut scale = if has_fidelity {
-        balance_for(reduced, h)
-    } else {
-        1.0
-    };
+    let mut scale = if has_fidelity { balance_for(reduced, h) } else { 1.0 };
     for _ in 0..6 {
         let r: Vec<f64> = reduced.weights.iter().map(|w| scale * w).collect();
         system.factorise(reduced, &r)?;
         let mut right = Vec::new();
         let zero = [[0.0; K]; BLOCK];
-        reduced.apply_transposed(
-            |b| crate::solve::cones::combine(-r[b], &reduced.constant[b], 0.0, &zero),
-            &mut right,
-        );
+        reduced.apply_transposed(|b| crate::solve::cones::combine(-r[b], &reduced.constant[b], 0.0, &zero), &mut right);
         let mut u = reduced.target.clone();
         system.solve(reduced, &right, &mut u);
         let mut smooth = Vec::new();

@@ -97,10 +97,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self {
-            tolerance: Some(1e-3),
-            max_iterations: None,
-        }
+        Self { tolerance: Some(1e-3), max_iterations: None }
     }
 }
 
@@ -143,10 +140,7 @@ impl Problem<'_> {
         check_nonnegative("face_weights", &self.weights, m)?;
         check_nonnegative("fidelity", &self.fidelity, n)?;
         if self.fixed.len() != n {
-            return Err(Error::argument(
-                "fixed",
-                format!("has {} entries, expected {n}", self.fixed.len()),
-            ));
+            return Err(Error::argument("fixed", format!("has {} entries, expected {n}", self.fixed.len())));
         }
         if let Some((matrix, right)) = &self.linear_constraints {
             if matrix.cols() != n {
@@ -159,10 +153,7 @@ impl Problem<'_> {
             if right.n_columns != self.target.n_columns {
                 return Err(Error::argument(
                     "linear_constraints",
-                    format!(
-                        "the right side has {} columns, expected {}",
-                        right.n_columns, self.target.n_columns
-                    ),
+                    format!("the right side has {} columns, expected {}", right.n_columns, self.target.n_columns),
                 ));
             }
         }
@@ -172,28 +163,16 @@ impl Problem<'_> {
     /// The scale that makes a gap relative, from the objective and the objective at the start.
     #[must_use]
     pub fn gap_scale(objective: f64, start: f64) -> f64 {
-        objective
-            .abs()
-            .max(1e-6 * start.abs())
-            .max(f64::MIN_POSITIVE)
+        objective.abs().max(1e-6 * start.abs()).max(f64::MIN_POSITIVE)
     }
 }
 
 fn check_nonnegative(name: &'static str, values: &[f64], n: usize) -> Result<()> {
     if values.len() != n {
-        return Err(Error::argument(
-            name,
-            format!("has {} entries, expected {n}", values.len()),
-        ));
+        return Err(Error::argument(name, format!("has {} entries, expected {n}", values.len())));
     }
     match values.iter().position(|x| !(x.is_finite() && *x >= 0.0)) {
-        Some(i) => Err(Error::argument(
-            name,
-            format!(
-                "entry {i} is {}; it must be finite and at least 0",
-                values[i]
-            ),
-        )),
+        Some(i) => Err(Error::argument(name, format!("entry {i} is {}; it must be finite and at least 0", values[i]))),
         None => Ok(()),
     }
 }

@@ -27,26 +27,15 @@ impl FreeOperator {
     /// Drops the columns of `operator` whose rows of `u` are fixed.
     #[must_use]
     pub fn new(operator: &BlockRows, fixed: &[bool]) -> Self {
-        let free: Vec<u32> = (0..operator.n_columns as u32)
-            .filter(|&i| !fixed[i as usize])
-            .collect();
+        let free: Vec<u32> = (0..operator.n_columns as u32).filter(|&i| !fixed[i as usize]).collect();
         let mut place = vec![None; operator.n_columns];
         for (k, &i) in free.iter().enumerate() {
             place[i as usize] = Some(k as u32);
         }
         if free.len() == operator.n_columns {
-            return Self {
-                operator: operator.clone(),
-                place,
-                free,
-            };
+            return Self { operator: operator.clone(), place, free };
         }
-        let mut kept = BlockRows {
-            n_columns: free.len(),
-            starts: vec![0],
-            columns: Vec::new(),
-            values: Vec::new(),
-        };
+        let mut kept = BlockRows { n_columns: free.len(), starts: vec![0], columns: Vec::new(), values: Vec::new() };
         for b in 0..operator.n_blocks() {
             let (columns, values) = operator.block(b);
             for (&column, value) in columns.iter().zip(values) {
@@ -57,11 +46,7 @@ impl FreeOperator {
             }
             kept.starts.push(kept.columns.len());
         }
-        Self {
-            operator: kept,
-            place,
-            free,
-        }
+        Self { operator: kept, place, free }
     }
 }
 
@@ -96,18 +81,10 @@ impl<'a, const K: usize> Reduced<'a, K> {
         columns: &[usize],
     ) -> Result<Self, SolveError> {
         let row_of = |i: usize| -> [f64; K] {
-            std::array::from_fn(|c| {
-                columns
-                    .get(c)
-                    .map_or(0.0, |&column| problem.target.column(column)[i])
-            })
+            std::array::from_fn(|c| columns.get(c).map_or(0.0, |&column| problem.target.column(column)[i]))
         };
         let target: Vec<[f64; K]> = free.free.iter().map(|&i| row_of(i as usize)).collect();
-        let fidelity = free
-            .free
-            .iter()
-            .map(|&i| problem.fidelity[i as usize])
-            .collect();
+        let fidelity = free.free.iter().map(|&i| problem.fidelity[i as usize]).collect();
         let mut constant = vec![[[0.0; K]; BLOCK]; problem.operator.n_blocks()];
         if free.free.len() < problem.n_rows() {
             for (b, sum) in constant.iter_mut().enumerate() {
@@ -121,19 +98,9 @@ impl<'a, const K: usize> Reduced<'a, K> {
         }
         let constraints = match &problem.linear_constraints {
             None => None,
-            Some((matrix, right)) => Some(LinearConstraints::new(
-                matrix, right, free, columns, &row_of,
-            )?),
+            Some((matrix, right)) => Some(LinearConstraints::new(matrix, right, free, columns, &row_of)?),
         };
-        Ok(Self {
-            free,
-            transposed,
-            constant,
-            weights: &problem.weights,
-            fidelity,
-            target,
-            constraints,
-        })
+        Ok(Self { free, transposed, constant, weights: &problem.weights, fidelity, target, constraints })
     }
 
     /// Number of free rows.

@@ -27,13 +27,7 @@ impl System {
     pub fn new(free: &FreeOperator, n_right: usize) -> Result<Self, SolveError> {
         let normal = NormalMatrix::new(&free.operator);
         let cholesky = Cholesky::analyse(normal.pattern().clone(), n_right)?;
-        Ok(Self {
-            normal,
-            cholesky,
-            values: Vec::new(),
-            proximal: Vec::new(),
-            buffer: Vec::new(),
-        })
+        Ok(Self { normal, cholesky, values: Vec::new(), proximal: Vec::new(), buffer: Vec::new() })
     }
 
     /// Numeric factorisations made so far.
@@ -46,22 +40,14 @@ impl System {
     ///
     /// # Errors
     /// A matrix that is not positive definite, or dependent linear constraints.
-    pub fn factorise<const K: usize>(
-        &mut self,
-        reduced: &mut Reduced<'_, K>,
-        r: &[f64],
-    ) -> Result<(), SolveError> {
+    pub fn factorise<const K: usize>(&mut self, reduced: &mut Reduced<'_, K>, r: &[f64]) -> Result<(), SolveError> {
         let twice: Vec<f64> = reduced.fidelity.iter().map(|a| 2.0 * a).collect();
-        self.normal
-            .assemble(&reduced.free.operator, r, &twice, &mut self.values);
+        self.normal.assemble(&reduced.free.operator, r, &twice, &mut self.values);
         let starts = &self.normal.pattern().starts;
         let n = twice.len();
         let mean = starts[..n].iter().map(|&s| self.values[s]).sum::<f64>() / n.max(1) as f64;
         let small = if mean > 0.0 { PROXIMAL * mean } else { 1.0 };
-        self.proximal = twice
-            .iter()
-            .map(|&a| if a > 0.0 { 0.0 } else { small })
-            .collect();
+        self.proximal = twice.iter().map(|&a| if a > 0.0 { 0.0 } else { small }).collect();
         for (&s, p) in starts.iter().zip(&self.proximal) {
             self.values[s] += p;
         }
@@ -92,9 +78,6 @@ impl System {
         for (i, x) in u.iter_mut().enumerate() {
             *x = std::array::from_fn(|c| self.buffer[c * n + i]);
         }
-        reduced
-            .constraints
-            .as_ref()
-            .map_or_else(Vec::new, |constraints| constraints.correct(u))
+        reduced.constraints.as_ref().map_or_else(Vec::new, |constraints| constraints.correct(u))
     }
 }

@@ -5,7 +5,6 @@ use super::sharpness::{block_norms, sharpened_weights};
 use super::SolveOptions;
 use crate::block_rows::BlockRows;
 use crate::error::MeshError;
-use crate::intrinsic::delaunay_flips;
 use crate::mesh::{edge_lengths, triangle, Connectivity, Mesh};
 use crate::operators::{mollify, voronoi_mass, Dual, HessianPattern};
 use crate::progress::{Progress, Report};
@@ -218,7 +217,8 @@ impl<'a> Flow<'a> {
                 break;
             }
             let moved = solution.values.to_points()?;
-            if !moved.iter().flatten().all(|x| x.is_finite()) || size(self.connectivity, &moved) < COLLAPSED * self.size {
+            if !moved.iter().flatten().all(|x| x.is_finite()) || size(self.connectivity, &moved) < COLLAPSED * self.size
+            {
                 self.result.status = FlowStatus::Collapsed;
                 break;
             }
@@ -250,17 +250,10 @@ impl<'a> Flow<'a> {
     fn prepare(&mut self) -> Result<Step> {
         let mut lengths = edge_lengths(self.connectivity.faces(), &self.points);
         let unit = self.unit(&lengths);
-        let flipped;
-        let (connectivity, pattern) = if self.options.delaunay {
-            mollify(self.connectivity, &mut lengths);
-            let (connectivity, flipped_lengths, _) = delaunay_flips(self.connectivity, &lengths);
-            lengths = flipped_lengths;
-            let pattern = HessianPattern::new(&connectivity);
-            flipped = (connectivity, pattern);
-            (&flipped.0, &flipped.1)
-        } else {
-            (&self.original.0, &self.original.1)
-        };
+        if self.options.delaunay {
+            return Err(Error::argument("delaunay", "is not available yet; pass false"));
+        }
+        let (connectivity, pattern) = (&self.original.0, &self.original.1);
         mollify(connectivity, &mut lengths);
         let operator = pattern.assemble(connectivity, &lengths, self.options.dual)?;
         let areas = lengths.iter().map(|&l| triangle::area(l)).collect();
