@@ -24,7 +24,8 @@ _KINDS = {
     "QUATERNION": ("value", np.float32, 4),
 }
 _MIXED = {"FLOAT", "FLOAT2", "FLOAT_VECTOR", "FLOAT_COLOR", "BYTE_COLOR"}
-_TOPOLOGY = {"position", ".edge_verts", ".corner_vert", ".corner_edge"}
+# Custom normals are stored relative to the faces that they were made for.
+_TOPOLOGY = {"position", "custom_normal", ".edge_verts", ".corner_vert", ".corner_edge"}
 _SEAMS = {".uv_seam", "uv_seam"}
 ON_MARK = 0.15
 """A new edge takes a mark if ends and middle lie this close to marked edges, in parts of its length."""

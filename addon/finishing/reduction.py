@@ -35,7 +35,7 @@ def reduce_mesh(obj: bpy.types.Object, ratio: float) -> str | None:
     points, faces = _sound(points, faces)
     if len(faces) == 0:
         return "its triangles were not reduced, because nothing would be left"
-    had_polygons = len(mesh.polygons) != len(triangles)
+    losses = _losses(mesh, triangles)
     corners = mesh_io.triangle_corners(mesh)
     source = mesh_layers.read_layers(obj)
     surface = SurfaceMap(coordinates, triangles, charts(corners, triangles, source.uv_layers()))
@@ -49,8 +49,17 @@ def reduce_mesh(obj: bpy.types.Object, ratio: float) -> str | None:
         faces,
     )
     mesh_layers.replace_faces(obj, points, faces, layers)
-    note = f"reduced from {len(triangles)} to {len(faces)} triangles"
-    return f"{note}; quads and n-gons became triangles" if had_polygons else note
+    return "; ".join([f"reduced from {len(triangles)} to {len(faces)} triangles", *losses])
+
+
+def _losses(mesh: bpy.types.Mesh, triangles: np.ndarray) -> list[str]:
+    loose = len(mesh.vertices) - len(np.unique(triangles))
+    facts = (
+        (len(mesh.polygons) != len(triangles), "quads and n-gons became triangles"),
+        (loose > 0, f"{loose} vertices without a face were dropped"),
+        (mesh.has_custom_normals, "custom normals were dropped"),
+    )
+    return [sentence for applies, sentence in facts if applies]
 
 
 def _simplifier() -> ModuleType | None:

@@ -72,11 +72,7 @@ def abort(run: Run) -> None:
         return
     _running.remove(run)
     run.job.cancel()
-    try:
-        run.restore()
-    except ReferenceError:
-        # The objects are gone (their file was closed): there is nothing left to put back.
-        return
+    run.restore()
 
 
 def status_line(job: Job) -> str:
@@ -107,7 +103,8 @@ class ModalRun:
         manager = context.window_manager
         manager.progress_begin(0, CURSOR_RANGE)
         self._timer = manager.event_timer_add(POLL_SECONDS, window=context.window)
-        self._area = context.area
+        # Not the area itself: touching one that was closed meanwhile would crash Blender.
+        self._area = None if context.area is None else context.area.as_pointer()
         manager.modal_handler_add(self)
         self._show(context)
         return {"RUNNING_MODAL"}
@@ -166,8 +163,7 @@ class ModalRun:
             row.label(text=line)
 
         context.workspace.status_text_set(draw)
-        if self._area is not None:
-            self._area.header_text_set(f"Ridgeform  {100 * job.fraction:.0f} %   {line}")
+        _set_header(context, self._area, f"Ridgeform  {100 * job.fraction:.0f} %   {line}")
 
     def _close(self, context: bpy.types.Context) -> None:
         if self._timer is None:
@@ -178,8 +174,14 @@ class ModalRun:
         manager.progress_end()
         if context.workspace is not None:
             context.workspace.status_text_set(None)
-        if self._area is not None:
-            self._area.header_text_set(None)
+        _set_header(context, self._area, None)
+
+
+def _set_header(context: bpy.types.Context, area_pointer: int | None, text: str | None) -> None:
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.as_pointer() == area_pointer:
+                area.header_text_set(text)
 
 
 _running: list[Run] = []

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Stylizing meshes piecewise flat: Rowe et al. 2024, eq. (24), from reading a mesh to writing it back."""
 
+import contextlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -85,9 +86,11 @@ class Stylization:
         return moved
 
     def restore(self) -> None:
-        """Put back every mesh, bit by bit."""
+        """Put back every mesh that is still there, bit by bit."""
         for part in self.parts:
-            part.coordinates.restore()
+            # An object whose file was closed, or that a script deleted meanwhile, needs nothing put back.
+            with contextlib.suppress(ReferenceError):
+                part.coordinates.restore()
 
     @property
     def steps_done(self) -> int:

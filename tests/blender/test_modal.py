@@ -51,6 +51,7 @@ class FakeContext:
         self.window_manager = SimpleNamespace(
             event_timer_add=self._add, event_timer_remove=self._remove, 
             modal_handler_add=lambda _operator: None,
+            windows=(),
             progress_begin=lambda low, high: self.cursor.append(low),
             progress_update=self.cursor.append, progress_end=lambda: self.cursor.append("end"),
         )  # fmt: skip
