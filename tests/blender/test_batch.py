@@ -5,8 +5,7 @@ import json
 import addon_kit as kit
 import bpy
 import pytest
-
-from addon import batch, files
+from bl_ext.user_default.ridgeform import batch, files
 
 STEPS = ("--steps", "2")
 

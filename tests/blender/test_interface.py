@@ -5,9 +5,8 @@ from pathlib import Path
 import addon_kit as kit
 import bpy
 import pytest
-
-import addon
-from addon.settings import SETTING_NAMES, default_settings, fidelity_of
+from bl_ext.user_default import ridgeform as addon
+from bl_ext.user_default.ridgeform.settings import SETTING_NAMES, default_settings, fidelity_of
 
 
 @pytest.fixture(autouse=True)

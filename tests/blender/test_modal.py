@@ -7,11 +7,10 @@ import addon_kit as kit
 import bpy
 import numpy as np
 import pytest
-
-from addon import job
-from addon.operators import modal
-from addon.settings import default_settings
-from addon.tools.stylize import Stylization
+from bl_ext.user_default.ridgeform import job
+from bl_ext.user_default.ridgeform.operators import modal
+from bl_ext.user_default.ridgeform.settings import default_settings
+from bl_ext.user_default.ridgeform.tools.stylize import Stylization
 
 PATIENCE = 60.0
 

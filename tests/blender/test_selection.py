@@ -4,8 +4,7 @@ import addon_kit as kit
 import bpy
 import numpy as np
 import pytest
-
-from addon import selection
+from bl_ext.user_default.ridgeform import selection
 
 
 @pytest.fixture(autouse=True)

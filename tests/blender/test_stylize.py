@@ -5,9 +5,8 @@ import bpy
 import numpy as np
 import pytest
 import ridgeform
-
-from addon import job, mesh_io
-from addon.settings import default_settings, ridge_weights_of, stylize_options
+from bl_ext.user_default.ridgeform import job, mesh_io
+from bl_ext.user_default.ridgeform.settings import default_settings, ridge_weights_of, stylize_options
 
 STEPS = 3
 

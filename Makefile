@@ -1,0 +1,37 @@
+# Everything is set up in .ridgeform/ on the first run, and only what changed is done again.
+PYTHON ?= python3
+RUN = @$(PYTHON) scripts/setup_env.py
+
+.PHONY: help demo test lint bench extension wheel fixtures
+
+help:
+	@echo "make demo        stylize a real scan in Blender, without a window: out/demo.png, out/demo.blend"
+	@echo "make test        all tests: Rust, the wheel, the extension in every Blender found"
+	@echo "make lint        formatting and lints of Rust and Python"
+	@echo "make bench       measure the Rust core"
+	@echo "make wheel       build the Python wheel"
+	@echo "make extension   build and check the Blender extension: .ridgeform/extension/"
+	@echo "make fixtures    make the .blend files of blend_fixtures/ again"
+
+demo:
+	$(RUN) scripts/demo.py
+
+test:
+	$(RUN) scripts/run_tests.py
+
+lint:
+	$(RUN) scripts/lint.py
+
+bench:
+	cargo bench
+
+extension:
+	$(RUN) scripts/build_extension.py
+
+wheel:
+	$(RUN) scripts/build_wheel.py
+
+# Blender notes the home folder in every file it saves, hence the neutral one; saved by the oldest Blender.
+fixtures:
+	$(RUN)
+	HOME=/ PYTHONPATH=tests .ridgeform/py311/bin/python blend_fixtures/make_fixtures.py

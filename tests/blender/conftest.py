@@ -1,0 +1,88 @@
+"""Install the built extension into an empty Blender profile, and give every test an empty file.
+
+The tests see the extension as a user does: `bl_ext.user_default.ridgeform` and the wheels bundled in the zip.
+Installing happens when pytest loads this file, so that test modules may import both at their top.
+`make test` names the zip in RIDGEFORM_EXTENSION; without it, the one built last is taken.
+"""
+
+import atexit
+import importlib
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import pytest
+
+EXTENSION = "bl_ext.user_default.ridgeform"
+BUILT = Path(__file__).parents[2] / ".ridgeform/extension"
+
+PROFILE = Path(tempfile.mkdtemp(prefix="ridgeform-profile-"))
+atexit.register(shutil.rmtree, PROFILE, ignore_errors=True)
+os.environ["BLENDER_USER_RESOURCES"] = str(PROFILE)
+
+import bpy  # noqa: E402
+import numpy as np  # noqa: E402
+
+
+def _zip() -> Path:
+    named = os.environ.get("RIDGEFORM_EXTENSION")
+    built = [Path(named)] if named else sorted(BUILT.glob("*.zip"), key=lambda path: path.stat().st_mtime)
+    if not built or not built[-1].is_file():
+        raise pytest.UsageError(
+            "No built extension to test: run `make extension`, or set RIDGEFORM_EXTENSION"
+        )
+    return built[-1].resolve()
+
+
+def _install(path: Path) -> None:
+    bpy.ops.extensions.package_install_files(filepath=str(path), repo="user_default", enable_on_install=True)
+    # A zip for another platform, or one that fails to register, "finishes" without effect.
+    if EXTENSION not in bpy.context.preferences.addons:
+        raise pytest.UsageError(
+            f"Blender {bpy.app.version_string} installed {path.name} but did not enable it"
+        )
+    for module in ("ridgeform", "fast_simplification"):
+        where = Path(importlib.import_module(module).__file__)
+        if not where.is_relative_to(PROFILE):
+            raise pytest.UsageError(f"{module} comes from {where}, not from the extension's own wheel")
+
+
+EXTENSION_ZIP = _zip()
+_install(EXTENSION_ZIP)
+
+
+@pytest.fixture(scope="session")
+def extension_zip() -> Path:
+    """The zip that is installed."""
+    return EXTENSION_ZIP
+
+
+@pytest.fixture(scope="session")
+def profile() -> Path:
+    """The folder that Blender takes for the user's."""
+    return PROFILE
+
+
+@pytest.fixture(autouse=True)
+def empty_file() -> None:
+    """Start every test in an empty file, the extension enabled."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+
+
+@pytest.fixture
+def add_mesh() -> Callable[..., bpy.types.Object]:
+    """A function that makes a mesh object, selected and active, from vertices (n,3) and faces of any size."""
+
+    def add(vertices: np.ndarray, faces: Sequence[Sequence[int]], name: str = "Mesh") -> bpy.types.Object:
+        mesh = bpy.data.meshes.new(name)
+        mesh.from_pydata(np.asarray(vertices, float).tolist(), [], [list(map(int, face)) for face in faces])
+        mesh.validate()
+        obj = bpy.data.objects.new(name, mesh)
+        bpy.context.collection.objects.link(obj)
+        obj.select_set(True)
+        bpy.context.view_layer.objects.active = obj
+        return obj
+
+    return add
