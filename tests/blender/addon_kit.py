@@ -5,7 +5,7 @@ import numpy as np
 
 
 def empty_scene() -> None:
-    """Start from an empty file; the extension stays enabled."""
+    """Start again from an empty file."""
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
 
 

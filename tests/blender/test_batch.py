@@ -10,12 +10,6 @@ from bl_ext.user_default.ridgeform import batch, files
 STEPS = ("--steps", "2")
 
 
-@pytest.fixture(autouse=True)
-def scene():
-    """An empty file."""
-    kit.empty_scene()
-
-
 def run(capfd, *arguments):
     """Exit code and records of a command with JSON."""
     batch.flush_output()

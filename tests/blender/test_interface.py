@@ -2,18 +2,10 @@
 
 from pathlib import Path
 
-import addon_kit as kit
 import bpy
 import pytest
 from bl_ext.user_default import ridgeform as addon
 from bl_ext.user_default.ridgeform.settings import SETTING_NAMES, default_settings, fidelity_of
-
-
-@pytest.fixture(autouse=True)
-def scene():
-    """An empty file."""
-    kit.empty_scene()
-
 
 CLASSES = (
     "RIDGEFORM_OT_stylize",

@@ -13,12 +13,6 @@ CUBE_FACES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 
 CUBE_TRIANGLES = np.array([[f[0], f[i], f[i + 1]] for f in CUBE_FACES for i in (1, 2)])
 
 
-@pytest.fixture(autouse=True)
-def scene():
-    """An empty file."""
-    kit.empty_scene()
-
-
 def notes():
     return job.last_summary()[0]["warnings"]
 

@@ -16,9 +16,8 @@ PATIENCE = 60.0
 
 
 @pytest.fixture(autouse=True)
-def scene():
-    """An empty file, and no run left over."""
-    kit.empty_scene()
+def none_left():
+    """No run is left over."""
     yield
     assert modal._running == []
 

@@ -7,12 +7,6 @@ import pytest
 from bl_ext.user_default.ridgeform import selection
 
 
-@pytest.fixture(autouse=True)
-def scene():
-    """An empty file."""
-    kit.empty_scene()
-
-
 def reason():
     """The reason shown in the tooltip; the button itself must agree with it."""
     found = selection.reason_disabled(bpy.context)

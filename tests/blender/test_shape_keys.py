@@ -12,12 +12,6 @@ from bl_ext.user_default.ridgeform.settings import default_settings, stylize_opt
 STEPS = 3
 
 
-@pytest.fixture(autouse=True)
-def scene():
-    """An empty file."""
-    kit.empty_scene()
-
-
 @pytest.fixture
 def keyed():
     """A box with a Basis, a key A relative to it, B relative to A, and C relative to itself."""

@@ -11,12 +11,6 @@ from bl_ext.user_default.ridgeform.settings import default_settings, ridge_weigh
 STEPS = 3
 
 
-@pytest.fixture(autouse=True)
-def scene():
-    """An empty file."""
-    kit.empty_scene()
-
-
 def api_result(coordinates, triangles, **options):
     """What the wheel makes of a mesh with the settings that the tests use."""
     mesh = ridgeform.Mesh(coordinates.astype(np.float64), triangles)
