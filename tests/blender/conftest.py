@@ -5,52 +5,31 @@ Installing happens when pytest loads this file, so that test modules may import 
 `make test` names the zip in RIDGEFORM_EXTENSION; without it, the one built last is taken.
 """
 
-import atexit
-import importlib
 import os
-import shutil
-import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
+from blender_profile import empty_profile, install_extension
 
-EXTENSION = "bl_ext.user_default.ridgeform"
-BUILT = Path(__file__).parents[2] / ".ridgeform/extension"
-
-PROFILE = Path(tempfile.mkdtemp(prefix="ridgeform-profile-"))
-atexit.register(shutil.rmtree, PROFILE, ignore_errors=True)
-os.environ["BLENDER_USER_RESOURCES"] = str(PROFILE)
+PROFILE = empty_profile()
 
 import bpy  # noqa: E402
 import numpy as np  # noqa: E402
 
+BUILT = Path(__file__).parents[2] / ".ridgeform/extension"
 
-def _zip() -> Path:
+
+def _built_extension() -> Path:
     named = os.environ.get("RIDGEFORM_EXTENSION")
     built = [Path(named)] if named else sorted(BUILT.glob("*.zip"), key=lambda path: path.stat().st_mtime)
     if not built or not built[-1].is_file():
-        raise pytest.UsageError(
-            "No built extension to test: run `make extension`, or set RIDGEFORM_EXTENSION"
-        )
-    return built[-1].resolve()
+        raise pytest.UsageError("No extension to test: run `make extension`, or set RIDGEFORM_EXTENSION")
+    return built[-1]
 
 
-def _install(path: Path) -> None:
-    bpy.ops.extensions.package_install_files(filepath=str(path), repo="user_default", enable_on_install=True)
-    # A zip for another platform, or one that fails to register, "finishes" without effect.
-    if EXTENSION not in bpy.context.preferences.addons:
-        raise pytest.UsageError(
-            f"Blender {bpy.app.version_string} installed {path.name} but did not enable it"
-        )
-    for module in ("ridgeform", "fast_simplification"):
-        where = Path(importlib.import_module(module).__file__)
-        if not where.is_relative_to(PROFILE):
-            raise pytest.UsageError(f"{module} comes from {where}, not from the extension's own wheel")
-
-
-EXTENSION_ZIP = _zip()
-_install(EXTENSION_ZIP)
+EXTENSION_ZIP = _built_extension()
+install_extension(EXTENSION_ZIP, PROFILE)
 
 
 @pytest.fixture(scope="session")

@@ -12,8 +12,7 @@ import pytest
 import ridgeform
 import shapes
 from bl_ext.user_default.ridgeform import job
-
-EXTENSION = "bl_ext.user_default.ridgeform"
+from blender_profile import EXTENSION
 
 
 def test_enabled_from_the_profile(profile):
