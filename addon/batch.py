@@ -13,6 +13,7 @@ import math
 import os
 import sys
 import time
+import traceback
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -25,10 +26,11 @@ from .tools.stylize import RefusedError, Stylization
 
 COMMAND = "ridgeform"
 POLL_SECONDS = 0.05
+INTERRUPTED = 130
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Run the command line; returns the exit code: 0, 1 if a file failed, 2 for a wrong command line."""
+    """Run the command line; returns 0, 1 if a file failed, 2 if it is wrong, 130 if interrupted."""
     try:
         options = _parser().parse_args(arguments)
     except SystemExit as leaving:
@@ -36,11 +38,14 @@ def main(arguments: Sequence[str]) -> int:
     settings = _settings_from(options)
     failed = False
     taken: set[Path] = set()
-    with _clean_output(options.json) as emit:
-        for source in options.files:
-            record = _one_file(source, options, settings, taken)
-            failed |= record["error"] is not None
-            emit(record)
+    try:
+        with _clean_output(options.json) as emit:
+            for source in options.files:
+                record = _one_file(source, options, settings, taken)
+                failed |= record["error"] is not None
+                emit(record)
+    except KeyboardInterrupt:
+        return INTERRUPTED
     return 1 if failed else 0
 
 
@@ -75,6 +80,10 @@ def _one_file(
             record["error"] = "; ".join(run.errors)
     except (files.FileError, RefusedError) as error:
         record["error"] = str(error)
+    except Exception as error:
+        # A fault of the program: the other files are still worth doing.
+        traceback.print_exc()
+        record["error"] = f"{type(error).__name__}: {error}"
     record["seconds"] = round(time.perf_counter() - begin, 3)
     return record
 

@@ -21,7 +21,7 @@ class Task:
     call: Callable[[ridgeform.Progress], object]
     progress: ridgeform.Progress = field(default_factory=ridgeform.Progress)
     result: object | None = None
-    error: BaseException | None = None
+    error: Exception | None = None
     seconds: float = 0.0
     started: bool = False
 
@@ -31,7 +31,7 @@ class Task:
         begin = time.perf_counter()
         try:
             self.result = self.call(self.progress)
-        except BaseException as error:
+        except Exception as error:
             self.error = error
         self.seconds = time.perf_counter() - begin
 
@@ -46,13 +46,11 @@ class Job:
         self._stop = threading.Event()
 
     def run(self) -> None:
-        """Run all tasks in this thread. An interrupt (Ctrl-C) ends the job and is raised again."""
+        """Run all tasks in this thread."""
         for task in self.tasks:
             if self._stop.is_set():
                 return
             task.run()
-            if isinstance(task.error, KeyboardInterrupt):
-                raise task.error
 
     def start(self) -> None:
         """Run all tasks in a thread of their own."""

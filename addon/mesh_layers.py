@@ -164,25 +164,35 @@ def replace_faces(obj: bpy.types.Object, points: np.ndarray, faces: np.ndarray, 
     """
     mesh = obj.data
     mesh.clear_geometry()
-    ends = edges_of(faces)
     mesh.vertices.add(len(points))
-    mesh.edges.add(len(ends))
     mesh.loops.add(3 * len(faces))
     mesh.polygons.add(len(faces))
     mesh.vertices.foreach_set("co", np.ascontiguousarray(points, np.float32).ravel())
-    mesh.edges.foreach_set("vertices", ends.ravel())
     mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * len(faces), 3, dtype=np.int32))
     mesh.loops.foreach_set("vertex_index", np.ascontiguousarray(faces, np.int32).ravel())
     mesh.update(calc_edges=True)
+    edge_rows = _edge_rows(mesh, edges_of(faces))
     for layer in layers.attributes:
+        values = layer.values[edge_rows] if layer.domain == "EDGE" else layer.values
         attribute = mesh.attributes.get(layer.name)
         if attribute is None:
             attribute = mesh.attributes.new(layer.name, layer.data_type, layer.domain)
-        attribute.data.foreach_set(_KINDS[layer.data_type][0], np.ascontiguousarray(layer.values).ravel())
+        attribute.data.foreach_set(_KINDS[layer.data_type][0], np.ascontiguousarray(values).ravel())
     _write_groups(obj, layers.groups, layers.active["group"])
     _set_active_layers(mesh, layers.active)
     mesh.validate()
     mesh.update()
+
+
+def _edge_rows(mesh: bpy.types.Mesh, ends: np.ndarray) -> np.ndarray:
+    """The row in `ends`, which are sorted, of each edge of the mesh: Blender numbers edges as it likes."""
+    made = np.empty(2 * len(mesh.edges), np.int32)
+    mesh.edges.foreach_get("vertices", made)
+    keys = (
+        rows[:, 0].astype(np.int64) * len(mesh.vertices) + rows[:, 1]
+        for rows in (ends, np.sort(made.reshape(-1, 2)))
+    )
+    return np.searchsorted(*keys)
 
 
 def _mixed(layer: Layer, elements: np.ndarray, weights: np.ndarray) -> np.ndarray:
@@ -216,7 +226,7 @@ def _marks(layer: Layer, old: Triangulation, points: np.ndarray, ends: np.ndarra
     return values
 
 
-def _active_layers(mesh: bpy.types.Mesh) -> dict[str, str | None]:
+def _active_layers(mesh: bpy.types.Mesh) -> dict[str, str]:
     colors = mesh.color_attributes
     shown = colors.render_color_index
     render_uv = next((layer.name for layer in mesh.uv_layers if layer.active_render), "")

@@ -19,6 +19,7 @@ from ..settings import ridge_weights_of, stylize_options
 from ..welding import Weld, weld_seams
 
 KEY_NAME = "Stylized"
+NOT_BEGUN = "not begun"
 UNEVEN_SCALE = 1.1
 """Object scales that differ by more than this ratio visibly change which facets the flow prefers."""
 
@@ -100,7 +101,14 @@ class Stylization:
         )
 
     def apply(self) -> None:
-        """Write the results and do the last steps; parts that failed or were never begun are restored."""
+        """Write the results and do the last steps; parts that failed or were never begun are restored.
+
+        An error that is not the wheel's own is a fault of the program: all is restored, and it is raised.
+        """
+        for part in self.parts:
+            if part.task.error is not None and not isinstance(part.task.error, ridgeform.RidgeformError):
+                self.restore()
+                raise part.task.error
         for part in self.parts:
             if part.task.result is None:
                 part.coordinates.restore()
@@ -126,8 +134,9 @@ class Stylization:
         what = f'"{done[0]["name"]}"' if len(done) == 1 else f"{len(done)} meshes"
         energies = f"energy {before:.4g} → {after:.4g}, gap {gap:.1g}"
         notes = [f'"{entry["name"]}": {note}' for entry in self.summary for note in entry["warnings"]]
+        idle = [f'"{entry["name"]}" was not begun' for entry in self.summary if entry["status"] == NOT_BEGUN]
         line = f"Stylized {what}: {energies}, {steps} steps, {seconds:.1f} s"
-        return "; ".join([line, *notes, *self.skipped, *self.errors])
+        return "; ".join([line, *notes, *idle, *self.skipped, *self.errors])
 
 
 def stylize_objects(
@@ -196,7 +205,7 @@ def _write_results(parts: list[Part], settings: object) -> None:
     if settings.output == "SHAPE_KEY":
         for part in parts:
             part.coordinates.restore()
-    # Shape keys and new faces cannot be made in Edit Mode: leave it once, for all its objects, and come back.
+    # Shape keys cannot be made in Edit Mode: leave it once, for all its objects, and come back.
     edited = settings.output == "SHAPE_KEY" and any(part.object.data.is_editmode for part in parts)
     if edited:
         bpy.ops.object.mode_set(mode="OBJECT")
@@ -207,7 +216,14 @@ def _write_results(parts: list[Part], settings: object) -> None:
 
 
 def _write_result(part: Part, settings: object) -> None:
-    coordinates = part.merged(part.task.result.vertices)
+    result = part.task.result
+    if result.status == "collapsed":
+        part.warnings.append(
+            f"the shape collapsed, step {result.iterations} is kept: less strength or fewer steps avoid it"
+        )
+    elif result.status == "converged":
+        part.warnings.append(f"nothing moved any more after step {result.iterations}")
+    coordinates = part.merged(result.vertices)
     if settings.keep_volume:
         if part.free.all():
             first = part.weld.first
@@ -233,11 +249,12 @@ def _write_result(part: Part, settings: object) -> None:
 
 def _mark_ridges(part: Part, settings: object) -> None:
     obj = part.object
+    mesh_io.flush_edit_mode(obj)
     ends = mesh_io.edges(obj.data)
     coordinates = mesh_io.open_coordinates(obj).original
     ridges = ridge_edges(coordinates, mesh_io.face_corners(obj.data), len(ends), settings.mark_angle)
     if len(coordinates) == len(part.free):
-        ridges &= part.free[ends].any(axis=1)
+        ridges &= part.free[ends].all(axis=1)
     mesh_io.mark_edges(obj.data, ridges, settings.marks)
 
 
@@ -250,7 +267,7 @@ def _summary_of(part: Part) -> dict[str, object]:
         "energy_after": None,
         "gap": None,
         "steps": 0,
-        "status": "not begun" if part.task.error is None else "failed",
+        "status": NOT_BEGUN if part.task.error is None else "failed",
         "seconds": part.task.seconds,
         "warnings": list(part.warnings),
         "error": None if part.task.error is None else str(part.task.error),

@@ -111,7 +111,7 @@ def test_marks_are_added_to_those_that_exist(mode):
         kit.select_only(obj, chosen)
     bpy.ops.ridgeform.stylize(steps=1, strength=0.0, marks={"SHARP", "CREASE", "BEVEL"})
     bpy.ops.object.mode_set(mode="OBJECT")
-    ridges = chosen[mesh_io.edges(mesh)].any(axis=1)
+    ridges = chosen[mesh_io.edges(mesh)].all(axis=1)
     values = {}
     for name, dtype in (("sharp_edge", bool), ("crease_edge", np.float32), ("bevel_weight_edge", np.float32)):
         values[name] = np.empty(12, dtype)
@@ -119,6 +119,21 @@ def test_marks_are_added_to_those_that_exist(mode):
     assert np.array_equal(values["sharp_edge"], ridges)
     assert np.array_equal(values["crease_edge"], np.where(ridges, 1, 0.25).astype(np.float32))
     assert np.array_equal(values["bevel_weight_edge"], ridges.astype(np.float32))
+
+
+@pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+def test_marks_follow_the_result(mode):
+    obj = kit.bumpy_box()
+    if mode == "EDIT":
+        kit.select_only(obj, np.ones(len(obj.data.vertices), bool))
+    bpy.ops.ridgeform.stylize(steps=6, marks={"SHARP"}, mark_angle=np.radians(15))
+    bpy.ops.object.mode_set(mode="OBJECT")
+    ends = mesh_io.edges(obj.data)
+    expected = ridge_edges(kit.coordinates(obj), mesh_io.face_corners(obj.data), len(ends), np.radians(15))
+    marked = np.empty(len(ends), bool)
+    obj.data.attributes["sharp_edge"].data.foreach_get("value", marked)
+    assert np.array_equal(marked, expected)
+    assert 0 < marked.sum() < len(ends)
 
 
 def test_reduce_carries_everything_over():

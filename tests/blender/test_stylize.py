@@ -7,6 +7,7 @@ import pytest
 import ridgeform
 from bl_ext.user_default.ridgeform import job, mesh_io
 from bl_ext.user_default.ridgeform.settings import default_settings, ridge_weights_of, stylize_options
+from bl_ext.user_default.ridgeform.tools import stylize as tool
 
 STEPS = 3
 
@@ -211,6 +212,36 @@ def test_summary_holds_what_happened():
     assert 0 < entry["energy_after"] < entry["energy_before"]
     assert entry["gap"] >= 0
     assert entry["error"] is None
+
+
+def test_fault_of_the_program_is_raised_and_the_mesh_restored(monkeypatch):
+    first, second = kit.bumpy_box("A", seed=1), kit.bumpy_box("B", seed=2)
+    first.select_set(True)
+    before = [kit.coordinates(obj) for obj in (first, second)]
+    run = tool.Stylization([first, second], default_settings(steps=1))
+    monkeypatch.setattr(run.parts[1].task, "call", lambda _progress: 1 / 0)
+    run.job.run()
+    with pytest.raises(ZeroDivisionError):
+        run.apply()
+    for obj, old in zip((first, second), before, strict=True):
+        assert kit.same_bits(kit.coordinates(obj), old)
+
+
+def test_error_of_the_wheel_spares_the_other_meshes(monkeypatch):
+    first, second = kit.bumpy_box("A", seed=1), kit.bumpy_box("B", seed=2)
+    before = [kit.coordinates(obj) for obj in (first, second)]
+
+    def fail(_progress):
+        raise ridgeform.MeshError("Face 3 is bad.")
+
+    run = tool.Stylization([first, second], default_settings(steps=1))
+    monkeypatch.setattr(run.parts[1].task, "call", fail)
+    run.job.run()
+    run.apply()
+    assert not np.array_equal(kit.coordinates(first), before[0])
+    assert kit.same_bits(kit.coordinates(second), before[1])
+    assert run.errors == ['"B": Face 3 is bad.']
+    assert run.report().endswith('"B": Face 3 is bad.')
 
 
 def test_uneven_scale_is_told():
