@@ -8,6 +8,8 @@ from ..settings import SETTING_NAMES, StylizeSettings
 from . import stylize_settings
 from .presets import RIDGEFORM_PT_stylize_presets
 
+LAST_RUN_LINES = 4
+
 
 class RidgeformStylizeSettings(StylizeSettings, bpy.types.PropertyGroup):
     """The settings of the panel, saved with the scene as `scene.ridgeform_stylize`."""
@@ -46,9 +48,11 @@ class RIDGEFORM_PT_stylize(_Sidebar, bpy.types.Panel):  # noqa: N801
         for name in SETTING_NAMES:
             setattr(button, name, getattr(settings, name))
         column = layout.column(align=True)
-        for entry in job.last_summary():
-            if entry["energy_after"] is not None:
-                column.label(text=_last_run(entry), icon="INFO")
+        done = [entry for entry in job.last_summary() if entry["energy_after"] is not None]
+        for entry in done[:LAST_RUN_LINES]:
+            column.label(text=_last_run(entry), icon="INFO")
+        if len(done) > LAST_RUN_LINES:
+            column.label(text=f"… and {len(done) - LAST_RUN_LINES} more")
 
 
 def _last_run(entry: dict[str, object]) -> str:
