@@ -25,6 +25,13 @@ const CHECK_EVERY: usize = 5;
 /// Default bound on the iterations; a problem that needs more is better served by an interior-point method.
 const MAX_ITERATIONS: usize = 3000;
 
+/// The first new penalties come after this many iterations from nothing, when the ridges begin to show, and then each
+/// time the iterations have tripled.
+const REWEIGHT_COLD: usize = 8;
+
+/// A warm start brings good penalties along.
+const REWEIGHT_WARM: usize = 30;
+
 /// What a finished run leaves to the next, similar problem, in units that survive new weights and a new operator.
 #[derive(Debug, Clone)]
 pub struct Warm<const K: usize> {
@@ -81,6 +88,7 @@ struct Run<'r, 's, const K: usize> {
     y: Vec<[f64; K]>,
     start: f64,
     best: Best<K>,
+    next_reweighting: usize,
 }
 
 struct Best<const K: usize> {
@@ -95,21 +103,21 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         let mut h = Vec::new();
         reduced.apply(&reduced.target, &mut h);
         let start = reduced.objective(&reduced.target, &h);
-        let (r, z, p) = match warm {
+        let (r, z, p, next_reweighting) = match warm {
             Some(warm) => {
                 let p = warm.p.iter().zip(reduced.weights).map(|(p, w)| scaled(*w, p)).collect();
-                (reweighted(&warm.length, reduced.weights), warm.z, p)
+                (reweighted(&warm.length, reduced.weights), warm.z, p, REWEIGHT_WARM)
             }
             None => {
                 let scale = uniform_scale(&mut reduced, system, &h)?;
                 let zero = vec![[[0.0; K]; BLOCK]; m];
-                (reduced.weights.iter().map(|w| scale * w).collect(), zero.clone(), zero)
+                (reduced.weights.iter().map(|w| scale * w).collect(), zero.clone(), zero, REWEIGHT_COLD)
             }
         };
         system.factorise(&mut reduced, &r)?;
         let best = Best { u: reduced.target.clone(), primal: f64::INFINITY, dual: 0.0 };
         let u = reduced.target.clone();
-        Ok(Self { reduced, system, r, z, p, u, h, right: Vec::new(), y: Vec::new(), start, best })
+        Ok(Self { reduced, system, r, z, p, u, h, right: Vec::new(), y: Vec::new(), start, best, next_reweighting })
     }
 
     fn iterate(mut self, settings: &Settings, progress: &Progress) -> Result<Outcome<K>> {
@@ -117,7 +125,6 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         let mut status = Status::Inaccurate;
         let mut iterations = 0;
         let mut last_check = f64::INFINITY;
-        let mut next_reweighting = 8;
         while iterations < max {
             progress.check()?;
             if progress.is_finishing() && iterations > 0 {
@@ -144,8 +151,8 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
                 }
                 last_check = self.best.primal;
             }
-            if iterations == next_reweighting {
-                next_reweighting = next_reweighting * 3 + 6;
+            if iterations == self.next_reweighting {
+                self.next_reweighting *= 3;
                 self.r = reweighted(&self.lengths(), self.reduced.weights);
                 self.system.factorise(&mut self.reduced, &self.r)?;
             }
