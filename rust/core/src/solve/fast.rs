@@ -83,6 +83,7 @@ struct Run<'r, 's, const K: usize> {
     z: Vec<Block<K>>,
     p: Vec<Block<K>>,
     u: Vec<[f64; K]>,
+    previous: Vec<[f64; K]>,
     h: Vec<Block<K>>,
     right: Vec<[f64; K]>,
     y: Vec<[f64; K]>,
@@ -116,8 +117,22 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         };
         system.factorise(&mut reduced, &r)?;
         let best = Best { u: reduced.target.clone(), primal: f64::INFINITY, dual: 0.0 };
-        let u = reduced.target.clone();
-        Ok(Self { reduced, system, r, z, p, u, h, right: Vec::new(), y: Vec::new(), start, best, next_reweighting })
+        let (u, previous) = (reduced.target.clone(), Vec::new());
+        Ok(Self {
+            reduced,
+            system,
+            r,
+            z,
+            p,
+            u,
+            previous,
+            h,
+            right: Vec::new(),
+            y: Vec::new(),
+            start,
+            best,
+            next_reweighting,
+        })
     }
 
     fn iterate(mut self, settings: &Settings, progress: &Progress) -> Result<Outcome<K>> {
@@ -169,6 +184,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             },
             &mut self.right,
         );
+        self.previous.clone_from(&self.u);
         self.y = self.system.solve(&self.reduced, &self.right, &mut self.u);
         self.reduced.apply(&self.u, &mut self.h);
     }
@@ -202,8 +218,9 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             .collect();
         let g: Vec<[f64; K]> = (0..self.u.len())
             .map(|i| {
-                let a = 2.0 * self.reduced.fidelity[i];
-                std::array::from_fn(|c| a * (self.reduced.target[i][c] - self.u[i][c]))
+                let (a, proximal) = (2.0 * self.reduced.fidelity[i], self.system.proximal()[i]);
+                let (t, u, before) = (&self.reduced.target[i], &self.u[i], &self.previous[i]);
+                std::array::from_fn(|c| a * (t[c] - u[c]) + proximal * (before[c] - u[c]))
             })
             .collect();
         self.best.dual = self.best.dual.max(bound_along_ray(&self.reduced, &q, &self.y, &g, &self.u));

@@ -5,9 +5,13 @@ use crate::solve::cholesky::Cholesky;
 use crate::solve::normal_matrix::NormalMatrix;
 use crate::solve::reduced::{FreeOperator, Reduced};
 
-/// Rows without fidelity get this share of the mean diagonal as a proximal term: it makes the matrix definite where the
-/// operator alone does not, and vanishes from the iteration as it converges.
+/// Rows whose fidelity is below this share of the mean diagonal are raised to it by a proximal term: it makes the matrix
+/// definite where the operator alone does not, and vanishes from the iteration as it converges.
 const PROXIMAL: f64 = 1e-10;
+
+/// How much more of it is tried when the factorisation still fails, and how often.
+const PROXIMAL_GROWTH: f64 = 100.0;
+const PROXIMAL_ATTEMPTS: i32 = 4;
 
 /// `2a + HᵀRH` with its factor.
 #[derive(Debug)]
@@ -44,18 +48,31 @@ impl System {
         let twice: Vec<f64> = reduced.fidelity.iter().map(|a| 2.0 * a).collect();
         self.normal.assemble(&reduced.free.operator, r, &twice, &mut self.values);
         let starts = &self.normal.pattern().starts;
-        let n = twice.len();
-        let mean = starts[..n].iter().map(|&s| self.values[s]).sum::<f64>() / n.max(1) as f64;
-        let small = if mean > 0.0 { PROXIMAL * mean } else { 1.0 };
-        self.proximal = twice.iter().map(|&a| if a > 0.0 { 0.0 } else { small }).collect();
-        for (&s, p) in starts.iter().zip(&self.proximal) {
-            self.values[s] += p;
+        let diagonal: Vec<f64> = starts[..twice.len()].iter().map(|&s| self.values[s]).collect();
+        let mean = diagonal.iter().sum::<f64>() / diagonal.len().max(1) as f64;
+        let scale = if mean > 0.0 { mean } else { 1.0 };
+        for attempt in 0..PROXIMAL_ATTEMPTS {
+            let least = PROXIMAL * PROXIMAL_GROWTH.powi(attempt) * scale;
+            self.proximal = twice.iter().map(|a| (least - a).max(0.0)).collect();
+            for ((&s, d), p) in starts.iter().zip(&diagonal).zip(&self.proximal) {
+                self.values[s] = d + p;
+            }
+            match self.cholesky.factorise(&self.values) {
+                Err(error) if attempt + 1 == PROXIMAL_ATTEMPTS => return Err(error),
+                Err(_) => {}
+                Ok(()) => break,
+            }
         }
-        self.cholesky.factorise(&self.values)?;
         if let Some(constraints) = &mut reduced.constraints {
             constraints.prepare(&mut self.cholesky)?;
         }
         Ok(())
+    }
+
+    /// The proximal weight of each row: [`System::solve`] adds `proximal · (u − u before)` to the left side.
+    #[must_use]
+    pub fn proximal(&self) -> &[f64] {
+        &self.proximal
     }
 
     /// Solves `(2a + HᵀRH) u + Aᵀy = 2a·t + right`, `A u = b`; `u` holds the last iterate before and the solution after.

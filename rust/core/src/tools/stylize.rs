@@ -14,7 +14,7 @@ use crate::{Error, Result};
 /// A step that moves the vertices by less than this part of the shape's size (root mean square) moves nothing.
 const STILL: f64 = 1e-7;
 
-/// A shape has collapsed when its size has fallen below this part of what it was.
+/// A shape has collapsed when its size has fallen below this part of what it was, or its area below the tenth of that.
 const COLLAPSED: f64 = 1e-2;
 
 /// The unit of length in which the fidelity weight is meant: the energy grows with length, the fidelity term with its
@@ -162,6 +162,7 @@ struct Flow<'a> {
     original: (Connectivity, HessianPattern),
     solver: FastSolver,
     size: f64,
+    area: f64,
     result: Stylized,
 }
 
@@ -178,14 +179,19 @@ impl<'a> Flow<'a> {
     fn new(mesh: &'a Mesh, start: &[[f64; 3]], options: &'a StylizeOptions) -> Result<Self> {
         let connectivity = mesh.connectivity();
         let base = options.ridge_weights.clone().unwrap_or_else(|| vec![1.0; connectivity.n_faces()]);
-        let flow = Self {
+        let (size, area) = extent(connectivity, start);
+        if size <= 0.0 {
+            return Err(MeshError::NoFaces.into());
+        }
+        Ok(Self {
             options,
             connectivity,
             points: start.to_vec(),
             base,
             original: (connectivity.clone(), HessianPattern::new(connectivity)),
             solver: FastSolver::new(),
-            size: size(connectivity, start),
+            size,
+            area,
             result: Stylized {
                 vertices: start.to_vec(),
                 energy: Vec::new(),
@@ -194,11 +200,7 @@ impl<'a> Flow<'a> {
                 factorisations: 0,
                 status: FlowStatus::Finished,
             },
-        };
-        if flow.size <= 0.0 {
-            return Err(MeshError::NoFaces.into());
-        }
-        Ok(flow)
+        })
     }
 
     fn run(mut self, settings: &Settings, progress: &Progress) -> Result<Stylized> {
@@ -244,6 +246,12 @@ impl<'a> Flow<'a> {
             }
         }
         Ok(self.result)
+    }
+
+    fn has_collapsed(&self, moved: &[[f64; 3]]) -> bool {
+        let (size, area) = extent(self.connectivity, moved);
+        !(size >= COLLAPSED * self.size && area >= 0.1 * COLLAPSED * self.area)
+            || !moved.iter().flatten().all(|x| x.is_finite())
     }
 
     /// Operator, mass and unit of the shape as it is now.
@@ -312,9 +320,9 @@ fn root_mean_square(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     (sum / a.len().max(1) as f64).sqrt()
 }
 
-/// Root mean square distance of the face barycentres, weighted by area, from their centre: a size that rotations do not
-/// change.
-fn size(connectivity: &Connectivity, points: &[[f64; 3]]) -> f64 {
+/// Root mean square distance of the face barycentres, weighted by area, from their centre (a size that rotations do not
+/// change), and the area.
+fn extent(connectivity: &Connectivity, points: &[[f64; 3]]) -> (f64, f64) {
     let (mut total, mut first, mut second) = (0.0, [0.0; 3], 0.0);
     for (face, l) in connectivity.faces().iter().zip(edge_lengths(connectivity.faces(), points)) {
         let area = triangle::area(l);
@@ -326,10 +334,10 @@ fn size(connectivity: &Connectivity, points: &[[f64; 3]]) -> f64 {
         second += area * centre.iter().map(|c| c * c).sum::<f64>();
     }
     if total <= 0.0 {
-        return 0.0;
+        return (0.0, 0.0);
     }
     let mean = first.map(|f| f / total);
-    (second / total - mean.iter().map(|m| m * m).sum::<f64>()).max(0.0).sqrt()
+    ((second / total - mean.iter().map(|m| m * m).sum::<f64>()).max(0.0).sqrt(), total)
 }
 
 /// The longest side of the bounding box of the vertices that faces use.
