@@ -24,7 +24,7 @@ def link(obj: bpy.types.Object) -> bpy.types.Object:
     return obj
 
 
-def bumpy_box(name: str = "Box", seed: int = 0, cuts: int = 4) -> bpy.types.Object:
+def bumpy_box(name: str = "Box", seed: int = 0, cuts: int = 4, noise: float = 0.03) -> bpy.types.Object:
     """A closed box of quads with noise on its vertices, so that there is something to flatten."""
     bpy.ops.mesh.primitive_cube_add()
     obj = bpy.context.object
@@ -32,8 +32,8 @@ def bumpy_box(name: str = "Box", seed: int = 0, cuts: int = 4) -> bpy.types.Obje
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.ops.mesh.subdivide(number_cuts=cuts)
     bpy.ops.object.mode_set(mode="OBJECT")
-    noise = np.random.default_rng(seed).normal(scale=0.03, size=(len(obj.data.vertices), 3))
-    set_coordinates(obj, coordinates(obj) + noise)
+    bumps = np.random.default_rng(seed).normal(scale=noise, size=(len(obj.data.vertices), 3))
+    set_coordinates(obj, coordinates(obj) + bumps)
     return obj
 
 

@@ -202,18 +202,18 @@ def test_reduce_keeps_uv_charts_apart():
 
 
 def test_reduce_keeps_seams():
-    obj = kit.bumpy_box(cuts=16)
+    obj = kit.bumpy_box(cuts=16, noise=0.005)
     mesh = obj.data
     ends, points = mesh_io.edges(mesh), kit.coordinates(obj)
-    outer = np.abs(points) > 0.9
+    outer = np.abs(points) > 0.95
     seam = (outer[ends[:, 0]] & outer[ends[:, 1]]).sum(axis=1) >= 2
     mesh.edges.foreach_set("use_seam", seam)
     bpy.ops.ridgeform.stylize(steps=1, strength=0.0, reduce=True, reduce_ratio=0.3)
     kept = np.empty(len(mesh.edges), bool)
     mesh.edges.foreach_get("use_seam", kept)
     middles = kit.coordinates(obj)[mesh_io.edges(mesh)].mean(axis=1)
-    assert 30 < kept.sum() < seam.sum()
-    assert ((np.abs(middles[kept]) > 0.85).sum(axis=1) >= 2).all()
+    assert 20 < kept.sum() < seam.sum()
+    assert ((np.abs(middles[kept]) > 0.9).sum(axis=1) >= 2).all()
 
 
 def test_reduce_is_left_with_a_reason():

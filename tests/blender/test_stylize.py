@@ -36,14 +36,13 @@ def test_paper_numbers_reach_the_wheel():
     before, triangles = kit.coordinates(obj), mesh_io.triangles(obj.data)
     paper = {"fidelity": 800.0, "scale": "max_edge", "coupling": "separate", "dual": "circumcentric"}
     bpy.ops.ridgeform.stylize(
-        steps=STEPS, sharpness=0.25, use_fidelity=True, delaunay=True, solver="fast", tolerance=0.01, **paper
+        steps=STEPS, sharpness=0.25, use_fidelity=True, solver="fast", tolerance=0.01, **paper
     )
     # Blender stores the numbers of operators as float32.
     expected = api_result(
         before,
         triangles,
         sharpness=0.25,
-        delaunay=True,
         solver="fast",
         tolerance=float(np.float32(0.01)),
         **paper,
