@@ -219,8 +219,7 @@ impl<'a> Flow<'a> {
                 break;
             }
             let moved = solution.values.to_points()?;
-            if !moved.iter().flatten().all(|x| x.is_finite()) || size(self.connectivity, &moved) < COLLAPSED * self.size
-            {
+            if self.has_collapsed(&moved) {
                 self.result.status = FlowStatus::Collapsed;
                 break;
             }
