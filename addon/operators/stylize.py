@@ -2,9 +2,10 @@
 """The operator `ridgeform.stylize`."""
 
 import bpy
+from bpy.props import BoolProperty
 
 from .. import selection
-from ..settings import StylizeSettings
+from ..settings import SETTING_NAMES, StylizeSettings
 from ..tools.stylize import RefusedError, Stylization
 from ..ui.stylize_settings import draw_settings
 from .modal import ModalRun
@@ -16,6 +17,13 @@ class RIDGEFORM_OT_stylize(StylizeSettings, ModalRun, bpy.types.Operator):  # no
     bl_idname = "ridgeform.stylize"
     bl_label = "Stylize Flat"
     bl_options = {"REGISTER", "UNDO", "PRESET"}
+
+    from_panel: BoolProperty(
+        name="From Panel",
+        description="Take the settings of the sidebar panel",
+        default=False,
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -35,8 +43,6 @@ class RIDGEFORM_OT_stylize(StylizeSettings, ModalRun, bpy.types.Operator):  # no
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Run with a live preview."""
-        if bpy.app.background:
-            return self.execute(context)
         run = self._prepared(context)
         return {"CANCELLED"} if run is None else self.begin_modal(context, run)
 
@@ -56,6 +62,11 @@ class RIDGEFORM_OT_stylize(StylizeSettings, ModalRun, bpy.types.Operator):  # no
         draw_settings(self.layout, self, context.object)
 
     def _prepared(self, context: bpy.types.Context) -> Stylization | None:
+        if self.from_panel:
+            for name in SETTING_NAMES:
+                setattr(self, name, getattr(context.scene.ridgeform_stylize, name))
+            # From now on these are the operator's own, for the redo panel to change.
+            self.from_panel = False
         chosen = selection.usable(selection.mesh_objects(context))
         try:
             return Stylization(chosen.objects, self, chosen.skipped)

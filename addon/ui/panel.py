@@ -4,7 +4,7 @@
 import bpy
 
 from .. import job
-from ..settings import SETTING_NAMES, StylizeSettings
+from ..settings import StylizeSettings
 from . import stylize_settings
 from .presets import RIDGEFORM_PT_stylize_presets
 
@@ -44,22 +44,15 @@ class RIDGEFORM_PT_stylize(_Sidebar, bpy.types.Panel):  # noqa: N801
         stylize_settings.draw_sliders(layout, settings)
         row = layout.row()
         row.scale_y = 1.4
-        button = row.operator("ridgeform.stylize", icon="MOD_DECIM")
-        for name in SETTING_NAMES:
-            setattr(button, name, getattr(settings, name))
+        row.operator("ridgeform.stylize", icon="MOD_DECIM").from_panel = True
         column = layout.column(align=True)
         done = [entry for entry in job.last_summary() if entry["energy_after"] is not None]
         for entry in done[:LAST_RUN_LINES]:
-            column.label(text=_last_run(entry), icon="INFO")
+            energies = f"{entry['energy_before']:.3g} → {entry['energy_after']:.3g}"
+            column.label(text=f"{entry['name']}: energy {energies}", icon="INFO")
+            column.label(text=f"{entry['steps']} steps, {entry['seconds']:.1f} s", icon="BLANK1")
         if len(done) > LAST_RUN_LINES:
             column.label(text=f"… and {len(done) - LAST_RUN_LINES} more")
-
-
-def _last_run(entry: dict[str, object]) -> str:
-    return (
-        f"{entry['name']}: energy {entry['energy_before']:.3g} → {entry['energy_after']:.3g}, "
-        f"{entry['steps']} steps, {entry['seconds']:.1f} s"
-    )
 
 
 class _SubPanel(_Sidebar):

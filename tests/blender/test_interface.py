@@ -2,9 +2,11 @@
 
 from pathlib import Path
 
+import addon_kit as kit
 import bpy
 import pytest
 from bl_ext.user_default import ridgeform as addon
+from bl_ext.user_default.ridgeform import job
 from bl_ext.user_default.ridgeform.settings import SETTING_NAMES, default_settings, fidelity_of
 
 CLASSES = (
@@ -68,6 +70,15 @@ def test_shipped_presets_set_the_panel(name):
     bpy.ops.script.execute_preset(filepath=str(path), menu_idname="RIDGEFORM_MT_stylize_presets")
     assert settings.steps != 999
     assert settings.coupling == ("separate" if name == "Paper_2024" else "joint")
+
+
+def test_button_takes_the_settings_of_the_panel():
+    kit.bumpy_box()
+    bpy.context.scene.ridgeform_stylize.steps = 2
+    bpy.ops.ridgeform.stylize("INVOKE_DEFAULT", from_panel=True)
+    assert job.last_summary()[0]["steps"] == 2
+    bpy.ops.ridgeform.stylize("INVOKE_DEFAULT", steps=3)
+    assert job.last_summary()[0]["steps"] == 3
 
 
 def test_operator_is_undoable_and_takes_presets():
