@@ -31,15 +31,17 @@ PLATFORMS = {
     "linux-x64": ("manylinux_2_28_x86_64", "manylinux_2_24_x86_64", "manylinux2014_x86_64"),
     "windows-x64": ("win_amd64",),
     "macos-arm64": ("macosx_11_0_arm64",),
-    "macos-x64": ("macosx_11_0_x86_64", "macosx_10_9_x86_64"),
+    "macos-x64": ("macosx_11_0_x86_64",),
 }
-"""Blender's platforms, and the wheel tags that run there, the best first."""
+"""Blender's platforms, and the newest wheel tags that run there (pip adds older ones of macOS)."""
 
 
 def target_of(wheel: Path) -> str:
     """Blender's name of the platform that a wheel of Ridgeform is for."""
-    for target, tags in PLATFORMS.items():
-        if any(tag in wheel.name for tag in tags):
+    tag = wheel.stem.split("-")[-1]
+    for target, (newest, *_) in PLATFORMS.items():
+        system, machine = newest.split("_")[0], newest.split("_", 3)[-1]
+        if tag.startswith(system) and tag.endswith(machine):
             return target
     stop(f"{wheel.name} is for none of the platforms {', '.join(PLATFORMS)}")
 
