@@ -8,7 +8,11 @@ import bpy
 import numpy as np
 
 from .. import mesh_io, mesh_layers
+from ..welding import weld_seams
 from .surface_map import SurfaceMap, charts
+
+FEWEST = 4
+"""The triangles of a tetrahedron, the least that enclose anything."""
 
 
 def reduce_mesh(obj: bpy.types.Object, ratio: float) -> str | None:
@@ -29,9 +33,12 @@ def reduce_mesh(obj: bpy.types.Object, ratio: float) -> str | None:
         return "its triangles were not reduced, because the module fast-simplification is not installed"
     triangles = mesh_io.triangles(mesh)
     coordinates = mesh_io.open_coordinates(obj).original.astype(np.float64)
-    points, faces = simplifier.simplify(
-        coordinates, triangles, target_count=max(4, round(ratio * len(triangles)))
-    )
+    # Split seams are joined: otherwise their two sides would be simplified apart, and gape.
+    weld = weld_seams(coordinates, triangles)
+    wanted = max(FEWEST, round(ratio * len(triangles)))
+    if wanted >= len(weld.triangles):
+        return f"its {len(triangles)} triangles were not reduced, because there are few enough"
+    points, faces = simplifier.simplify(coordinates[weld.first], weld.triangles, target_count=wanted)
     points, faces = _sound(points, faces)
     if len(faces) == 0:
         return "its triangles were not reduced, because nothing would be left"
@@ -56,7 +63,7 @@ def _losses(mesh: bpy.types.Mesh, triangles: np.ndarray) -> list[str]:
     loose = len(mesh.vertices) - len(np.unique(triangles))
     facts = (
         (len(mesh.polygons) != len(triangles), "quads and n-gons became triangles"),
-        (loose > 0, f"{loose} vertices without a face were dropped"),
+        (loose > 0, f"vertices without a face were dropped ({loose})"),
         (mesh.has_custom_normals, "custom normals were dropped"),
     )
     return [sentence for applies, sentence in facts if applies]

@@ -216,7 +216,22 @@ def test_reduce_keeps_seams():
     assert ((np.abs(middles[kept]) > 0.9).sum(axis=1) >= 2).all()
 
 
+def test_reduce_does_not_open_split_seams():
+    """Every face of a box by itself, as glTF stores it, comes out as one closed surface."""
+    whole = kit.bumpy_box(cuts=8)
+    points = kit.coordinates(whole)
+    corners = mesh_io.face_corners(whole.data)[1]
+    obj = kit.add_object("Split", points[corners], np.arange(len(corners)).reshape(-1, 4))
+    whole.select_set(False)
+    bpy.ops.ridgeform.stylize(steps=1, strength=0.0, reduce=True, reduce_ratio=0.5)
+    assert is_closed(mesh_io.triangles(obj.data), len(obj.data.vertices))
+
+
 def test_reduce_is_left_with_a_reason():
+    few = kit.add_object("Cube", CUBE, CUBE_FACES)
+    bpy.ops.ridgeform.stylize(steps=1, strength=0.0, reduce=True, reduce_ratio=1.0)
+    assert "its 12 triangles were not reduced, because there are few enough" in notes()
+    few.select_set(False)
     obj = kit.bumpy_box()
     faces = len(obj.data.polygons)
     kit.select_only(obj, np.ones(len(obj.data.vertices), bool))
