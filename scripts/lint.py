@@ -5,25 +5,16 @@ python scripts/setup_env.py scripts/lint.py
 
 import sys
 
-from workspace import run
+from workspace import run_all
 
-CHECKS = {
-    "Rust formatting": ["cargo", "fmt", "--all", "--check"],
-    "Python lints": [sys.executable, "-m", "ruff", "check", "."],
-    "Python formatting": [sys.executable, "-m", "ruff", "format", "--check", "."],
-    "Rust lints": [
-        "cargo",
-        "clippy",
-        "--release",
-        "--locked",
-        "--all-targets",
-        "--quiet",
-        "--",
-        "-D",
-        "warnings",
-    ],
-}
+CLIPPY = ["cargo", "clippy", "--release", "--locked", "--all-targets", "--quiet", "--", "-D", "warnings"]
 
 if __name__ == "__main__":
-    for what, command in CHECKS.items():
-        run(command, what)
+    run_all(
+        {
+            "Rust formatting": (["cargo", "fmt", "--all", "--check"], {}),
+            "Python lints": ([sys.executable, "-m", "ruff", "check", "."], {}),
+            "Python formatting": ([sys.executable, "-m", "ruff", "format", "--check", "."], {}),
+            "Rust lints": (CLIPPY, {"PYO3_PYTHON": sys.executable}),
+        }
+    )

@@ -7,23 +7,29 @@ import sys
 
 from build_extension import build_extension, extension_here
 from setup_env import PYTHONS, environments
-from workspace import ROOT, WHEEL_SITE, run
+from workspace import ROOT, WHEEL_SITE, run_all
 
 
 def main(arguments: list[str]) -> None:
-    """Build what is tested, and test it; ends with the first part that fails."""
-    here = extension_here(build_extension())
+    """Build what is tested, and test all of it, even if a part fails."""
+    extension = extension_here(build_extension())
+    without_blender = ["tests/core_api", *sorted((ROOT / "tests").glob("test_*.py"))]
+    parts = {}
     for version, python in environments().items():
         pytest = [python, "-m", "pytest", "-q", *arguments]
-        plain = {"PYTHONPATH": str(WHEEL_SITE)}
-        run(
-            [*pytest, "tests/core_api", *sorted((ROOT / "tests").glob("test_*.py"))],
-            f"wheel in Python {version}",
-            plain,
+        parts[f"wheel in Python {version}"] = (
+            [*pytest, *without_blender],
+            {"PYTHONPATH": str(WHEEL_SITE)},
         )
-        blender = {"RIDGEFORM_EXTENSION": str(here), "PYTHONPATH": ""}
-        run([*pytest, "tests/blender"], f"extension in Blender {PYTHONS[version]}", blender)
-    run(["cargo", "test", "--release", "--locked", "--quiet"], "Rust tests", {"PYO3_PYTHON": sys.executable})
+        parts[f"extension in Blender {PYTHONS[version]}"] = (
+            [*pytest, "tests/blender"],
+            {"RIDGEFORM_EXTENSION": str(extension), "PYTHONPATH": ""},
+        )
+    parts["Rust tests"] = (
+        ["cargo", "test", "--release", "--locked", "--quiet"],
+        {"PYO3_PYTHON": sys.executable},
+    )
+    run_all(parts)
 
 
 if __name__ == "__main__":

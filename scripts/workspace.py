@@ -65,19 +65,32 @@ def run(
     quiet: bool = False,
 ) -> None:
     """Run a command in the project's root, under a heading; stop if it fails, with what it printed."""
+    code = _run(command, what, environment, quiet)
+    if code != 0:
+        stop(f"{what}: failed with exit code {code}")
+
+
+def run_all(parts: dict[str, tuple[list[str | Path], dict[str, str]]]) -> None:
+    """Run all commands, each with an environment, even if some fail; stop at the end, naming those."""
+    failed = [what for what, (command, environment) in parts.items() if _run(command, what, environment)]
+    if failed:
+        stop("failed: " + ", ".join(failed))
+
+
+def _run(
+    command: list[str | Path], what: str, environment: dict[str, str] | None = None, quiet: bool = False
+) -> int:
     print(f"== {what}", flush=True)
     begin = time.monotonic()
-    output = subprocess.PIPE if quiet else None
     done = subprocess.run(
         [str(word) for word in command],
         cwd=ROOT,
         env={**os.environ, **(environment or {})},
-        stdout=output,
+        stdout=subprocess.PIPE if quiet else None,
         stderr=subprocess.STDOUT if quiet else None,
         check=False,
     )
-    if done.returncode != 0:
-        if quiet:
-            sys.stdout.write(done.stdout.decode(errors="replace"))
-        stop(f"{what}: failed with exit code {done.returncode}")
+    if quiet and done.returncode != 0:
+        sys.stdout.write(done.stdout.decode(errors="replace"))
     print(f"   {what}: {time.monotonic() - begin:.0f} s", flush=True)
+    return done.returncode
