@@ -12,7 +12,7 @@ use crate::block_rows::BLOCK;
 use crate::error::SolveError;
 use crate::progress::Progress;
 use crate::solve::certificate::bound_along_ray;
-use crate::solve::cones::Block;
+use crate::solve::cones::{norm, scaled, Block};
 use crate::solve::fast::Outcome;
 use crate::solve::problem::{Settings, Status};
 use crate::solve::reduced::Reduced;
@@ -66,7 +66,13 @@ pub fn minimise<const K: usize>(
     let n = reduced.n();
     let u: Vec<[f64; K]> =
         (0..n).map(|i| std::array::from_fn(|c| if c < n_columns { found.x[c * n + i] } else { 0.0 })).collect();
-    let (q, y) = program.multipliers(&found.z);
+    let (mut q, y) = program.multipliers(&found.z);
+    for (q, w) in q.iter_mut().zip(reduced.weights) {
+        if *w == 0.0 {
+            // The interior point only comes near zero here; any q that is longer than its weight proves nothing.
+            *q = [[0.0; K]; BLOCK];
+        }
+    }
     Ok(certified(reduced, u, &q, &y, found.iterations as usize, status))
 }
 
@@ -83,14 +89,23 @@ fn certified<const K: usize>(
     let primal = reduced.objective(&u, &h);
     let mut at_target = Vec::new();
     reduced.apply(&reduced.target, &mut at_target);
-    let start = reduced.objective(&reduced.target, &at_target);
-    let mut g = Vec::new();
-    reduced.apply_transposed(|b| q[b], &mut g);
-    if let Some(constraints) = &reduced.constraints {
-        constraints.add_transposed(y, &mut g);
+    let floor = reduced.floor(&at_target);
+    let bound = |q: &[Block<K>]| {
+        let mut g = Vec::new();
+        reduced.apply_transposed(|b| q[b], &mut g);
+        if let Some(constraints) = &reduced.constraints {
+            constraints.add_transposed(y, &mut g);
+        }
+        bound_along_ray(reduced, q, y, &g, &u)
+    };
+    let mut dual = bound(q);
+    if reduced.fidelity.iter().all(|a| *a > 0.0) {
+        // No equations to keep: shortening each block by itself costs less than shortening all alike.
+        let clip = |(q, w): (&Block<K>, &f64)| scaled((w / norm(q).max(f64::MIN_POSITIVE)).min(1.0), q);
+        let clipped: Vec<Block<K>> = q.iter().zip(reduced.weights).map(clip).collect();
+        dual = dual.max(bound(&clipped));
     }
-    let dual = bound_along_ray(reduced, q, y, &g, &u);
-    Outcome { u, primal, dual, start, iterations, status, warm: None }
+    Outcome { u, primal, dual, floor, iterations, status, warm: None }
 }
 
 struct Program<const K: usize> {

@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use crate::block_rows::BLOCK;
-use crate::progress::Progress;
+use crate::progress::{Progress, Report};
 use crate::solve::certificate::bound_along_ray;
 use crate::solve::cones::{combine, norm, scaled, shrink, Block};
 use crate::solve::penalty::{reweighted, uniform_scale};
@@ -24,6 +24,11 @@ const CHECK_EVERY: usize = 5;
 
 /// Default bound on the iterations; a problem that needs more is better served by an interior-point method.
 const MAX_ITERATIONS: usize = 3000;
+
+/// Without a tolerance the iteration stops when the objective falls by less than this part between two checks and
+/// `H u + c` and `z` differ by less than [`SPLIT_RESIDUAL`]: the true error is then about this part.
+const RESIDUAL_GOAL: f64 = 1e-4;
+const SPLIT_RESIDUAL: f64 = 2e-2;
 
 /// The first new penalties come after this many iterations from nothing, when the ridges begin to show, and then each
 /// time the iterations have tripled.
@@ -52,8 +57,8 @@ pub struct Outcome<const K: usize> {
     pub primal: f64,
     /// The best lower bound found.
     pub dual: f64,
-    /// The objective at the target.
-    pub start: f64,
+    /// What counts as an objective of zero, see [`Reduced::floor`].
+    pub floor: f64,
     /// Iterations made.
     pub iterations: usize,
     /// Why it stopped.
@@ -73,7 +78,23 @@ pub fn minimise<const K: usize>(
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Outcome<K>> {
-    Run::new(reduced, system, warm)?.iterate(settings, progress)
+    let mut h = Vec::new();
+    reduced.apply(&reduced.target, &mut h);
+    let floor = reduced.floor(&h);
+    let primal = reduced.objective(&reduced.target, &h);
+    if primal <= settings.tolerance.unwrap_or(RESIDUAL_GOAL) * floor && reduced.constraints.is_none() {
+        // The target is affine up to rounding: it is the solution, and zero is the bound.
+        return Ok(Outcome {
+            u: reduced.target,
+            primal,
+            dual: 0.0,
+            floor,
+            iterations: 0,
+            status: Status::Solved,
+            warm: None,
+        });
+    }
+    Run::new(reduced, system, warm, h, floor)?.iterate(settings, progress)
 }
 
 struct Run<'r, 's, const K: usize> {
@@ -87,7 +108,7 @@ struct Run<'r, 's, const K: usize> {
     h: Vec<Block<K>>,
     right: Vec<[f64; K]>,
     y: Vec<[f64; K]>,
-    start: f64,
+    floor: f64,
     best: Best<K>,
     next_reweighting: usize,
 }
@@ -99,11 +120,15 @@ struct Best<const K: usize> {
 }
 
 impl<'r, 's, const K: usize> Run<'r, 's, K> {
-    fn new(mut reduced: Reduced<'r, K>, system: &'s mut System, warm: Option<Warm<K>>) -> Result<Self> {
+    /// `h` is the operator applied to the target, `floor` what counts as zero.
+    fn new(
+        mut reduced: Reduced<'r, K>,
+        system: &'s mut System,
+        warm: Option<Warm<K>>,
+        h: Vec<Block<K>>,
+        floor: f64,
+    ) -> Result<Self> {
         let m = reduced.constant.len();
-        let mut h = Vec::new();
-        reduced.apply(&reduced.target, &mut h);
-        let start = reduced.objective(&reduced.target, &h);
         let (r, z, p, next_reweighting) = match warm {
             Some(warm) => {
                 let p = warm.p.iter().zip(reduced.weights).map(|(p, w)| scaled(*w, p)).collect();
@@ -129,7 +154,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             h,
             right: Vec::new(),
             y: Vec::new(),
-            start,
+            floor,
             best,
             next_reweighting,
         })
@@ -165,6 +190,9 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
                     break;
                 }
                 last_check = self.best.primal;
+                if settings.announce {
+                    progress.report(self.report(settings, iterations));
+                }
             }
             if iterations == self.next_reweighting {
                 self.next_reweighting *= 3;
@@ -244,10 +272,23 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
     }
 
     fn is_done(&self, settings: &Settings, residual: f64, last_check: f64) -> bool {
-        let scale = Problem::gap_scale(self.best.primal, self.start);
+        let scale = Problem::gap_scale(self.best.primal, self.floor);
         match settings.tolerance {
             Some(tolerance) => self.best.primal - self.best.dual <= tolerance * scale,
-            None => residual < 2e-2 && last_check - self.best.primal < 1e-4 * scale,
+            None => residual < SPLIT_RESIDUAL && last_check - self.best.primal < RESIDUAL_GOAL * scale,
+        }
+    }
+
+    /// How far it is: digits of the gap won, out of the digits asked for.
+    fn report(&self, settings: &Settings, iterations: usize) -> Report {
+        let gap = (self.best.primal - self.best.dual) / Problem::gap_scale(self.best.primal, self.floor);
+        let wanted = settings.tolerance.unwrap_or(RESIDUAL_GOAL);
+        Report {
+            fraction: (gap.ln() / wanted.ln()).clamp(0.0, 1.0),
+            stage: "solving".into(),
+            iteration: iterations,
+            energy: Some(self.best.primal),
+            gap: Some(gap),
         }
     }
 
@@ -263,7 +304,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             u: self.best.u,
             primal: self.best.primal,
             dual: self.best.dual,
-            start: self.start,
+            floor: self.floor,
             iterations,
             status,
             warm: Some(Warm { z: self.z, p, length }),

@@ -191,7 +191,7 @@ struct Total {
     values: Columns,
     primal: f64,
     dual: f64,
-    start: f64,
+    floor: f64,
     iterations: usize,
     factorisations: usize,
     status: Status,
@@ -204,7 +204,7 @@ impl Total {
             values: problem.target.clone(),
             primal: 0.0,
             dual: 0.0,
-            start: 0.0,
+            floor: 0.0,
             iterations: 0,
             factorisations: 0,
             status: Status::Solved,
@@ -224,7 +224,7 @@ impl Total {
         }
         self.primal += outcome.primal;
         self.dual += outcome.dual;
-        self.start += outcome.start;
+        self.floor += outcome.floor;
         self.iterations += outcome.iterations;
         self.status = self.status.worse(outcome.status);
     }
@@ -234,12 +234,11 @@ impl Total {
         let objective = reduced.objective(&[], &reduced.constant);
         self.primal += objective;
         self.dual += objective;
-        self.start += objective;
     }
 
     fn into_solution(self) -> Solution {
         Solution {
-            gap: (self.primal - self.dual) / Problem::gap_scale(self.primal, self.start),
+            gap: (self.primal - self.dual) / Problem::gap_scale(self.primal, self.floor),
             values: self.values,
             objective: self.primal,
             dual_objective: self.dual,

@@ -93,11 +93,13 @@ pub struct Settings {
     pub tolerance: Option<f64>,
     /// At most this many iterations; the solver's own bound where `None`.
     pub max_iterations: Option<usize>,
+    /// Whether to publish iterations as progress; a tool that publishes its own steps says no.
+    pub announce: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { tolerance: Some(1e-3), max_iterations: None }
+        Self { tolerance: Some(1e-3), max_iterations: None, announce: true }
     }
 }
 
@@ -110,8 +112,9 @@ pub struct Solution {
     pub objective: f64,
     /// A lower bound on the objective of every feasible point.
     pub dual_objective: f64,
-    /// `(objective − dual_objective) / scale`, computed from the point that is returned; `scale` is the objective, or a
-    /// millionth of the objective at the target where that is larger, so that the gap has no unit.
+    /// `(objective − dual_objective) / scale`, computed from the point that is returned; `scale` is the objective, or
+    /// where that is larger, a millionth of the objective at the target or what rounding alone makes of it, so that the
+    /// gap has no unit and an affine solution does not divide by zero.
     pub gap: f64,
     /// Iterations, summed over separate columns.
     pub iterations: usize,
@@ -160,10 +163,10 @@ impl Problem<'_> {
         Ok(())
     }
 
-    /// The scale that makes a gap relative, from the objective and the objective at the start.
+    /// The scale that makes a gap relative: the objective, or the floor below which it counts as zero.
     #[must_use]
-    pub fn gap_scale(objective: f64, start: f64) -> f64 {
-        objective.abs().max(1e-6 * start.abs()).max(f64::MIN_POSITIVE)
+    pub fn gap_scale(objective: f64, floor: f64) -> f64 {
+        objective.abs().max(floor).max(f64::MIN_POSITIVE)
     }
 }
 

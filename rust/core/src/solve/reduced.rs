@@ -138,6 +138,23 @@ impl<'a, const K: usize> Reduced<'a, K> {
         norms + self.fidelity_term(u)
     }
 
+    /// Below this an objective counts as zero: a millionth of the objective at the target, or 1e-9 of what that would be
+    /// if the terms of `H t + c` did not cancel, whichever is larger. `h` is the operator applied to the target.
+    #[must_use]
+    pub fn floor(&self, h: &[Block<K>]) -> f64 {
+        let operator = &self.free.operator;
+        let mut without_cancelling = 0.0;
+        for (b, (w, c)) in self.weights.iter().zip(&self.constant).enumerate() {
+            let (columns, values) = operator.block(b);
+            let terms = columns.iter().zip(values).map(|(&j, v)| {
+                let row = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+                row * self.target[j as usize].iter().map(|x| x * x).sum::<f64>().sqrt()
+            });
+            without_cancelling += w * (norm(c) + terms.sum::<f64>());
+        }
+        (1e-6 * self.objective(&self.target, h)).max(1e-9 * without_cancelling)
+    }
+
     /// `Σ a_i ‖u_i − t_i‖²`.
     #[must_use]
     pub fn fidelity_term(&self, u: &[[f64; K]]) -> f64 {

@@ -39,7 +39,7 @@ impl SolveOptions {
         if self.threads == Some(0) {
             return Err(Error::argument("threads", "is 0; use at least one thread, or None for all"));
         }
-        Ok(Settings { tolerance: self.tolerance, max_iterations: self.max_iterations })
+        Ok(Settings { tolerance: self.tolerance, max_iterations: self.max_iterations, announce: true })
     }
 
     /// Runs `work` on the number of threads asked for.

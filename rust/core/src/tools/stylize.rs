@@ -129,7 +129,7 @@ pub struct Stylized {
 pub fn stylize(mesh: &Mesh, options: &StylizeOptions, progress: &Progress) -> Result<Stylized> {
     let start = mesh.positions().ok_or(MeshError::NoPositions)?;
     check(mesh, options)?;
-    let settings = options.solve.settings()?;
+    let settings = Settings { announce: false, ..options.solve.settings()? };
     options.solve.run(|| Flow::new(mesh, start, options)?.run(&settings, progress))
 }
 
