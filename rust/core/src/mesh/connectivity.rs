@@ -46,7 +46,7 @@ pub const fn next(h: usize) -> usize {
 /// The halfedge before `h` in its face.
 #[must_use]
 pub const fn previous(h: usize) -> usize {
-    if h % 3 == 0 {
+    if h.is_multiple_of(3) {
         h + 2
     } else {
         h - 1
@@ -115,8 +115,7 @@ impl Connectivity {
         let kind = match *group {
             [_] => EdgeKind::Boundary,
             [(_, a), (_, b)] => {
-                self.mates[a as usize] = b;
-                self.mates[b as usize] = a;
+                self.join([a as usize, b as usize]);
                 if self.tail(a as usize) == self.tail(b as usize) {
                     EdgeKind::Inconsistent
                 } else {
@@ -128,6 +127,12 @@ impl Connectivity {
         for &(_, h) in group {
             self.kinds[h as usize] = kind;
         }
+    }
+
+    /// Makes two halfedges the sides of one interior edge.
+    pub(crate) fn join(&mut self, [a, b]: [usize; 2]) {
+        (self.mates[a], self.mates[b]) = (b as u32, a as u32);
+        (self.kinds[a], self.kinds[b]) = (EdgeKind::Interior, EdgeKind::Interior);
     }
 
     /// The faces as vertex triples.

@@ -1,9 +1,16 @@
 //! Triangle meshes: connectivity, edge lengths and, if known, positions.
 
+mod boundary;
 pub mod connectivity;
+mod flip;
+pub mod invariants;
+mod report;
 pub mod triangle;
 
+pub use boundary::boundary_loops;
 pub use connectivity::{Connectivity, EdgeKind};
+pub use flip::Flip;
+pub use report::{report, MeshReport};
 
 use crate::error::MeshError;
 

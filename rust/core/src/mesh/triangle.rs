@@ -53,7 +53,7 @@ pub fn angles(l: [f64; 3]) -> [f64; 3] {
 }
 
 /// Twice the dot product of the two edges that leave corner `i`: `b² + c² − a²`, with the difference factored.
-fn twice_dot(l: [f64; 3], i: usize) -> f64 {
+pub(crate) fn twice_dot(l: [f64; 3], i: usize) -> f64 {
     let (a, b, c) = (l[i], l[(i + 1) % 3], l[(i + 2) % 3]);
     let (long, short) = if b > c { (b, c) } else { (c, b) };
     (long - a) * (long + a) + short * short

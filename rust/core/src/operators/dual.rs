@@ -28,13 +28,18 @@ impl DualEdge {
         }
     }
 
-    /// What a unit jump of the gradient along the halfedge's normal adds to the face's Hessian times `area`: the column
-    /// `(1/l*) (n · t) t ⊗ t` of `T` (Rowe et al. 2024, supplement A) as `xx, yy, √2·xy`, `t` turned into the face's
-    /// frame, where the halfedge has the unit `direction`.
-    pub(crate) fn tensor(self, direction: [f64; 2], area: f64) -> [f64; 3] {
+    /// The dual edge in the face's frame, where the halfedge has the unit `direction`.
+    pub(crate) fn turned(self, direction: [f64; 2]) -> [f64; 2] {
         let Self([along, across]) = self;
         let [c, s] = direction;
-        let (x, y) = (c * along - s * across, s * along + c * across);
+        [c * along - s * across, s * along + c * across]
+    }
+
+    /// What a unit jump of the gradient along the halfedge's normal adds to the face's Hessian times `area`:
+    /// `(1/l*) (n · t) t ⊗ t` (Rowe et al. 2024, supplement A) as `xx, yy, √2·xy` in the face's frame.
+    pub(crate) fn tensor(self, direction: [f64; 2], area: f64) -> [f64; 3] {
+        let Self([along, across]) = self;
+        let [x, y] = self.turned(direction);
         let squared = along * along + across * across;
         let scale = area * across / (squared * squared);
         [scale * x * x, scale * y * y, std::f64::consts::SQRT_2 * scale * x * y]

@@ -7,7 +7,7 @@
 //! `δ = n [((1 − s_f/l)/h_f + (1 − s_g/l)/h_g) u_tail + (s_f/(l h_f) + s_g/(l h_g)) u_head − u_f/h_f − u_g/h_g]`,
 //!
 //! so the composition of the gradient (28), the hinge map (29) and the tensor product needs neither a basis for the
-//! neighbour nor a rotation.
+//! neighbour nor a rotation. The matrices one by one are in [`super::factors`].
 
 use crate::block_rows::{BlockRows, BLOCK};
 use crate::error::{Error, MeshError};
@@ -109,9 +109,7 @@ impl HessianPattern {
         }
         rows.values.clear();
         rows.values.resize(self.columns.len(), [0.0; BLOCK]);
-        // A degenerate face is marked by area 0.
-        let areas: Vec<f64> =
-            lengths.iter().map(|&l| if triangle::is_degenerate(l) { 0.0 } else { triangle::area(l) }).collect();
+        let areas = usable_areas(lengths);
         for f in (0..n_faces).filter(|&f| areas[f] > 0.0) {
             let block = &mut rows.values[self.starts[f]..self.starts[f + 1]];
             let slots = self.slots[f];
@@ -136,8 +134,13 @@ impl HessianPattern {
     }
 }
 
+/// The area of every face, 0 for degenerate ones.
+pub(crate) fn usable_areas(lengths: &[[f64; 3]]) -> Vec<f64> {
+    lengths.iter().map(|&l| if triangle::is_degenerate(l) { 0.0 } else { triangle::area(l) }).collect()
+}
+
 /// The unit directions of a face's halfedges in its own frame.
-fn directions(l: [f64; 3], area: f64) -> [[f64; 2]; 3] {
+pub(crate) fn directions(l: [f64; 3], area: f64) -> [[f64; 2]; 3] {
     let [s, h] = triangle::apex(l, 2, area);
     [[(s - l[2]) / l[0], h / l[0]], [-s / l[1], -h / l[1]], [1.0, 0.0]]
 }
@@ -207,7 +210,7 @@ fn assembled(mesh: &Mesh, dual: Dual) -> Result<BlockRows, MeshError> {
 /// The area-weighted Frobenius norm of every face's Hessian, jointly over the columns of `values`.
 fn weighted_norms(mesh: &Mesh, values: &[f64], dual: Dual) -> Result<Vec<f64>, Error> {
     let n = mesh.connectivity().n_vertices();
-    if (n == 0 && !values.is_empty()) || (n > 0 && values.len() % n != 0) {
+    if !values.len().is_multiple_of(n) {
         let problem =
             format!("{} numbers are not whole columns of {n} vertex values; pass one per vertex", values.len());
         return Err(Error::argument("values", problem));

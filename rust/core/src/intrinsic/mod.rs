@@ -1,0 +1,5 @@
+//! Intrinsic triangulations: the same surface under other edges.
+
+mod delaunay;
+
+pub use delaunay::delaunay_flips;
