@@ -2,9 +2,10 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use ridgeform_core::mesh::Mesh;
+use ridgeform_core::operators::{hessian_norm, Dual};
 use ridgeform_core::shapes::{self, Shape};
-use ridgeform_core::solve::{Coupling, Solver};
-use ridgeform_core::tools::{stylize, FlowStatus, Scale, SolveOptions, Stylized, StylizeOptions};
+use ridgeform_core::solve::{Columns, Coupling, Solver};
+use ridgeform_core::tools::{stylize, FlowStatus, Scale, SolveOptions, StylizeOptions, Stylized};
 use ridgeform_core::{Error, Progress};
 
 const AXIS: [f64; 3] = [0.3, -1.0, 0.7];
@@ -106,22 +107,22 @@ fn weak_vertices_move_less() {
 
 #[test]
 fn ridges_form_where_they_are_cheap() {
-    let shape = shapes::icosphere(4);
-    let cheap = |f: &[u32; 3]| f.iter().map(|&v| shape.vertices[v as usize][2]).sum::<f64>() > 0.0;
-    let weights: Vec<f64> = shape.faces.iter().map(|f| if cheap(f) { 0.2 } else { 1.0 }).collect();
-    let options = StylizeOptions { ridge_weights: Some(weights), ..strong(10) };
-    let after = Shape { vertices: flow(&shape, &options).vertices, faces: shape.faces.clone() };
-    let mesh = after.mesh().unwrap();
-    let norms = ridgeform_core::operators::hessian_norm(
-        &mesh,
-        &ridgeform_core::solve::Columns::from_points(&after.vertices).data,
-        ridgeform_core::operators::Dual::Barycentric,
-    )
-    .unwrap();
-    let total = |side: bool| -> f64 {
-        shape.faces.iter().zip(&norms).filter(|(f, _)| cheap(f) == side).map(|(_, x)| x).sum()
+    // A bent sheet, and a strip beside its middle where ridges cost a fifth.
+    let shape = shapes::grid(20, 6).map(|[x, y, _]| [x, y, 0.02 * (x - 10.0) * (x - 10.0)]);
+    let in_strip = |f: &[u32; 3]| {
+        let x: f64 = f.iter().map(|&v| shape.vertices[v as usize][0]).sum::<f64>() / 3.0;
+        (12.0..14.0).contains(&x)
     };
-    assert!(total(true) > 1.5 * total(false));
+    let share = |ridge_weights: Option<Vec<f64>>| {
+        let vertices = flow(&shape, &StylizeOptions { ridge_weights, ..strong(10) }).vertices;
+        let mesh = Mesh::new(vertices.clone(), shape.faces.clone()).unwrap();
+        let norms = hessian_norm(&mesh, &Columns::from_points(&vertices).data, Dual::Barycentric).unwrap();
+        let strip: f64 = shape.faces.iter().zip(&norms).filter(|(f, _)| in_strip(f)).map(|(_, x)| x).sum();
+        strip / norms.iter().sum::<f64>()
+    };
+    let weights = shape.faces.iter().map(|f| if in_strip(f) { 0.2 } else { 1.0 }).collect();
+    let (with, without) = (share(Some(weights)), share(None));
+    assert!(with > 2.0 * without, "{with} {without}");
 }
 
 #[test]
@@ -209,7 +210,10 @@ fn bad_arguments_are_named() {
     refused(StylizeOptions { sharpness: 1.5, ..base() }, "sharpness");
     refused(StylizeOptions { strength: Some(vec![2.0; n]), ..base() }, "strength");
     refused(StylizeOptions { fixed: Some(vec![true]), ..base() }, "fixed");
-    refused(StylizeOptions { ridge_weights: Some(vec![f64::NAN; mesh.connectivity().n_faces()]), ..base() }, "ridge_weights");
+    refused(
+        StylizeOptions { ridge_weights: Some(vec![f64::NAN; mesh.connectivity().n_faces()]), ..base() },
+        "ridge_weights",
+    );
     let lengths = Mesh::from_edge_lengths(vec![[0, 1, 2]], vec![[1.0; 3]], None).unwrap();
     assert!(stylize(&lengths, &base(), &Progress::new()).unwrap_err().to_string().contains("positions"));
     let empty = Mesh::new(vec![[0.0; 3]; 2], vec![]).unwrap();

@@ -5,6 +5,7 @@ use super::sharpness::{block_norms, sharpened_weights};
 use super::SolveOptions;
 use crate::block_rows::BlockRows;
 use crate::error::MeshError;
+use crate::intrinsic::delaunay_flips;
 use crate::mesh::{edge_lengths, triangle, Connectivity, Mesh};
 use crate::operators::{mollify, voronoi_mass, Dual, HessianPattern};
 use crate::progress::{Progress, Report};
@@ -159,7 +160,7 @@ struct Flow<'a> {
     connectivity: &'a Connectivity,
     points: Vec<[f64; 3]>,
     base: Vec<f64>,
-    original: (Connectivity, HessianPattern),
+    pattern: HessianPattern,
     solver: FastSolver,
     size: f64,
     area: f64,
@@ -188,7 +189,7 @@ impl<'a> Flow<'a> {
             connectivity,
             points: start.to_vec(),
             base,
-            original: (connectivity.clone(), HessianPattern::new(connectivity)),
+            pattern: HessianPattern::new(connectivity),
             solver: FastSolver::new(),
             size,
             area,
@@ -257,10 +258,17 @@ impl<'a> Flow<'a> {
     fn prepare(&mut self) -> Result<Step> {
         let mut lengths = edge_lengths(self.connectivity.faces(), &self.points);
         let unit = self.unit(&lengths);
-        if self.options.delaunay {
-            return Err(Error::argument("delaunay", "is not available yet; pass false"));
-        }
-        let (connectivity, pattern) = (&self.original.0, &self.original.1);
+        let flipped;
+        let (connectivity, pattern) = if self.options.delaunay {
+            mollify(self.connectivity, &mut lengths);
+            let (connectivity, flipped_lengths, _) = delaunay_flips(self.connectivity, &lengths);
+            lengths = flipped_lengths;
+            let pattern = HessianPattern::new(&connectivity);
+            flipped = (connectivity, pattern);
+            (&flipped.0, &flipped.1)
+        } else {
+            (self.connectivity, &self.pattern)
+        };
         mollify(connectivity, &mut lengths);
         let operator = pattern.assemble(connectivity, &lengths, self.options.dual)?;
         let areas = lengths.iter().map(|&l| triangle::area(l)).collect();
