@@ -45,3 +45,43 @@ pub fn shrink<const K: usize>(x: &Block<K>, t: f64) -> Block<K> {
         scaled(1.0 - t / length, x)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const X: Block<2> = [[3.0, 0.0], [0.0, 4.0], [0.0, 12.0]];
+
+    #[test]
+    fn norms_and_combinations() {
+        assert_eq!(norm(&X), 13.0);
+        assert_eq!(norm(&combine(2.0, &X, -1.0, &X)), 13.0);
+        assert_eq!(inner(&X, &scaled(2.0, &X)), 338.0);
+    }
+
+    #[test]
+    fn shrinkage_shortens_to_zero_and_no_further() {
+        assert!((norm(&shrink(&X, 3.0)) - 10.0).abs() < 1e-14);
+        assert_eq!(shrink(&X, 13.0), [[0.0; 2]; BLOCK]);
+        assert_eq!(shrink(&X, 0.0), X);
+    }
+
+    #[test]
+    fn shrinkage_is_the_proximal_map() {
+        // The minimiser of t‖y‖ + ½‖y − x‖² is better than every nearby point.
+        let cost = |y: &Block<2>| {
+            let gap = combine(1.0, y, -1.0, &X);
+            5.0 * norm(y) + 0.5 * inner(&gap, &gap)
+        };
+        let best = shrink(&X, 5.0);
+        for r in 0..BLOCK {
+            for c in 0..2 {
+                for step in [1e-3, -1e-3] {
+                    let mut near = best;
+                    near[r][c] += step;
+                    assert!(cost(&near) > cost(&best));
+                }
+            }
+        }
+    }
+}

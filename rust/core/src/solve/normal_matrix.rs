@@ -95,3 +95,63 @@ impl NormalMatrix {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::solve::cholesky::Cholesky;
+
+    fn operator() -> BlockRows {
+        BlockRows {
+            n_columns: 4,
+            starts: vec![0, 3, 3, 5],
+            columns: vec![0, 1, 3, 1, 2],
+            values: vec![[1.0, 2.0, 0.0], [0.0, 1.0, -1.0], [3.0, 0.5, 1.0], [2.0, 0.0, 1.0], [-1.0, 1.0, 4.0]],
+        }
+    }
+
+    /// `HᵀRH + D`, entry by entry.
+    fn dense(h: &BlockRows, r: &[f64], d: &[f64]) -> Vec<Vec<f64>> {
+        let mut out = vec![vec![0.0; h.n_columns]; h.n_columns];
+        for (b, weight) in r.iter().enumerate() {
+            let (columns, values) = h.block(b);
+            for (&i, x) in columns.iter().zip(values) {
+                for (&j, y) in columns.iter().zip(values) {
+                    out[i as usize][j as usize] += weight * (x[0] * y[0] + x[1] * y[1] + x[2] * y[2]);
+                }
+            }
+        }
+        for (i, d) in d.iter().enumerate() {
+            out[i][i] += d;
+        }
+        out
+    }
+
+    #[test]
+    fn agrees_with_the_dense_product_and_solves() {
+        let (h, r, d) = (operator(), [2.0, 7.0, 0.5], [0.1, 0.2, 0.3, 0.4]);
+        let normal = NormalMatrix::new(&h);
+        let mut values = Vec::new();
+        normal.assemble(&h, &r, &d, &mut values);
+        let expected = dense(&h, &r, &d);
+        let pattern = normal.pattern();
+        let mut seen = 0;
+        for j in 0..4 {
+            assert_eq!(pattern.rows[pattern.starts[j]], j, "the diagonal comes first");
+            for k in pattern.starts[j]..pattern.starts[j + 1] {
+                assert!((values[k] - expected[pattern.rows[k]][j]).abs() < 1e-13);
+                seen += usize::from(pattern.rows[k] != j) + 1;
+            }
+        }
+        assert_eq!(seen, 4 + 2 * 4, "no entry is missing: four off the diagonal");
+
+        let mut cholesky = Cholesky::analyse(pattern.clone(), 2).unwrap();
+        cholesky.factorise(&values).unwrap();
+        let x = [1.0, -2.0, 3.0, 0.5, 0.0, 4.0, -1.0, 2.0];
+        let mut right: Vec<f64> = (0..8).map(|k| (0..4).map(|j| expected[k % 4][j] * x[k / 4 * 4 + j]).sum()).collect();
+        cholesky.solve(&mut right, 2);
+        assert!(right.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-12));
+        assert!(cholesky.factorise(&vec![0.0; values.len()]).is_err());
+    }
+}
