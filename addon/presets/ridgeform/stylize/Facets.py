@@ -6,7 +6,7 @@ import bpy
 settings = bpy.context.scene.ridgeform_stylize
 
 settings.steps = 20
-settings.strength = 0.5
+settings.strength = 0.2
 settings.sharpness = 0.5
 settings.use_fidelity = False
 settings.fidelity = 500.0

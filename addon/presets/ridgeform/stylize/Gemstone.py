@@ -6,7 +6,7 @@ import bpy
 settings = bpy.context.scene.ridgeform_stylize
 
 settings.steps = 40
-settings.strength = 0.75
+settings.strength = 0.45
 settings.sharpness = 0.8
 settings.use_fidelity = False
 settings.fidelity = 500.0
