@@ -1,5 +1,56 @@
-"""Ridgeform: the L1 surface Hessian as a modeler's tool."""
+"""Ridgeform: the L1 surface Hessian as a modeler's tool.
 
-from ._native import __version__
+Make a `Mesh` from arrays, then call a function per problem: `stylize` turns it piecewise flat, `denoise` and
+`interpolate` find functions on it with sparse second derivatives, `hessian` and its companions are the
+operators behind them. Arrays of any numeric dtype and memory order go in; fresh C-contiguous `float64` and
+`int32` arrays come out. Long calls release the interpreter lock, report to a `Progress`, and hear Ctrl-C.
+Every failure is a `RidgeformError`.
 
-__all__ = ["__version__"]
+Source: Rowe, Jacobson and Stein, Sharpening and Sparsifying with Surface Hessians, SIGGRAPH Asia 2024.
+"""
+
+from ._native import (
+    Mesh,
+    MeshReport,
+    Progress,
+    Solution,
+    SparseMatrix,
+    Stylized,
+    __version__,
+    boundary_loops,
+    cotangent_laplacian,
+    denoise,
+    energy,
+    hessian,
+    hessian_norm,
+    interpolate,
+    intrinsic_delaunay,
+    stylize,
+    voronoi_mass,
+)
+from .errors import ArgumentError, Cancelled, MeshError, RidgeformError, SolveError
+
+__all__ = [
+    "ArgumentError",
+    "Cancelled",
+    "Mesh",
+    "MeshError",
+    "MeshReport",
+    "Progress",
+    "RidgeformError",
+    "Solution",
+    "SolveError",
+    "SparseMatrix",
+    "Stylized",
+    "__version__",
+    "boundary_loops",
+    "cotangent_laplacian",
+    "denoise",
+    "energy",
+    "hessian",
+    "hessian_norm",
+    "interpolate",
+    "intrinsic_delaunay",
+    "stylize",
+    "voronoi_mass",
+]

@@ -1,7 +1,43 @@
-//! Python bindings of `ridgeform-core`.
+//! The Python bindings of `ridgeform-core`: a thin crate, arrays in and arrays out.
+//!
+//! [`arrays`] is the doorway for data, [`doorway`] that for calls and [`errors`] that for failures; then one file for each
+//! thing that Python sees.
+
+mod arrays;
+mod columns;
+mod denoise;
+mod doorway;
+mod errors;
+mod interpolate;
+mod matrix;
+mod mesh;
+mod operators;
+mod options;
+mod progress;
+mod solution;
+mod stylize;
+mod watch;
+
 use pyo3::prelude::*;
 
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add("__version__", env!("CARGO_PKG_VERSION"))
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<mesh::Mesh>()?;
+    module.add_class::<mesh::MeshReport>()?;
+    module.add_class::<matrix::SparseMatrix>()?;
+    module.add_class::<progress::Progress>()?;
+    module.add_class::<solution::Solution>()?;
+    module.add_class::<stylize::Stylized>()?;
+    module.add_function(wrap_pyfunction!(operators::hessian, module)?)?;
+    module.add_function(wrap_pyfunction!(operators::hessian_norm, module)?)?;
+    module.add_function(wrap_pyfunction!(operators::energy, module)?)?;
+    module.add_function(wrap_pyfunction!(operators::voronoi_mass, module)?)?;
+    module.add_function(wrap_pyfunction!(operators::cotangent_laplacian, module)?)?;
+    module.add_function(wrap_pyfunction!(operators::intrinsic_delaunay, module)?)?;
+    module.add_function(wrap_pyfunction!(operators::boundary_loops, module)?)?;
+    module.add_function(wrap_pyfunction!(denoise::denoise, module)?)?;
+    module.add_function(wrap_pyfunction!(interpolate::interpolate, module)?)?;
+    module.add_function(wrap_pyfunction!(stylize::stylize, module)?)?;
+    Ok(())
 }

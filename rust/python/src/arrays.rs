@@ -1,0 +1,187 @@
+//! The one doorway for arrays: any numeric dtype and memory order in, fresh C-contiguous `float64` and `int32` out.
+
+use numpy::ndarray::Array2;
+use numpy::{
+    dtype, Element, IntoPyArray, PyArray1, PyArray2, PyArrayDescr, PyArrayDescrMethods, PyReadonlyArrayDyn,
+    PyUntypedArray, PyUntypedArrayMethods,
+};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::errors::argument;
+
+/// Numbers in C order, and the shape that they came in.
+pub struct Numbers<T> {
+    /// The entries, last axis fastest.
+    pub data: Vec<T>,
+    /// The length of every axis.
+    pub shape: Vec<usize>,
+}
+
+impl<T: Copy> Numbers<T> {
+    /// The entries as rows of `N`, for an array of shape (k, N).
+    ///
+    /// # Errors
+    /// `ArgumentError` for another shape.
+    pub fn rows<const N: usize>(self, py: Python<'_>, name: &'static str) -> PyResult<Vec<[T; N]>> {
+        // An empty list has shape (0,): it is an array of no rows.
+        if self.shape.len() != 2 && !self.data.is_empty() || self.shape.len() == 2 && self.shape[1] != N {
+            return Err(argument(
+                py,
+                name,
+                format!("expected an array of shape (k, {N}), got {}", shape_text(&self.shape)),
+            ));
+        }
+        Ok(self.data.as_chunks().0.to_vec())
+    }
+
+    /// The entries, for an array of shape (length,).
+    ///
+    /// # Errors
+    /// `ArgumentError` for another shape; `what` says what there is one entry for.
+    pub fn exactly(self, py: Python<'_>, name: &'static str, length: usize, what: &str) -> PyResult<Vec<T>> {
+        if self.shape != [length] {
+            let problem =
+                format!("expected one entry for each {what}, shape ({length},), got {}", shape_text(&self.shape));
+            return Err(argument(py, name, problem));
+        }
+        Ok(self.data)
+    }
+}
+
+/// Read floating-point numbers.
+///
+/// # Errors
+/// `ArgumentError` for anything that is not an array of real numbers.
+pub fn floats(name: &'static str, object: &Bound<'_, PyAny>) -> PyResult<Numbers<f64>> {
+    let array = numeric_array(name, object)?;
+    convert(name, &array)
+}
+
+/// Read floating-point numbers that must all be finite.
+///
+/// # Errors
+/// As [`floats`]; `ArgumentError` that names the first row with a NaN or an infinity.
+pub fn finite_floats(name: &'static str, object: &Bound<'_, PyAny>) -> PyResult<Numbers<f64>> {
+    let numbers = floats(name, object)?;
+    if let Some(i) = numbers.data.iter().position(|x| !x.is_finite()) {
+        let row = i / numbers.shape.iter().skip(1).product::<usize>().max(1);
+        let problem = format!("row {row} holds {}; every number must be finite", numbers.data[i]);
+        return Err(argument(object.py(), name, problem));
+    }
+    Ok(numbers)
+}
+
+/// Read whole numbers; floating-point arrays are accepted if they hold nothing else.
+///
+/// # Errors
+/// `ArgumentError` for anything that is not an array of whole numbers.
+pub fn integers(name: &'static str, object: &Bound<'_, PyAny>) -> PyResult<Numbers<i64>> {
+    let py = object.py();
+    let array = numeric_array(name, object)?;
+    match array.dtype().kind() {
+        b'b' => Err(argument(py, name, "expected whole numbers, got booleans")),
+        b'f' => {
+            let numbers: Numbers<f64> = convert(name, &array)?;
+            // Beyond 2^53 a float64 no longer tells neighbouring whole numbers apart.
+            let whole = |x: &f64| x.fract() == 0.0 && x.abs() <= 9_007_199_254_740_992.0;
+            if let Some(x) = numbers.data.iter().find(|x| !whole(x)) {
+                return Err(argument(py, name, format!("expected whole numbers, got {x}")));
+            }
+            #[allow(clippy::cast_possible_truncation)]
+            let data = numbers.data.iter().map(|&x| x as i64).collect();
+            Ok(Numbers { data, shape: numbers.shape })
+        }
+        _ => convert(name, &array),
+    }
+}
+
+/// Read a set of `length` things: a boolean mask of shape (length,), or an array of indices below `length`.
+///
+/// # Errors
+/// `ArgumentError` for another shape or an index out of range; `what` names the things.
+pub fn mask(name: &'static str, object: &Bound<'_, PyAny>, length: usize, what: &str) -> PyResult<Vec<bool>> {
+    if numeric_array(name, object)?.dtype().kind() == b'b' {
+        let numbers: Numbers<f64> = floats(name, object)?;
+        return Ok(numbers.exactly(object.py(), name, length, what)?.iter().map(|&x| x != 0.0).collect());
+    }
+    let mut set = vec![false; length];
+    for i in indices(name, object, length, what)? {
+        set[i] = true;
+    }
+    Ok(set)
+}
+
+/// Read indices of `length` things, shape (k,), in the order given.
+///
+/// # Errors
+/// `ArgumentError` for another shape or an index out of range; `what` names the things.
+pub fn indices(name: &'static str, object: &Bound<'_, PyAny>, length: usize, what: &str) -> PyResult<Vec<usize>> {
+    let py = object.py();
+    let numbers = integers(name, object)?;
+    if numbers.shape.len() != 1 {
+        let problem = format!("expected {what} indices of shape (k,), got {}", shape_text(&numbers.shape));
+        return Err(argument(py, name, problem));
+    }
+    let index = |&i: &i64| {
+        let outside = || {
+            argument(py, name, format!("index {i} is out of range: there are {length} entries, one for each {what}"))
+        };
+        usize::try_from(i).ok().filter(|&i| i < length).ok_or_else(outside)
+    };
+    numbers.data.iter().map(index).collect()
+}
+
+/// `(3, 2)` as Python writes it.
+pub fn shape_text(shape: &[usize]) -> String {
+    match shape {
+        [] => "a single number".into(),
+        [length] => format!("shape ({length},)"),
+        _ => format!("shape ({})", shape.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+/// A fresh (k, N) `float64` array.
+pub fn float_rows<'py, const N: usize>(py: Python<'py>, rows: &[[f64; N]]) -> Bound<'py, PyArray2<f64>> {
+    Array2::from(rows.to_vec()).into_pyarray(py)
+}
+
+/// A fresh (k, N) `int32` array.
+pub fn index_rows<'py, const N: usize>(py: Python<'py>, rows: &[[u32; N]]) -> Bound<'py, PyArray2<i32>> {
+    Array2::from(rows.iter().map(|row| row.map(u32::cast_signed)).collect::<Vec<_>>()).into_pyarray(py)
+}
+
+/// A fresh (k,) `int32` array.
+pub fn index_array<'py>(py: Python<'py>, indices: &[u32]) -> Bound<'py, PyArray1<i32>> {
+    indices.iter().map(|&i| i.cast_signed()).collect::<Vec<_>>().into_pyarray(py)
+}
+
+/// `object` as a NumPy array of booleans, integers or floating-point numbers.
+fn numeric_array<'py>(name: &'static str, object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyUntypedArray>> {
+    let py = object.py();
+    let refuse = |found: String| argument(py, name, format!("expected an array of real numbers, got {found}"));
+    let array = py
+        .import("numpy")?
+        .call_method1("asarray", (object,))
+        .map_err(|error| refuse(format!("something NumPy cannot read ({error})")))?
+        .cast_into::<PyUntypedArray>()?;
+    match array.dtype().kind() {
+        b'b' | b'i' | b'u' | b'f' => Ok(array),
+        _ if object.hasattr("tocsr")? => Err(refuse("a sparse matrix".into())),
+        _ => Err(refuse(format!("dtype {}", array.dtype()))),
+    }
+}
+
+/// The entries of `array` as `T`, converted and copied once.
+fn convert<T: Element + Copy>(name: &'static str, array: &Bound<'_, PyUntypedArray>) -> PyResult<Numbers<T>> {
+    let py = array.py();
+    let shape = array.shape().to_vec();
+    let wanted: Bound<'_, PyArrayDescr> = dtype::<T>(py);
+    let arguments = PyDict::new(py);
+    arguments.set_item("dtype", wanted)?;
+    arguments.set_item("requirements", ["C_CONTIGUOUS", "ALIGNED"])?;
+    let plain = py.import("numpy")?.call_method("require", (array,), Some(&arguments))?;
+    let plain: PyReadonlyArrayDyn<'_, T> = plain.extract()?;
+    let data = plain.as_slice().map_err(|error| argument(py, name, error.to_string()))?.to_vec();
+    Ok(Numbers { data, shape })
+}

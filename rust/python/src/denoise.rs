@@ -1,0 +1,85 @@
+//! `denoise`: functions on a mesh close to given ones, with sparse second derivatives.
+
+use pyo3::prelude::*;
+use ridgeform_core::tools;
+
+use crate::mesh::Mesh;
+use crate::progress::{handle, Progress};
+use crate::solution::Solution;
+use crate::{arrays, columns, doorway, matrix, options};
+
+/// Minimise the L1 Hessian energy of functions plus `fidelity` times their squared distance to `values`.
+///
+/// Solves min_u Σ_f w_f ‖(H u)_f‖ + fidelity (u - values)ᵀ M (u - values), M the Voronoi mass, subject to A u = b; with
+/// several columns see `coupling`.
+///
+/// Parameters
+/// ----------
+/// mesh : Mesh
+/// values : (n,) or (n,k) array, one row for each vertex
+/// fidelity : float > 0, in energy per area and squared value: twice as large a mesh wants a quarter of it
+/// energy : "l1_hessian"
+/// fixed : vertices that keep their values: (n,) booleans or (j,) indices
+/// face_weights : (m,) array w ≥ 0, 1 where None
+/// linear_constraints : (A, b) with A (p,n): SparseMatrix, SciPy sparse matrix or array, and b (p,) or (p,k)
+/// coupling : "joint" (one norm for all columns) or "separate" (each column is a problem of its own)
+/// dual : "barycentric" or "circumcentric" dual edges
+/// sharpness : 0 (the convex problem) to 1, reweighted rounds that concentrate curvature
+/// solver : "auto", "fast", "clarabel", "clarabel-qdldl" or "clarabel-faer"
+/// tolerance : certified relative gap to reach; None stops on residuals and reports the gap reached
+/// max_iterations, threads : int or None
+/// progress : Progress or None
+///
+/// Returns
+/// -------
+/// Solution
+///
+/// Raises
+/// ------
+/// ArgumentError, MeshError, SolveError (contradictory constraints), Cancelled
+///
+/// References
+/// ----------
+/// Rowe et al. 2024, eqs. (21) and (23).
+#[pyfunction]
+#[pyo3(signature = (mesh, values, *, fidelity, energy="l1_hessian", fixed=None, face_weights=None, linear_constraints=None,
+    coupling="joint", dual="barycentric", sharpness=0.0, solver="auto", tolerance=1e-3, max_iterations=None,
+    threads=None, progress=None))]
+#[allow(clippy::too_many_arguments)]
+pub fn denoise(
+    py: Python<'_>,
+    mesh: &Mesh,
+    values: &Bound<'_, PyAny>,
+    fidelity: f64,
+    energy: &str,
+    fixed: Option<&Bound<'_, PyAny>>,
+    face_weights: Option<&Bound<'_, PyAny>>,
+    linear_constraints: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>,
+    coupling: &str,
+    dual: &str,
+    sharpness: f64,
+    solver: &str,
+    tolerance: Option<f64>,
+    max_iterations: Option<i64>,
+    threads: Option<i64>,
+    progress: Option<&Bound<'_, Progress>>,
+) -> PyResult<Solution> {
+    options::only_l1_hessian(py, "energy", energy)?;
+    let (n, m) = (mesh.n_vertices(), mesh.n_faces());
+    let values = columns::read("values", values, n, "vertex")?;
+    let options = tools::DenoiseOptions {
+        fidelity,
+        fixed: fixed.map(|given| arrays::mask("fixed", given, n, "vertex")).transpose()?,
+        face_weights: options::weights("face_weights", face_weights, m, "face")?,
+        linear_constraints: linear_constraints
+            .map(|(a, b)| matrix::read_constraints(&a, &b, n, values.columns.n_columns))
+            .transpose()?,
+        coupling: options::coupling(py, coupling)?,
+        dual: options::dual(py, dual)?,
+        sharpness,
+        solve: options::solve(py, solver, tolerance, max_iterations, threads)?,
+    };
+    let progress = handle(progress);
+    let solution = doorway::call(py, &progress, || tools::denoise(mesh.inner(), &values.columns, &options, &progress))?;
+    Ok(Solution::new(py, solution, values.single))
+}

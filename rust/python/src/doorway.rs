@@ -1,0 +1,25 @@
+//! The one way from Python into the core: lock released, Ctrl-C heard, panics and errors turned into exceptions.
+
+use pyo3::prelude::*;
+use ridgeform_core::{Progress, Result};
+
+use crate::errors;
+use crate::watch::{watch, Outcome};
+
+/// Run `work` without the interpreter lock; what it returns or how it failed comes back to the caller.
+///
+/// Signal handlers run meanwhile, so Ctrl-C cancels the work and raises `KeyboardInterrupt`.
+pub fn call<T: Send>(py: Python<'_>, progress: &Progress, work: impl FnOnce() -> Result<T> + Send) -> PyResult<T> {
+    let outcome = py.detach(|| watch(progress, work, || Python::attach(|py| py.check_signals().err())));
+    match outcome {
+        Outcome::Done(Ok(value)) => Ok(value),
+        Outcome::Done(Err(error)) => Err(errors::exception(py, &error)),
+        Outcome::Panicked(message) => Err(errors::internal(py, &message)),
+        Outcome::Interrupted(signal) => Err(signal),
+    }
+}
+
+/// [`call`] for work too short to be watched from outside.
+pub fn call_briefly<T: Send>(py: Python<'_>, work: impl FnOnce() -> Result<T> + Send) -> PyResult<T> {
+    call(py, &Progress::new(), work)
+}

@@ -1,0 +1,189 @@
+//! `Mesh`: the core's mesh, made once from arrays, and its `MeshReport`.
+
+use std::sync::OnceLock;
+
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use ridgeform_core::error::MeshError;
+use ridgeform_core::{mesh as core, Error};
+
+use crate::arrays::{float_rows, floats, index_array, index_rows, integers};
+use crate::{doorway, errors, options};
+
+/// An immutable triangle mesh from vertices (n,3), any length unit, and faces (m,3), counter-clockwise vertex indices.
+///
+/// Non-manifold edges, inconsistent orientation and faces without area are accepted and count as boundary; `report` tells of
+/// them. Raises MeshError for coordinates that are not finite and for faces that name missing vertices, ArgumentError for
+/// arrays of another shape.
+#[pyclass(frozen, module = "ridgeform")]
+pub struct Mesh {
+    inner: core::Mesh,
+    /// Made when it is first asked for.
+    report: OnceLock<core::MeshReport>,
+}
+
+impl Mesh {
+    /// Wrap a mesh of the core.
+    pub fn new(inner: core::Mesh) -> Self {
+        Self { inner, report: OnceLock::new() }
+    }
+
+    /// The core's mesh.
+    pub fn inner(&self) -> &core::Mesh {
+        &self.inner
+    }
+
+    /// Number of vertices, those without faces included.
+    pub fn n_vertices(&self) -> usize {
+        self.inner.connectivity().n_vertices()
+    }
+
+    /// Number of faces.
+    pub fn n_faces(&self) -> usize {
+        self.inner.connectivity().n_faces()
+    }
+}
+
+#[pymethods]
+impl Mesh {
+    #[new]
+    fn from_arrays(py: Python<'_>, vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let vertices = floats("vertices", vertices)?.rows(py, "vertices")?;
+        let faces = read_faces(faces, Some(vertices.len()))?;
+        doorway::call_briefly(py, || Ok(core::Mesh::new(vertices, faces)?)).map(Self::new)
+    }
+
+    /// A mesh known by its edge lengths only: lengths (m,3), column i opposite corner i of the face.
+    ///
+    /// Without n_vertices the vertices are those up to the largest index that a face names. Such a mesh has all operators,
+    /// `denoise` and `interpolate`, but no positions to stylize. Raises MeshError for lengths that are negative, not finite,
+    /// different on the two faces of an edge or that form no triangle.
+    #[staticmethod]
+    #[pyo3(signature = (faces, lengths, n_vertices=None))]
+    fn from_edge_lengths(
+        py: Python<'_>,
+        faces: &Bound<'_, PyAny>,
+        lengths: &Bound<'_, PyAny>,
+        n_vertices: Option<i64>,
+    ) -> PyResult<Self> {
+        let n_vertices = n_vertices.map(|n| options::at_least(py, "n_vertices", n, 0)).transpose()?;
+        let faces = read_faces(faces, n_vertices)?;
+        let lengths = floats("lengths", lengths)?.rows(py, "lengths")?;
+        doorway::call_briefly(py, || Ok(core::Mesh::from_edge_lengths(faces, lengths, n_vertices)?)).map(Self::new)
+    }
+
+    /// The vertex positions, (n,3) float64, a fresh array; None for a mesh known by its edge lengths only.
+    #[getter]
+    fn vertices<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray2<f64>>> {
+        self.inner.positions().map(|positions| float_rows(py, positions))
+    }
+
+    /// The vertex indices of every face, (m,3) int32, a fresh array.
+    #[getter]
+    fn faces<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<i32>> {
+        index_rows(py, self.inner.connectivity().faces())
+    }
+
+    /// The edge lengths of every face, (m,3) float64, column i opposite corner i, a fresh array.
+    #[getter]
+    fn edge_lengths<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        float_rows(py, self.inner.edge_lengths())
+    }
+
+    /// Number of vertices, those without faces included.
+    #[getter(n_vertices)]
+    fn get_n_vertices(&self) -> usize {
+        self.n_vertices()
+    }
+
+    /// Number of faces.
+    #[getter(n_faces)]
+    fn get_n_faces(&self) -> usize {
+        self.n_faces()
+    }
+
+    /// What is unusual about the mesh, a MeshReport.
+    #[getter]
+    fn report(&self, py: Python<'_>) -> PyResult<MeshReport> {
+        let make = || Ok(self.report.get_or_init(|| core::report(&self.inner)));
+        Ok(MeshReport::new(py, doorway::call_briefly(py, make)?))
+    }
+
+    fn __repr__(&self) -> String {
+        let known = if self.inner.positions().is_some() { "" } else { ", edge lengths only" };
+        format!("<ridgeform.Mesh: {} vertices, {} faces{known}>", self.n_vertices(), self.n_faces())
+    }
+}
+
+/// What is unusual about a mesh: counts, and the edges, vertices and faces that are not as in a clean surface.
+#[pyclass(frozen, get_all, module = "ridgeform")]
+pub struct MeshReport {
+    /// Number of connected components among the faces; faces that share a vertex are connected.
+    n_components: usize,
+    /// Number of boundary loops.
+    n_boundary_loops: usize,
+    /// Edges with more than two faces or two inconsistently oriented ones, (k,2) int32 vertex indices.
+    nonmanifold_edges: Py<PyArray2<i32>>,
+    /// Those of the non-manifold edges that have two faces, (k,2) int32.
+    inconsistent_edges: Py<PyArray2<i32>>,
+    /// Vertices whose faces do not form one fan, (k,) int32.
+    nonmanifold_vertices: Py<PyArray1<i32>>,
+    /// Faces without area, (k,) int32.
+    degenerate_faces: Py<PyArray1<i32>>,
+    /// Faces with the same three vertices as an earlier face, (k,) int32.
+    duplicate_faces: Py<PyArray1<i32>>,
+    /// Vertices that no face names, (k,) int32.
+    unreferenced_vertices: Py<PyArray1<i32>>,
+}
+
+impl MeshReport {
+    fn new(py: Python<'_>, report: &core::MeshReport) -> Self {
+        let indices = |list: &[u32]| index_array(py, list).unbind();
+        Self {
+            n_components: report.n_components,
+            n_boundary_loops: report.n_boundary_loops,
+            nonmanifold_edges: index_rows(py, &report.nonmanifold_edges).unbind(),
+            inconsistent_edges: index_rows(py, &report.inconsistent_edges).unbind(),
+            nonmanifold_vertices: indices(&report.nonmanifold_vertices),
+            degenerate_faces: indices(&report.degenerate_faces),
+            duplicate_faces: indices(&report.duplicate_faces),
+            unreferenced_vertices: indices(&report.unreferenced_vertices),
+        }
+    }
+}
+
+#[pymethods]
+impl MeshReport {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let count = |list: &Py<PyArray1<i32>>| list.bind(py).len();
+        Ok(format!(
+            "<ridgeform.MeshReport: {} components, {} boundary loops, {} non-manifold edges, {} non-manifold vertices, \
+             {} degenerate, {} duplicate faces, {} unreferenced vertices>",
+            self.n_components,
+            self.n_boundary_loops,
+            self.nonmanifold_edges.bind(py).len()?,
+            count(&self.nonmanifold_vertices)?,
+            count(&self.degenerate_faces)?,
+            count(&self.duplicate_faces)?,
+            count(&self.unreferenced_vertices)?,
+        ))
+    }
+}
+
+/// Read faces; indices that the core's type cannot hold are refused here, the others by the core.
+fn read_faces(faces: &Bound<'_, PyAny>, n_vertices: Option<usize>) -> PyResult<Vec<[u32; 3]>> {
+    let py = faces.py();
+    let rows = integers("faces", faces)?.rows::<3>(py, "faces")?;
+    let convert = |(face, row): (usize, &[i64; 3])| {
+        let mut indices = [0; 3];
+        for (index, &vertex) in indices.iter_mut().zip(row) {
+            // Half of the range is the most that int32 arrays can give back.
+            *index = u32::try_from(vertex).ok().filter(|&v| v <= i32::MAX as u32).ok_or_else(|| {
+                let n_vertices = n_vertices.unwrap_or(i32::MAX as usize);
+                errors::exception(py, &Error::Mesh(MeshError::VertexOutOfRange { face, vertex, n_vertices }))
+            })?;
+        }
+        Ok(indices)
+    };
+    rows.iter().enumerate().map(convert).collect()
+}

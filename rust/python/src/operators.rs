@@ -1,0 +1,99 @@
+//! The intrinsic operators, as functions of a mesh.
+
+use numpy::{IntoPyArray, PyArray1};
+use pyo3::prelude::*;
+use ridgeform_core::{intrinsic, mesh as core, operators};
+
+use crate::arrays::index_array;
+use crate::matrix::SparseMatrix;
+use crate::mesh::Mesh;
+use crate::{columns, doorway, options};
+
+/// The surface Hessian H = M_F T C G, a SparseMatrix (4m,n): rows xx, xy, yx, yy per face, times the face's area.
+///
+/// The face's frame has its x axis from corner 0 to corner 1. The entries have no unit: scaling the mesh changes nothing.
+/// `dual`: "barycentric" or "circumcentric" dual edges. Raises MeshError where a circumcentric dual edge has no length.
+///
+/// Source: Rowe et al. 2024, eq. (30).
+#[pyfunction]
+#[pyo3(signature = (mesh, *, dual="barycentric"))]
+pub fn hessian(py: Python<'_>, mesh: &Mesh, dual: &str) -> PyResult<SparseMatrix> {
+    let dual = options::dual(py, dual)?;
+    SparseMatrix::new(py, doorway::call_briefly(py, || Ok(operators::hessian(mesh.inner(), dual)?))?)
+}
+
+/// The Frobenius norm of every face's Hessian, not times its area, (m,) float64, of values (n,) or (n,k).
+///
+/// Several columns share one norm a face (joint), as with the three coordinates of a surface. The unit is that of the values
+/// over a squared length. Raises ArgumentError for values of another shape, MeshError as `hessian`.
+///
+/// Source: Rowe et al. 2024, section 5.
+#[pyfunction]
+#[pyo3(signature = (mesh, values, *, dual="barycentric"))]
+pub fn hessian_norm<'py>(
+    py: Python<'py>,
+    mesh: &Mesh,
+    values: &Bound<'py, PyAny>,
+    dual: &str,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let dual = options::dual(py, dual)?;
+    let values = columns::read("values", values, mesh.n_vertices(), "vertex")?.columns;
+    let norms = doorway::call_briefly(py, || operators::hessian_norm(mesh.inner(), &values.data, dual))?;
+    Ok(norms.into_pyarray(py))
+}
+
+/// The energy Σ_f A_f ‖H_f(u)‖ of values u, (n,) or (n,k), in the unit of the values.
+///
+/// Several columns share one norm a face (joint). `kind`: "l1_hessian". Raises ArgumentError for another kind and for values
+/// of another shape, MeshError as `hessian`.
+///
+/// Source: Rowe et al. 2024, eq. (18).
+#[pyfunction]
+#[pyo3(signature = (mesh, values, *, kind="l1_hessian", dual="barycentric"))]
+pub fn energy(py: Python<'_>, mesh: &Mesh, values: &Bound<'_, PyAny>, kind: &str, dual: &str) -> PyResult<f64> {
+    options::only_l1_hessian(py, "kind", kind)?;
+    let dual = options::dual(py, dual)?;
+    let values = columns::read("values", values, mesh.n_vertices(), "vertex")?.columns;
+    doorway::call_briefly(py, || operators::energy(mesh.inner(), &values.data, dual))
+}
+
+/// The mixed Voronoi area of every vertex, (n,) float64: the diagonal of the lumped mass matrix; they sum to the total area.
+///
+/// Source: Meyer et al. 2003, section 3.3.
+#[pyfunction]
+pub fn voronoi_mass<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let mesh = mesh.inner();
+    let mass = doorway::call_briefly(py, || Ok(operators::voronoi_mass(mesh.connectivity(), mesh.edge_lengths())))?;
+    Ok(mass.into_pyarray(py))
+}
+
+/// The cotangent Laplacian, a SparseMatrix (n,n), symmetric and positive semidefinite, without unit; its rows sum to 0.
+///
+/// Source: Pinkall and Polthier 1993.
+#[pyfunction]
+pub fn cotangent_laplacian(py: Python<'_>, mesh: &Mesh) -> PyResult<SparseMatrix> {
+    let mesh = mesh.inner();
+    let matrix =
+        doorway::call_briefly(py, || Ok(operators::cotangent_laplacian(mesh.connectivity(), mesh.edge_lengths())))?;
+    SparseMatrix::new(py, matrix)
+}
+
+/// The intrinsic Delaunay triangulation: a Mesh with the same vertices, flipped faces, edge lengths and no positions.
+///
+/// Source: Bobenko and Springborn 2007; Rowe et al. 2024, section 6.1.
+#[pyfunction]
+pub fn intrinsic_delaunay(py: Python<'_>, mesh: &Mesh) -> PyResult<Mesh> {
+    let mesh = mesh.inner();
+    let flipped = doorway::call_briefly(py, || {
+        let (connectivity, lengths, _) = intrinsic::delaunay_flips(mesh.connectivity(), mesh.edge_lengths());
+        Ok(core::Mesh::from_connectivity(connectivity, lengths)?)
+    })?;
+    Ok(Mesh::new(flipped))
+}
+
+/// The boundary loops, a list of (k,) int32 arrays of vertex indices in the direction of the faces' halfedges.
+#[pyfunction]
+pub fn boundary_loops<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Vec<Bound<'py, PyArray1<i32>>>> {
+    let loops = doorway::call_briefly(py, || Ok(core::boundary_loops(mesh.inner().connectivity())))?;
+    Ok(loops.iter().map(|vertices| index_array(py, vertices)).collect())
+}
