@@ -14,12 +14,16 @@ use crate::progress::Progress;
 use crate::solve::certificate::bound_along_ray;
 use crate::solve::cones::{norm, scaled, Block};
 use crate::solve::fast::Outcome;
-use crate::solve::problem::{Settings, Status};
+use crate::solve::problem::{Problem, Settings, Status};
 use crate::solve::reduced::Reduced;
 use crate::{Error, Result};
 
 /// Below this many rows `qdldl` is faster, above it `faer` (measured, see the benchmarks).
 pub const QDLDL_BELOW: usize = 20_000;
+
+/// Clarabel's tolerance as a part of the gap asked for. The certificate is made of exactly feasible points and comes out up
+/// to 20 times larger than Clarabel's own gap (measured on a dozen problems).
+const MARGIN: f64 = 0.01;
 
 /// Solves the reduced problem with Clarabel and the factorisation called `method`.
 ///
@@ -33,7 +37,7 @@ pub fn minimise<const K: usize>(
     progress: &Progress,
 ) -> Result<Outcome<K>> {
     let program = Program::new(reduced, n_columns);
-    let tolerance = settings.tolerance.unwrap_or(1e-8).clamp(1e-10, 1e-2) * 0.1;
+    let tolerance = settings.tolerance.map_or(1e-9, |t| (MARGIN * t).clamp(1e-11, 1e-3));
     let options = DefaultSettings {
         verbose: false,
         direct_solve_method: method.to_string(),
@@ -73,7 +77,14 @@ pub fn minimise<const K: usize>(
             *q = [[0.0; K]; BLOCK];
         }
     }
-    Ok(certified(reduced, u, &q, &y, found.iterations as usize, status))
+    let mut outcome = certified(reduced, u, &q, &y, found.iterations as usize, status);
+    if let (Some(tolerance), true) = (settings.tolerance, status != Status::Stopped) {
+        // What counts is the gap of the point that is returned, not Clarabel's own, which allows for infeasibility.
+        let scale = Problem::gap_scale(outcome.primal, outcome.floor);
+        let reached = outcome.primal - outcome.dual <= tolerance * scale;
+        outcome.status = if reached { Status::Solved } else { Status::Inaccurate };
+    }
+    Ok(outcome)
 }
 
 fn certified<const K: usize>(

@@ -94,7 +94,7 @@ pub fn minimise<const K: usize>(
             warm: None,
         });
     }
-    Run::new(reduced, system, warm, h, floor)?.iterate(settings, progress)
+    Run::new(reduced, system, warm, h, floor, progress)?.iterate(settings, progress)
 }
 
 struct Run<'r, 's, const K: usize> {
@@ -127,6 +127,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         warm: Option<Warm<K>>,
         h: Vec<Block<K>>,
         floor: f64,
+        progress: &Progress,
     ) -> Result<Self> {
         let m = reduced.constant.len();
         let (r, z, p, next_reweighting) = match warm {
@@ -135,7 +136,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
                 (reweighted(&warm.length, reduced.weights), warm.z, p, REWEIGHT_WARM)
             }
             None => {
-                let scale = uniform_scale(&mut reduced, system, &h)?;
+                let scale = uniform_scale(&mut reduced, system, &h, progress)?;
                 let zero = vec![[[0.0; K]; BLOCK]; m];
                 (reduced.weights.iter().map(|w| scale * w).collect(), zero.clone(), zero, REWEIGHT_COLD)
             }

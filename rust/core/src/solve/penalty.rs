@@ -4,7 +4,7 @@ use crate::block_rows::BLOCK;
 use crate::solve::cones::{norm, Block};
 use crate::solve::reduced::Reduced;
 use crate::solve::system::System;
-use crate::Result;
+use crate::{Progress, Result};
 
 /// The product of penalty and typical block length, in units of the weight, at which alternating directions converge
 /// fastest (0.2 to 1 measured alike).
@@ -29,11 +29,17 @@ pub fn reweighted(lengths: &[f64], weights: &[f64]) -> Vec<f64> {
 /// Without fidelity the scale does not enter the linear system, and one factorisation does.
 ///
 /// # Errors
-/// A failed factorisation.
-pub fn uniform_scale<const K: usize>(reduced: &mut Reduced<'_, K>, system: &mut System, h: &[Block<K>]) -> Result<f64> {
+/// A failed factorisation, or [`crate::Error::Cancelled`].
+pub fn uniform_scale<const K: usize>(
+    reduced: &mut Reduced<'_, K>,
+    system: &mut System,
+    h: &[Block<K>],
+    progress: &Progress,
+) -> Result<f64> {
     let has_fidelity = reduced.fidelity.iter().any(|a| *a > 0.0);
     let mut scale = if has_fidelity { balance_for(reduced, h) } else { 1.0 };
     for _ in 0..6 {
+        progress.check()?;
         let r: Vec<f64> = reduced.weights.iter().map(|w| scale * w).collect();
         system.factorise(reduced, &r)?;
         let mut right = Vec::new();
@@ -44,7 +50,7 @@ pub fn uniform_scale<const K: usize>(reduced: &mut Reduced<'_, K>, system: &mut 
         let mut smooth = Vec::new();
         reduced.apply(&u, &mut smooth);
         let next = balance_for(reduced, &smooth);
-        if !has_fidelity || next < 2.0 * scale {
+        if !has_fidelity || next < 2.0 * scale || progress.is_finishing() {
             return Ok(next);
         }
         scale = next;
