@@ -50,6 +50,15 @@ def test_paper_numbers_reach_the_wheel():
     assert kit.same_bits(kit.coordinates(obj), expected.vertices.astype(np.float32))
 
 
+def test_delaunay_reaches_the_wheel():
+    obj = kit.bumpy_box()
+    before, triangles = kit.coordinates(obj), mesh_io.triangles(obj.data)
+    bpy.ops.ridgeform.stylize(steps=STEPS, delaunay=True)
+    expected = api_result(before, triangles, delaunay=True).vertices.astype(np.float32)
+    assert kit.same_bits(kit.coordinates(obj), expected)
+    assert not kit.same_bits(expected, api_result(before, triangles).vertices.astype(np.float32))
+
+
 def test_edit_mode_moves_the_selection_only():
     obj = kit.bumpy_box()
     before, triangles = kit.coordinates(obj), mesh_io.triangles(obj.data)
