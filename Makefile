@@ -2,7 +2,7 @@
 PYTHON ?= python3
 RUN = @$(PYTHON) scripts/setup_env.py
 
-.PHONY: help demo test lint bench extension wheel fixtures
+.PHONY: help demo test lint bench extension wheel fixtures pictures
 
 help:
 	@echo "make demo        stylize a real scan in Blender, without a window: out/demo.png, out/demo.blend"
@@ -12,6 +12,7 @@ help:
 	@echo "make wheel       build the Python wheel"
 	@echo "make extension   build and check the Blender extension: .ridgeform/extension/"
 	@echo "make fixtures    make the .blend files of blend_fixtures/ again"
+	@echo "make pictures    draw the results in docs/pictures/ again"
 
 demo:
 	$(RUN) scripts/demo.py
@@ -35,3 +36,6 @@ wheel:
 fixtures:
 	$(RUN)
 	HOME=/ PYTHONPATH=tests .ridgeform/py311/bin/python blend_fixtures/make_fixtures.py
+
+pictures:
+	$(RUN) scripts/manual_pictures.py

@@ -1,0 +1,131 @@
+"""Draw the pictures of README and manual that show results: docs/pictures/*.png.
+
+    python scripts/setup_env.py scripts/manual_pictures.py [NAME ...]
+
+Everything is computed with the sliders of the add-on, from the meshes of `blend_fixtures` and of
+`tests/shapes.py`.
+"""
+
+import sys
+import time
+
+import numpy as np
+from build_wheel import build_wheel
+from workspace import ROOT, WHEEL_SITE
+
+PICTURES = ROOT / "docs/pictures"
+BUST_VIEW = (0.55, -1.0, 0.12)
+SPOT_VIEW = (-0.9, -1.0, 0.35)
+CUBE_VIEW = (0.6, -1.0, 0.6)
+STRENGTHS = {"bust": (0.2, 0.35, 0.5), "spot": (0.3, 0.5, 0.7)}
+SHARPNESSES = (0.0, 0.5, 1.0)
+
+
+def stylized(vertices: np.ndarray, faces: np.ndarray, **changes: object) -> np.ndarray:
+    """The vertices after the flow, with the add-on's defaults but for `changes`."""
+    import ridgeform  # noqa: PLC0415
+
+    from addon.settings import default_settings, stylize_options  # noqa: PLC0415
+
+    options = stylize_options(default_settings(**changes))
+    begin = time.perf_counter()
+    result = ridgeform.stylize(ridgeform.Mesh(vertices, faces), **options)
+    said = ", ".join(f"{name} {value}" for name, value in changes.items()) or "defaults"
+    print(
+        f"{said}: {result.status}, {result.iterations} steps, {time.perf_counter() - begin:.1f} s", flush=True
+    )
+    return result.vertices
+
+
+def source(name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices and faces of a source of the fixtures."""
+    with np.load(ROOT / f"blend_fixtures/sources/{name}.npz") as data:
+        return data["vertices"].astype(float), data["faces"]
+
+
+def hero() -> None:
+    """The bust before and after."""
+    import pictures  # noqa: PLC0415
+
+    vertices, faces = source("bust")
+    after = stylized(vertices, faces, strength=0.3, sharpness=0.7)
+    look = {"view": BUST_VIEW, "size": (420, 560), "frame": vertices}
+    row = [pictures.render(mesh, faces, **look) for mesh in (vertices, after)]
+    pictures.sheet(PICTURES / "hero.png", [row])
+
+
+def sliders(name: str, view: tuple[float, float, float], size: tuple[int, int]) -> None:
+    """A mesh at three strengths and three sharpnesses, the input beside them."""
+    import pictures  # noqa: PLC0415
+
+    vertices, faces = source(name)
+    look = {"view": view, "size": size, "frame": vertices}
+    rows, captions = [], []
+    for i, strength in enumerate(STRENGTHS[name]):
+        row = [pictures.render(vertices, faces, **look) if i == 0 else None]
+        for sharpness in SHARPNESSES:
+            after = stylized(vertices, faces, strength=strength, sharpness=sharpness)
+            row.append(pictures.render(after, faces, **look))
+        rows.append(row)
+        captions.append(
+            [
+                "input" if i == 0 else " ",
+                *(f"strength {strength}, sharpness {value}" for value in SHARPNESSES),
+            ]
+        )
+    pictures.sheet(PICTURES / f"sliders_{name}.png", rows, captions=captions, text_pixels=13)
+
+
+def density() -> None:
+    """One strength on Spot at four densities."""
+    import pictures  # noqa: PLC0415
+    import shapes  # noqa: PLC0415
+
+    coarse, fine = source("spot_low_resolution"), source("spot")
+    row, captions = [], []
+    for vertices, faces in (coarse, shapes.subdivide(*coarse), fine, shapes.subdivide(*fine)):
+        after = stylized(vertices, faces)
+        row.append(pictures.render(after, faces, view=SPOT_VIEW, size=240, frame=vertices))
+        captions.append(f"{len(vertices)} vertices")
+    pictures.sheet(PICTURES / "density.png", [row], captions=[captions], text_pixels=13)
+
+
+def noisy_cube() -> None:
+    """A cube under noise, restored with the paper's weight."""
+    import pictures  # noqa: PLC0415
+    import shapes  # noqa: PLC0415
+
+    vertices, faces = shapes.noisy_cube(seed=0)
+    after = stylized(vertices, faces, steps=16, use_fidelity=True, fidelity=500.0, scale="max_edge")
+    look = {"view": CUBE_VIEW, "size": 400, "frame": vertices}
+    row = [pictures.render(mesh, faces, **look) for mesh in (vertices, after)]
+    errors = [shapes.root_mean_square(shapes.distance_to_cube(mesh)) for mesh in (vertices, after)]
+    captions = [
+        f"{when}: {error:.4f} off the cube" for when, error in zip(("noisy", "restored"), errors, strict=True)
+    ]
+    pictures.sheet(PICTURES / "noisy_cube.png", [row], captions=[captions], text_pixels=15)
+
+
+DRAWN = {
+    "hero": hero,
+    "sliders_bust": lambda: sliders("bust", BUST_VIEW, (172, 236)),
+    "sliders_spot": lambda: sliders("spot", SPOT_VIEW, (205, 205)),
+    "density": density,
+    "noisy_cube": noisy_cube,
+}
+
+
+def main(names: list[str]) -> None:
+    """Draw all pictures, or those named."""
+    build_wheel()
+    sys.path[:0] = [str(WHEEL_SITE), str(ROOT), str(ROOT / "tests")]
+    import bpy  # noqa: F401, PLC0415
+
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    for name in names or DRAWN:
+        print(f"== {name}", flush=True)
+        DRAWN[name]()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,105 @@
+"""The documentation holds: links and pictures exist, and so does every name in the index of equations."""
+
+import ast
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PAGES = sorted(
+    path
+    for folder, pattern in ((ROOT, "*.md"), (ROOT / "docs", "**/*.md"), (ROOT / "blend_fixtures", "*.md"))
+    for path in folder.glob(pattern)
+)
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+CODE = re.compile(r"^```.*?^```\n", re.MULTILINE | re.DOTALL)
+LARGEST_PICTURE = 350_000
+README_LINES = 150
+
+
+def name_of(page):
+    return str(page.relative_to(ROOT))
+
+
+@cache
+def anchors(page):
+    """The anchors that a page's headings have on code hosts."""
+    headings = re.findall(r"^#+ +(.+)$", CODE.sub("", page.read_text(encoding="utf-8")), re.MULTILINE)
+    kept = (re.sub(r"[^\w\- ]", "", re.sub(r"[`*]", "", heading).lower()) for heading in headings)
+    return {heading.strip().replace(" ", "-") for heading in kept}
+
+
+def relative_links(page):
+    targets = LINK.findall(CODE.sub("", page.read_text(encoding="utf-8")))
+    return [target for target in targets if not re.match(r"[a-z]+:", target)]
+
+
+def equation_rows():
+    """File and names of every row of the tables in docs/equations.md."""
+    page = ROOT / "docs/equations.md"
+    for line in page.read_text(encoding="utf-8").splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if len(cells) == 4 and (link := LINK.fullmatch(cells[2])):
+            yield (page.parent / link[1]).resolve(), re.findall(r"`([^`]+)`", cells[3])
+
+
+def defines(path, name):
+    """Whether a Rust or Python file defines a function, type, method or constant of this name."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix == ".py":
+        kinds = (ast.FunctionDef, ast.ClassDef)
+        return any(isinstance(node, kinds) and node.name == name for node in ast.walk(ast.parse(text)))
+    return re.search(rf"\b(fn|struct|enum|trait|type|const)\s+{re.escape(name)}\b", text) is not None
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_relative_links_and_pictures_exist(page):
+    for target in relative_links(page):
+        file, _, anchor = target.partition("#")
+        where = (page.parent / file).resolve() if file else page
+        assert where.is_relative_to(ROOT), f"{target} leads out of the project"
+        assert where.exists(), f"{target} does not exist"
+        if anchor:
+            assert anchor in anchors(where), f"{target} names no heading"
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if page.parent == ROOT / "docs"], ids=name_of)
+def test_every_page_is_reached_from_the_readme(page):
+    reached = {(ROOT / link.partition("#")[0]).resolve() for link in relative_links(ROOT / "README.md")}
+    assert page in reached
+
+
+def test_every_picture_is_shown_and_small():
+    shown = {(page.parent / link).resolve() for page in PAGES for link in relative_links(page)}
+    pictures = sorted((ROOT / "docs/pictures").iterdir())
+    assert pictures
+    for picture in pictures:
+        assert picture in shown, f"{picture.name} is in no page"
+        assert picture.stat().st_size <= LARGEST_PICTURE, f"{picture.name} is too large"
+
+
+def test_every_name_in_the_index_of_equations_is_defined():
+    rows = list(equation_rows())
+    assert len(rows) > 25
+    for path, names in rows:
+        assert path.is_file(), f"{path} does not exist"
+        assert names, f"a row on {path.name} has no names"
+        for name in names:
+            assert defines(path, name), f"{path.name} defines no {name}"
+
+
+def test_every_file_named_in_the_architecture_exists():
+    text = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
+    folders = [ROOT, ROOT / "rust/core/src", ROOT / "rust/core/src/solve", ROOT / "addon"]
+    named = re.findall(r"`([\w./*]+(?:\.(?:py|rs|toml)|/))`", text)
+    assert len(named) > 15
+    for name in named:
+        assert any(any(folder.glob(name.rstrip("/"))) for folder in folders), f"{name} does not exist"
+
+
+def test_the_readme_is_short_and_has_its_benchmark_block():
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert len(text.splitlines()) < README_LINES
+    assert re.search(r"<!-- bench:begin -->\n.+\n<!-- bench:end -->", text, re.DOTALL)
