@@ -7,8 +7,9 @@ use crate::mesh::{Connectivity, EdgeKind};
 ///
 /// - A rim consists of edges with exactly one face ([`EdgeKind::Boundary`]). Edges with three or more faces have no twin
 ///   either, but they are no holes: a walk that ends at one, as on the pages of an open book, is left out.
-/// - A loop runs as the faces' halfedges do: seen from outside, clockwise around a hole. Where two faces disagree on their orientation the walk goes on across their edge,
-///   against the halfedges from there on: a Möbius strip has one loop.
+/// - A loop runs as the faces' halfedges do: seen from outside, clockwise around a hole. Where two faces disagree on
+///   their orientation the walk goes on across their edge, against the halfedges from there on: a Möbius strip has one
+///   loop.
 /// - At a vertex that several fans of faces share, the walk stays in its fan; loops that then visit a vertex twice are
 ///   split there. Two triangles that touch at a vertex have two loops, and so have two holes that touch at a vertex.
 #[must_use]
