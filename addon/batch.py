@@ -214,7 +214,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--mark-angle", type=float, metavar="DEGREES", help="least angle between the faces at a ridge (20)")
     add("--reduce", type=float, metavar="RATIO", help="keep this share of the triangles")
     add("--fidelity", type=float, help="fidelity weight of the paper instead of --strength")
-    add("--scale", choices=("max_edge", "bounding_box"), help="unit of --fidelity (max_edge)")
+    add("--scale", choices=("max_edge", "bounding_box", "area"), help="unit of --fidelity (max_edge)")
     add("--coupling", choices=("joint", "separate"), help="norm over the three coordinates (joint)")
     add("--dual", choices=("barycentric", "circumcentric"), help="dual edges (barycentric)")
     add(

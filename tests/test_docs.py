@@ -99,6 +99,23 @@ def test_every_file_named_in_the_architecture_exists():
         assert any(any(folder.glob(name.rstrip("/"))) for folder in folders), f"{name} does not exist"
 
 
+def test_the_manual_names_every_setting_and_every_option_of_the_command():
+    manual = (ROOT / "docs/manual.md").read_text(encoding="utf-8")
+    settings = re.findall(r'\bname="([^"]+)"', (ROOT / "addon/settings.py").read_text(encoding="utf-8"))
+    command = (ROOT / "addon/batch.py").read_text(encoding="utf-8")
+    options = re.findall(r'"(--[a-z][a-z-]*)"', command)
+    fields = re.findall(r'^        "(\w+)": (?:None|\[\]|str)', command, re.MULTILINE)
+    assert len(settings) > 15
+    assert len(options) > 15
+    assert len(fields) > 8
+    for name in settings:
+        assert name in manual, f"the setting {name} is not in the manual"
+    for name in [*options, *fields]:
+        assert f"`{name}" in manual, f"{name} is not in the manual"
+    for name in re.findall(r"`(--[a-z][a-z-]*)", manual):
+        assert name in options, f"the command has no {name}"
+
+
 def test_the_readme_is_short_and_has_its_benchmark_block():
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     assert len(text.splitlines()) < README_LINES
