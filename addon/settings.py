@@ -11,8 +11,11 @@ RIDGE_PULL = 10.0
 
 
 def fidelity_of(strength: float) -> float:
-    """The fidelity weight η of eq. (24), on a unit bounding box, that a strength from 0 to 1 stands for."""
-    return 10.0 ** (8.0 - 4.0 * strength)
+    """The fidelity weight η of eq. (24), on a surface of unit area, that a strength from 0 to 1 stands for.
+
+    Chosen from a sheet of pictures of twelve meshes: at 0.5 limbs, ears and noses stay, at 0.65 they begin to go.
+    """
+    return 10.0 ** (8.5 - 4.0 * strength)
 
 
 def ridge_weights_of(painted: np.ndarray, triangles: np.ndarray, avoid: bool) -> np.ndarray:
@@ -142,6 +145,11 @@ class StylizeSettings:
                 "Bounding Box",
                 "The longest side of the bounding box: independent of the mesh's density",
             ),
+            (
+                "area",
+                "Area",
+                "The square root of the surface's area: independent of the mesh's density and of how it is turned",
+            ),
         ),
         default="max_edge",
     )
@@ -225,7 +233,7 @@ def stylize_options(settings: object) -> dict[str, object]:
     return {
         "iterations": settings.steps,
         "fidelity": settings.fidelity if paper else fidelity_of(settings.strength),
-        "scale": settings.scale if paper else "bounding_box",
+        "scale": settings.scale if paper else "area",
         "sharpness": settings.sharpness,
         "coupling": settings.coupling,
         "dual": settings.dual,

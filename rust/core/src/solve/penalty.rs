@@ -1,7 +1,6 @@
 //! The penalties of the fast solver: found from the problem itself, never set by hand.
 
-use crate::block_rows::BLOCK;
-use crate::solve::cones::{norm, Block};
+use crate::solve::cones::{norm, scaled, Block};
 use crate::solve::reduced::Reduced;
 use crate::solve::system::System;
 use crate::{Progress, Result};
@@ -43,8 +42,8 @@ pub fn uniform_scale<const K: usize>(
         let r: Vec<f64> = reduced.weights.iter().map(|w| scale * w).collect();
         system.factorise(reduced, &r)?;
         let mut right = Vec::new();
-        let zero = [[0.0; K]; BLOCK];
-        reduced.apply_transposed(|b| crate::solve::cones::combine(-r[b], &reduced.constant[b], 0.0, &zero), &mut right);
+        let constant: Vec<Block<K>> = r.iter().zip(&reduced.constant).map(|(r, c)| scaled(-r, c)).collect();
+        reduced.apply_transposed(&constant, &mut right);
         let mut u = reduced.target.clone();
         system.solve(reduced, &right, &mut u);
         let mut smooth = Vec::new();

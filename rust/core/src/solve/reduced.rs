@@ -126,8 +126,8 @@ impl<'a, const K: usize> Reduced<'a, K> {
             .collect_into_vec(out);
     }
 
-    /// `out = Hᵀ y`, for a `y` given block by block.
-    pub fn apply_transposed(&self, y: impl Fn(usize) -> Block<K> + Sync, out: &mut Vec<[f64; K]>) {
+    /// `out = Hᵀ y`.
+    pub fn apply_transposed(&self, y: &[Block<K>], out: &mut Vec<[f64; K]>) {
         self.transposed.apply(&self.free.operator, y, out);
     }
 

@@ -39,12 +39,7 @@ impl Transposed {
     }
 
     /// `out = Hᵀ y`.
-    pub fn apply<const K: usize>(
-        &self,
-        operator: &BlockRows,
-        y: impl Fn(usize) -> Block<K> + Sync,
-        out: &mut Vec<[f64; K]>,
-    ) {
+    pub fn apply<const K: usize>(&self, operator: &BlockRows, y: &[Block<K>], out: &mut Vec<[f64; K]>) {
         (0..operator.n_columns)
             .into_par_iter()
             .with_min_len(GRAIN)
@@ -52,8 +47,7 @@ impl Transposed {
                 let mut sum = [0.0; K];
                 for &(entry, block) in &self.entries[self.starts[j]..self.starts[j + 1]] {
                     let value = &operator.values[entry as usize];
-                    let at = y(block as usize);
-                    for (v, row) in value.iter().zip(&at) {
+                    for (v, row) in value.iter().zip(&y[block as usize]) {
                         for (s, x) in sum.iter_mut().zip(row) {
                             *s += v * x;
                         }
