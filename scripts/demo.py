@@ -14,8 +14,6 @@ FIXTURE = ROOT / "blend_fixtures/bust.blend"
 VIEW = (0.55, -1.0, 0.12)
 """From before the face, a little to the side and above."""
 SIZE = 700
-STRENGTH = 0.2
-"""Clear facets all over, and still a face: from 0.4 on, nose and eyes are gone."""
 
 
 def main() -> None:
@@ -33,7 +31,7 @@ def main() -> None:
 
     before = pictures.triangles([bust])
     begin = time.perf_counter()
-    if bpy.ops.ridgeform.stylize(strength=STRENGTH) != {"FINISHED"}:
+    if bpy.ops.ridgeform.stylize() != {"FINISHED"}:
         stop("the operator did not finish")
     seconds = time.perf_counter() - begin
     after = pictures.triangles([bust])

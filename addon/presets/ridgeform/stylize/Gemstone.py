@@ -5,9 +5,9 @@ import bpy
 
 settings = bpy.context.scene.ridgeform_stylize
 
-settings.steps = 40
-settings.strength = 0.45
-settings.sharpness = 0.8
+settings.steps = 30
+settings.strength = 0.7
+settings.sharpness = 1.0
 settings.use_fidelity = False
 settings.fidelity = 500.0
 settings.scale = "max_edge"
