@@ -107,31 +107,47 @@ impl HessianPattern {
         if lengths.len() != n_faces || connectivity.n_faces() != n_faces {
             return Err(MeshError::LengthRows { rows: lengths.len(), n_faces });
         }
-        rows.values.clear();
         rows.values.resize(self.columns.len(), [0.0; BLOCK]);
         let areas = usable_areas(lengths);
-        for f in (0..n_faces).filter(|&f| areas[f] > 0.0) {
+        for f in 0..n_faces {
             let block = &mut rows.values[self.starts[f]..self.starts[f + 1]];
-            let slots = self.slots[f];
-            let directions = directions(lengths[f], areas[f]);
-            for i in 0..3 {
-                let Some(twin) = connectivity.twin(3 * f + i).filter(|t| areas[t / 3] > 0.0) else { continue };
-                let hinge = Hinge::new(lengths, &areas, 3 * f + i, twin);
-                let Some(edge) = DualEdge::new(dual, &hinge) else {
-                    return Err(MeshError::ZeroDualEdge { face: f, neighbour: twin / 3 });
-                };
-                let tensor = edge.tensor(directions[i], areas[f]);
-                let jump = hinge.jump();
-                let columns = [slots[(i + 1) % 3], slots[(i + 2) % 3], slots[i], slots[3 + i]];
-                for (column, coefficient) in columns.into_iter().zip(jump) {
-                    for (value, t) in block[usize::from(column)].iter_mut().zip(tensor) {
-                        *value += coefficient * t;
-                    }
+            block.fill([0.0; BLOCK]);
+            let stencil = face_block(connectivity, lengths, &areas, dual, f)?;
+            for (slot, entry) in self.slots[f].into_iter().zip(stencil) {
+                for (value, x) in block[usize::from(slot)].iter_mut().zip(entry) {
+                    *value += x;
                 }
             }
         }
         Ok(())
     }
+}
+
+/// The rows of face `f`: for its corners 0, 1, 2 and the vertices opposite its halfedges 0, 1, 2.
+fn face_block(
+    connectivity: &Connectivity,
+    lengths: &[[f64; 3]],
+    areas: &[f64],
+    dual: Dual,
+    f: usize,
+) -> Result<[[f64; BLOCK]; STENCIL], MeshError> {
+    let mut stencil = [[0.0; BLOCK]; STENCIL];
+    if areas[f] == 0.0 {
+        return Ok(stencil);
+    }
+    let directions = directions(lengths[f], areas[f]);
+    for i in 0..3 {
+        let Some(twin) = connectivity.twin(3 * f + i).filter(|twin| areas[twin / 3] > 0.0) else { continue };
+        let hinge = Hinge::new(lengths, areas, 3 * f + i, twin);
+        let edge = DualEdge::new(dual, &hinge).ok_or(MeshError::ZeroDualEdge { face: f, neighbour: twin / 3 })?;
+        let tensor = edge.tensor(directions[i], areas[f]);
+        for (place, coefficient) in [(i + 1) % 3, (i + 2) % 3, i, i + 3].into_iter().zip(hinge.jump()) {
+            for (value, t) in stencil[place].iter_mut().zip(tensor) {
+                *value += coefficient * t;
+            }
+        }
+    }
+    Ok(stencil)
 }
 
 /// The area of every face, 0 for degenerate ones.

@@ -9,16 +9,43 @@ use crate::mesh::{triangle, Connectivity};
 #[must_use]
 pub fn cotangent_laplacian(connectivity: &Connectivity, lengths: &[[f64; 3]]) -> sprs::CsMat<f64> {
     let n = connectivity.n_vertices();
-    let mut triplets = sprs::TriMat::with_capacity((n, n), 12 * connectivity.n_faces());
-    for (f, &l) in lengths.iter().enumerate().filter(|(_, &l)| !triangle::is_degenerate(l)) {
-        for (i, cotangent) in triangle::cotangents(l).into_iter().enumerate() {
-            let (tail, head) = (connectivity.tail(3 * f + i) as usize, connectivity.head(3 * f + i) as usize);
-            let weight = 0.5 * cotangent;
-            triplets.add_triplet(tail, tail, weight);
-            triplets.add_triplet(head, head, weight);
-            triplets.add_triplet(tail, head, -weight);
-            triplets.add_triplet(head, tail, -weight);
+    let mut starts = vec![0_usize; n + 1];
+    for h in 0..connectivity.n_halfedges() {
+        starts[connectivity.tail(h) as usize + 1] += 1;
+        starts[connectivity.head(h) as usize + 1] += 1;
+    }
+    for v in 0..n {
+        starts[v + 1] += starts[v];
+    }
+    let mut fill = starts.clone();
+    let mut neighbours = vec![(0_u32, 0.0); starts[n]];
+    for (f, &l) in lengths.iter().enumerate() {
+        let weights = if triangle::is_degenerate(l) { [0.0; 3] } else { triangle::cotangents(l).map(|c| 0.5 * c) };
+        for (i, weight) in weights.into_iter().enumerate() {
+            let (tail, head) = (connectivity.tail(3 * f + i), connectivity.head(3 * f + i));
+            for (row, column) in [(tail, head), (head, tail)] {
+                neighbours[fill[row as usize]] = (column, weight);
+                fill[row as usize] += 1;
+            }
         }
     }
-    triplets.to_csr()
+    let mut indptr = Vec::with_capacity(n + 1);
+    let (mut indices, mut data) = (Vec::with_capacity(starts[n] / 2 + n), Vec::with_capacity(starts[n] / 2 + n));
+    indptr.push(0);
+    for v in 0..n {
+        let row = &mut neighbours[starts[v]..starts[v + 1]];
+        // Stable, so that both rows of an edge add its weights in the same order: symmetric to the last bit.
+        row.sort_by_key(|&(column, _)| column);
+        let diagonal: f64 = row.iter().filter(|&&(column, _)| column as usize != v).map(|(_, weight)| weight).sum();
+        let place = row.partition_point(|&(column, _)| (column as usize) < v);
+        let before = row[..place].chunk_by(|a, b| a.0 == b.0);
+        let after = row[place..].chunk_by(|a, b| a.0 == b.0).filter(|edge| edge[0].0 as usize != v);
+        let weights = |edge: &[(u32, f64)]| (edge[0].0 as usize, -edge.iter().map(|(_, weight)| weight).sum::<f64>());
+        for (column, value) in before.map(weights).chain([(v, diagonal)]).chain(after.map(weights)) {
+            indices.push(column);
+            data.push(value);
+        }
+        indptr.push(indices.len());
+    }
+    sprs::CsMat::new((n, n), indptr, indices, data)
 }
