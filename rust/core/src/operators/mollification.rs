@@ -2,8 +2,9 @@
 
 use crate::mesh::{triangle, Connectivity};
 
-/// The margin of the triangle inequality, in mean edge lengths: small enough to leave good triangles as they are,
-/// large enough for the flow's slivers (measured on stylized scans; Sharp and Crane use 1e-5).
+/// The margin of the triangle inequality, in mean edge lengths: scans and modelled meshes keep their lengths (eleven were
+/// measured, from fandisk to Nefertiti), and the entries of the Hessian of a mesh squashed to 1e-7 of its height fall from
+/// 1e7 to 1e4.
 pub const MOLLIFICATION_MARGIN: f64 = 1e-4;
 
 /// Lengthens all edges by the least `ε` with which every triangle inequality holds by [`MOLLIFICATION_MARGIN`] mean
