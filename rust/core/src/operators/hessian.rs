@@ -109,11 +109,11 @@ impl HessianPattern {
         }
         rows.values.resize(self.columns.len(), [0.0; BLOCK]);
         let areas = usable_areas(lengths);
-        for f in 0..n_faces {
+        for (f, slots) in self.slots.iter().enumerate() {
             let block = &mut rows.values[self.starts[f]..self.starts[f + 1]];
             block.fill([0.0; BLOCK]);
             let stencil = face_block(connectivity, lengths, &areas, dual, f)?;
-            for (slot, entry) in self.slots[f].into_iter().zip(stencil) {
+            for (&slot, entry) in slots.iter().zip(stencil) {
                 for (value, x) in block[usize::from(slot)].iter_mut().zip(entry) {
                     *value += x;
                 }
