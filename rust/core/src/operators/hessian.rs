@@ -135,12 +135,11 @@ fn face_block(
     if areas[f] == 0.0 {
         return Ok(stencil);
     }
-    let directions = directions(lengths[f], areas[f]);
-    for i in 0..3 {
+    for (i, direction) in directions(lengths[f], areas[f]).into_iter().enumerate() {
         let Some(twin) = connectivity.twin(3 * f + i).filter(|twin| areas[twin / 3] > 0.0) else { continue };
         let hinge = Hinge::new(lengths, areas, 3 * f + i, twin);
         let edge = DualEdge::new(dual, &hinge).ok_or(MeshError::ZeroDualEdge { face: f, neighbour: twin / 3 })?;
-        let tensor = edge.tensor(directions[i], areas[f]);
+        let tensor = edge.tensor(direction, areas[f]);
         for (place, coefficient) in [(i + 1) % 3, (i + 2) % 3, i, i + 3].into_iter().zip(hinge.jump()) {
             for (value, t) in stencil[place].iter_mut().zip(tensor) {
                 *value += coefficient * t;
