@@ -10,8 +10,8 @@ import pytest
 import ridgeform
 import shapes
 
-# One inner iteration on these meshes takes some tens of milliseconds; the rest is for busy machines.
-PATIENCE = 3.0
+# One inner iteration or factorisation here takes up to half a second; the rest is for busy machines.
+PATIENCE = 5.0
 
 
 @functools.cache
@@ -96,7 +96,10 @@ def test_cancel_raises_within_one_inner_iteration(call):
 @pytest.mark.parametrize("name", ["denoise", "interpolate"])
 def test_finish_returns_the_values_reached(name):
     running = Running(CALLS[name])
-    time.sleep(0.4)
+    running.until(lambda progress: progress.iteration > 0)
+    assert running.progress.stage
+    assert running.progress.energy > 0
+    assert running.progress.gap > 0
     running.progress.finish()
     assert running.end() < PATIENCE
     assert running.error is None
