@@ -17,7 +17,7 @@ PICTURES = ROOT / "docs/pictures"
 BUST_VIEW = (0.55, -1.0, 0.12)
 SPOT_VIEW = (-0.9, -1.0, 0.35)
 CUBE_VIEW = (0.6, -1.0, 0.6)
-STRENGTHS = {"bust": (0.2, 0.35, 0.5), "spot": (0.3, 0.5, 0.7)}
+STRENGTHS = {"bust": (0.35, 0.5, 0.65), "spot": (0.5, 0.65, 0.8)}
 SHARPNESSES = (0.0, 0.5, 1.0)
 
 
@@ -48,7 +48,7 @@ def hero() -> None:
     import pictures  # noqa: PLC0415
 
     vertices, faces = source("bust")
-    after = stylized(vertices, faces, strength=0.3, sharpness=0.7)
+    after = stylized(vertices, faces)
     look = {"view": BUST_VIEW, "size": (420, 560), "frame": vertices}
     row = [pictures.render(mesh, faces, **look) for mesh in (vertices, after)]
     pictures.sheet(PICTURES / "hero.png", [row])
@@ -96,7 +96,8 @@ def noisy_cube() -> None:
     import shapes  # noqa: PLC0415
 
     vertices, faces = shapes.noisy_cube(seed=0)
-    after = stylized(vertices, faces, steps=16, use_fidelity=True, fidelity=500.0, scale="max_edge")
+    paper = {"use_fidelity": True, "fidelity": 500.0, "scale": "max_edge"}
+    after = stylized(vertices, faces, steps=12, sharpness=0.5, **paper)
     look = {"view": CUBE_VIEW, "size": 400, "frame": vertices}
     row = [pictures.render(mesh, faces, **look) for mesh in (vertices, after)]
     errors = [shapes.root_mean_square(shapes.distance_to_cube(mesh)) for mesh in (vertices, after)]
