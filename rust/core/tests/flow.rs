@@ -87,8 +87,8 @@ fn nobody_else_moves() {
     let strength: Vec<f64> = (0..n).map(|i| if i % 3 == 1 { 0.0 } else { 1.0 }).collect();
     let options = StylizeOptions { fixed: Some(fixed), strength: Some(strength), ..strong(4) };
     let moved = flow(&shape, &options).vertices;
-    for i in 0..n {
-        assert_eq!(moved[i] == shape.vertices[i], i % 3 != 2, "vertex {i}");
+    for (i, (after, before)) in moved.iter().zip(&shape.vertices).enumerate() {
+        assert_eq!(after == before, i % 3 != 2, "vertex {i}");
     }
     let none = StylizeOptions { fixed: Some(vec![true; n]), ..strong(4) };
     let result = flow(&shape, &none);

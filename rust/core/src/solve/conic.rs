@@ -171,14 +171,14 @@ impl<const K: usize> Program<K> {
             value.push(-1.0);
             right.push(0.0);
             let (block_columns, entries) = reduced.free.operator.block(b);
-            for r in 0..BLOCK {
-                for c in 0..k {
+            for (r, constant) in constant.iter().enumerate() {
+                for (c, constant) in constant.iter().take(k).enumerate() {
                     for (&i, entry) in block_columns.iter().zip(entries) {
                         row.push(right.len());
                         column.push(c * n + i as usize);
                         value.push(-entry[r]);
                     }
-                    right.push(constant[r][c]);
+                    right.push(*constant);
                 }
             }
             cones.push(SecondOrderConeT(1 + BLOCK * k));

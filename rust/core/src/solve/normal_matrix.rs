@@ -137,9 +137,9 @@ mod tests {
         let expected = dense(&h, &r, &d);
         let pattern = normal.pattern();
         let mut seen = 0;
-        for j in 0..4 {
-            assert_eq!(pattern.rows[pattern.starts[j]], j, "the diagonal comes first");
-            for k in pattern.starts[j]..pattern.starts[j + 1] {
+        for (j, bounds) in pattern.starts.windows(2).enumerate() {
+            assert_eq!(pattern.rows[bounds[0]], j, "the diagonal comes first");
+            for k in bounds[0]..bounds[1] {
                 assert!((values[k] - expected[pattern.rows[k]][j]).abs() < 1e-13);
                 seen += usize::from(pattern.rows[k] != j) + 1;
             }

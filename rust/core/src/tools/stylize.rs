@@ -250,8 +250,8 @@ impl<'a> Flow<'a> {
 
     fn has_collapsed(&self, moved: &[[f64; 3]]) -> bool {
         let (size, area) = extent(self.connectivity, moved);
-        !(size >= COLLAPSED * self.size && area >= 0.1 * COLLAPSED * self.area)
-            || !moved.iter().flatten().all(|x| x.is_finite())
+        let sound = size >= COLLAPSED * self.size && area >= 0.1 * COLLAPSED * self.area;
+        !sound || !moved.iter().flatten().all(|x| x.is_finite())
     }
 
     /// Operator, mass and unit of the shape as it is now.
