@@ -299,9 +299,10 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
     /// How far it is: digits of the gap won, out of the digits asked for.
     fn report(&self, settings: &Settings, iterations: usize) -> Report {
         let gap = (self.best.primal - self.best.dual) / Problem::gap_scale(self.best.primal, self.floor);
-        let wanted = settings.tolerance.unwrap_or(RESIDUAL_GOAL);
+        // At least one digit, so that the logarithms are sound whatever was asked for.
+        let wanted = settings.tolerance.unwrap_or(RESIDUAL_GOAL).min(0.1);
         Report {
-            fraction: (gap.ln() / wanted.ln()).clamp(0.0, 1.0),
+            fraction: if gap > wanted { (gap.ln() / wanted.ln()).clamp(0.0, 1.0) } else { 1.0 },
             stage: "solving".into(),
             iteration: iterations,
             energy: Some(self.best.primal),
