@@ -84,7 +84,7 @@ def density() -> None:
     coarse, fine = source("spot_low_resolution"), source("spot")
     row, captions = [], []
     for vertices, faces in (coarse, shapes.subdivide(*coarse), fine, shapes.subdivide(*fine)):
-        after = stylized(vertices, faces)
+        after = stylized(vertices, faces, strength=0.7)
         row.append(pictures.render(after, faces, view=SPOT_VIEW, size=240, frame=vertices))
         captions.append(f"{len(vertices)} vertices")
     pictures.sheet(PICTURES / "density.png", [row], captions=[captions], text_pixels=13)
