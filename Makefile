@@ -8,7 +8,7 @@ help:
 	@echo "make demo        stylize a real scan in Blender, without a window: out/demo.png, out/demo.blend"
 	@echo "make test        all tests: Rust, the wheel, the extension in every Blender found"
 	@echo "make lint        formatting and lints of Rust and Python"
-	@echo "make bench       measure the Rust core"
+	@echo "make bench       measure against peers: benchmarks/results.md, the table in the README"
 	@echo "make wheel       build the Python wheel"
 	@echo "make extension   build and check the Blender extension: .ridgeform/extension/"
 	@echo "make fixtures    make the .blend files of blend_fixtures/ again"
@@ -24,7 +24,7 @@ lint:
 	$(RUN) scripts/lint.py
 
 bench:
-	cargo bench
+	$(RUN) benchmarks/run.py
 
 extension:
 	$(RUN) scripts/build_extension.py

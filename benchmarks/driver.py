@@ -1,0 +1,119 @@
+"""Build and run the Rust program that measures, or a Python peer; medians of what they print."""
+
+from __future__ import annotations
+
+import functools
+import json
+import os
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+from workspace import ROOT, STATE, digest, is_current, run
+
+MEASURE = ROOT / "target/release/examples/measure"
+ENVIRONMENT = STATE / "bench"
+REQUIREMENTS = ROOT / "benchmarks/requirements.txt"
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "RAYON_NUM_THREADS": "1"}
+CLARABEL = ("qdldl", "faer")
+"""The factorisations that Clarabel can use."""
+
+Record = dict[str, Any]
+
+
+def build() -> None:
+    """Build the Rust program."""
+    command = ["cargo", "build", "--release", "--locked", "--workspace", "--examples", "--quiet"]
+    run(command, "the program that measures", {"PYO3_PYTHON": sys.executable})
+
+
+@functools.cache
+def peer_python() -> Path:
+    """The interpreter of the environment that holds the peers; made on first use."""
+    python = ENVIRONMENT / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+    stamp = STATE / "bench.stamp"
+    wanted = digest([REQUIREMENTS], sys.version)
+    if not (is_current(stamp, wanted) and python.exists()):
+        run([sys.executable, "-m", "venv", "--clear", ENVIRONMENT], "environment for the peers")
+        install = [python, "-m", "pip", "install", "--disable-pip-version-check", "--quiet"]
+        run([*install, "-r", REQUIREMENTS], "packages of the peers")
+        stamp.write_text(wanted, encoding="utf-8")
+    return python
+
+
+def _answer(command: list[str | Path]) -> Record:
+    done = subprocess.run(
+        [str(word) for word in command],
+        cwd=ROOT,
+        env={**os.environ, **ONE_THREAD},
+        stdout=subprocess.PIPE,
+        check=True,
+        text=True,
+    )
+    return with_medians(json.loads(done.stdout))
+
+
+def with_medians(record: Record) -> Record:
+    """Replace the lists of times by their medians, and say how many there were."""
+    answer: Record = {}
+    for name, value in record.items():
+        if name.endswith("_s"):
+            answer[name] = statistics.median(value) if value else None
+        elif name == "rounds":
+            answer[name] = [with_medians(part) for part in value]
+        else:
+            answer[name] = value
+    if "wall_s" in record:
+        answer["runs"] = len(record["wall_s"])
+        # Where the system does not tell processor time, the clock has to do.
+        answer["seconds"] = answer["wall_s"] if answer["cpu_s"] is None else answer["cpu_s"]
+    return answer
+
+
+def measure(kind: str, folder: Path, **settings: object) -> Record:
+    """What the Rust program says of one problem; `settings` are its keys."""
+    return _answer([MEASURE, kind, folder, *(f"{key}={value}" for key, value in settings.items())])
+
+
+def peer(kind: str, folder: Path) -> Record:
+    """What a Python peer says of one problem."""
+    return _answer([peer_python(), ROOT / "benchmarks/peer.py", kind, folder])
+
+
+def gap_of(record: Record) -> float:
+    """The relative duality gap reached, of all steps the largest."""
+    return max(record["gaps"]) if "gaps" in record else record["gap"]
+
+
+def iterations_of(record: Record) -> int:
+    """The solver's iterations, of all steps together."""
+    count = record["iterations"]
+    return sum(count) if isinstance(count, list) else count
+
+
+def clarabel(kind: str, folder: Path, gap: float, **settings: object) -> Record:
+    """Clarabel with its better factorisation, stopped at its first iterate with a certified gap of `gap`.
+
+    Its own stopping rule also asks for feasibility and would go on for some iterations more: that is not
+    charged to it.
+    """
+    best: Record | None = None
+    for method in CLARABEL:
+        once = {**settings, "solver": method, "repeats": 1}
+        record = measure(kind, folder, tolerance=gap, **once)
+        if best is not None and record["seconds"] > 2 * best["seconds"]:
+            continue
+        count = iterations_of(record)
+        while count > 1:
+            earlier = measure(kind, folder, tolerance=gap, max_iterations=count - 1, **once)
+            if gap_of(earlier) > gap:
+                break
+            count -= 1
+        enough = {**settings, "solver": method, "max_iterations": count}
+        record = {**measure(kind, folder, tolerance=gap, **enough), "solver": f"clarabel_{method}"}
+        if best is None or record["seconds"] < best["seconds"]:
+            best = record
+    assert best is not None
+    return best

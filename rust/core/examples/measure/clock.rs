@@ -1,0 +1,74 @@
+//! Wall time, processor time and memory of this process.
+
+use std::time::Instant;
+
+use crate::input::Arguments;
+use crate::list;
+
+/// A sample lasts at least this long, in seconds: the scheduler counts in ticks of some milliseconds.
+const LEAST: f64 = 0.1;
+
+/// Repeated measurements of one thing, in seconds.
+pub struct Samples {
+    repeats: usize,
+    budget: f64,
+    /// By the clock on the wall.
+    pub wall: Vec<f64>,
+    /// Spent by the processor on all threads of this process; empty where the system does not tell.
+    pub cpu: Vec<f64>,
+}
+
+impl Samples {
+    /// As many as `repeats` says (5), or fewer once they have taken `budget` seconds (60) together.
+    pub fn new(arguments: &Arguments) -> Result<Self, Box<dyn std::error::Error>> {
+        let repeats = (arguments.number("repeats", 5.0)? as usize).max(1);
+        let budget = arguments.number("budget", 60.0)?;
+        Ok(Self { repeats, budget, wall: Vec::new(), cpu: Vec::new() })
+    }
+
+    /// Takes the samples and returns the last result of `work`. Short work is done several times per sample.
+    pub fn take<T, E>(&mut self, mut work: impl FnMut() -> Result<T, E>) -> Result<T, E> {
+        let mut times_per_sample = 1;
+        loop {
+            let (wall, cpu) = (Instant::now(), processor_time());
+            for _ in 1..times_per_sample {
+                work()?;
+            }
+            let result = work()?;
+            let elapsed = wall.elapsed().as_secs_f64();
+            if self.wall.is_empty() && elapsed < LEAST && times_per_sample == 1 {
+                times_per_sample = (LEAST / elapsed.max(1e-7)).ceil() as usize;
+                continue;
+            }
+            let each = 1.0 / times_per_sample as f64;
+            self.wall.push(each * elapsed);
+            self.cpu.extend(cpu.zip(processor_time()).map(|(before, after)| each * (after - before)));
+            if self.wall.len() >= self.repeats || self.wall.iter().sum::<f64>() > self.budget {
+                return Ok(result);
+            }
+        }
+    }
+
+    /// The two lists as JSON fields.
+    pub fn fields(&self) -> Vec<(&'static str, String)> {
+        vec![("wall_s", list(&self.wall)), ("cpu_s", list(&self.cpu))]
+    }
+}
+
+/// Seconds that the threads of this process have run, from the scheduler of Linux.
+fn processor_time() -> Option<f64> {
+    let mut nanoseconds = 0.0;
+    for task in std::fs::read_dir("/proc/self/task").ok()? {
+        let text = std::fs::read_to_string(task.ok()?.path().join("schedstat")).ok()?;
+        nanoseconds += text.split_whitespace().next()?.parse::<f64>().ok()?;
+    }
+    Some(1e-9 * nanoseconds)
+}
+
+/// The most memory that this process has held so far, in bytes; 0 where the system does not tell.
+pub fn peak_memory() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kilobytes = line.and_then(|rest| rest.split_whitespace().next()?.parse::<u64>().ok());
+    kilobytes.unwrap_or(0) * 1024
+}

@@ -1,0 +1,124 @@
+//! The quadratic problem on the same mesh, with the same Cholesky factorisation: what every solver is compared with.
+//!
+//! `min_u Σ_f A_f ‖H_f u‖²` with the values at `indices.u32` known (`fidelity=0`), or plus `α ‖u − u₀‖²_M`: one
+//! factorisation, one solve. Its parts are timed as well, in the order in which they run.
+
+use ridgeform_core::block_rows::BlockRows;
+use ridgeform_core::mesh::{triangle, Mesh};
+use ridgeform_core::operators::{voronoi_mass, Dual, HessianPattern};
+use ridgeform_core::solve::cholesky::Cholesky;
+use ridgeform_core::solve::normal_matrix::NormalMatrix;
+
+use crate::clock::Samples;
+use crate::input::{Arguments, Problem};
+use crate::{list, Outcome};
+
+/// The whole solution, from the mesh on, and its parts.
+pub fn measure(problem: &Problem, arguments: &Arguments) -> Outcome {
+    let mesh = problem.mesh()?;
+    let fidelity = arguments.number("fidelity", 0.0)?;
+    let known = if fidelity > 0.0 { Vec::new() } else { problem.known()?.0 };
+    let values = problem.values()?.data;
+    let mut whole = Samples::new(arguments)?;
+    whole.take(|| Quadratic::new(&mesh, &values, &known, fidelity)?.solve())?;
+
+    let mut quadratic = Quadratic::new(&mesh, &values, &known, fidelity)?;
+    let mut symbolic = Samples::new(arguments)?;
+    quadratic.cholesky = symbolic.take(|| Cholesky::analyse(quadratic.normal.pattern().clone(), 3))?;
+    let mut numeric = Samples::new(arguments)?;
+    numeric.take(|| quadratic.cholesky.factorise(&quadratic.entries))?;
+    let columns = [&quadratic.right[..]; 3].concat();
+    let n = quadratic.right.len();
+    let mut one = Samples::new(arguments)?;
+    one.take(|| quadratic.back_substitute(&columns[..n], 1))?;
+    let mut three = Samples::new(arguments)?;
+    three.take(|| quadratic.back_substitute(&columns, 3))?;
+    let mut fields = whole.fields();
+    fields.push(("factor_entries", quadratic.cholesky.factor_len().to_string()));
+    fields.extend([
+        ("symbolic_wall_s", list(&symbolic.wall)),
+        ("symbolic_cpu_s", list(&symbolic.cpu)),
+        ("numeric_wall_s", list(&numeric.wall)),
+        ("numeric_cpu_s", list(&numeric.cpu)),
+        ("solve_wall_s", list(&one.wall)),
+        ("solve_cpu_s", list(&one.cpu)),
+        ("solve_three_wall_s", list(&three.wall)),
+        ("solve_three_cpu_s", list(&three.cpu)),
+    ]);
+    Ok(fields)
+}
+
+/// The normal equations, ready to be factored.
+struct Quadratic {
+    right: Vec<f64>,
+    normal: NormalMatrix,
+    cholesky: Cholesky,
+    entries: Vec<f64>,
+}
+
+impl Quadratic {
+    fn new(mesh: &Mesh, values: &[f64], known: &[usize], fidelity: f64) -> Result<Self, Box<dyn std::error::Error>> {
+        let (connectivity, lengths) = (mesh.connectivity(), mesh.edge_lengths());
+        let whole = HessianPattern::new(connectivity).assemble(connectivity, lengths, Dual::Barycentric)?;
+        let areas = lengths.iter().map(|&l| triangle::area(l));
+        let per_face: Vec<f64> = areas.map(|a| if a > 0.0 { 1.0 / a } else { 0.0 }).collect();
+        let mass = voronoi_mass(connectivity, lengths);
+        let mut is_known = vec![false; values.len()];
+        known.iter().for_each(|&i| is_known[i] = true);
+        let (operator, constant) = without_columns(&whole, values, &is_known);
+        let free: Vec<usize> = (0..values.len()).filter(|&i| !is_known[i]).collect();
+        let mut right: Vec<f64> = free.iter().map(|&i| fidelity * mass[i] * values[i]).collect();
+        for (b, constant) in constant.iter().enumerate() {
+            let (columns, entries) = operator.block(b);
+            for (&column, entry) in columns.iter().zip(entries) {
+                let product: f64 = entry.iter().zip(constant).map(|(x, y)| x * y).sum();
+                right[column as usize] -= per_face[b] * product;
+            }
+        }
+        let diagonal: Vec<f64> = free.iter().map(|&i| fidelity * mass[i]).collect();
+        let normal = NormalMatrix::new(&operator);
+        let cholesky = Cholesky::analyse(normal.pattern().clone(), 1)?;
+        let mut entries = Vec::new();
+        normal.assemble(&operator, &per_face, &diagonal, &mut entries);
+        Ok(Self { right, normal, cholesky, entries })
+    }
+
+    fn back_substitute(&mut self, columns: &[f64], k: usize) -> Result<Vec<f64>, std::convert::Infallible> {
+        let mut solution = columns.to_vec();
+        self.cholesky.solve(&mut solution, k);
+        Ok(solution)
+    }
+
+    fn solve(mut self) -> Result<Vec<f64>, Box<dyn std::error::Error>> {
+        self.cholesky.factorise(&self.entries)?;
+        self.cholesky.solve(&mut self.right, 1);
+        Ok(self.right)
+    }
+}
+
+/// The operator on the unknown vertices, and what the known ones contribute to each block.
+fn without_columns(whole: &BlockRows, values: &[f64], is_known: &[bool]) -> (BlockRows, Vec<[f64; 3]>) {
+    let mut place = vec![0u32; is_known.len()];
+    let mut n_free = 0;
+    for (place, _) in place.iter_mut().zip(is_known).filter(|(_, known)| !**known) {
+        *place = n_free;
+        n_free += 1;
+    }
+    let mut kept = BlockRows { n_columns: n_free as usize, starts: vec![0], columns: vec![], values: vec![] };
+    let mut constant = vec![[0.0; 3]; whole.n_blocks()];
+    for (b, constant) in constant.iter_mut().enumerate() {
+        let (columns, entries) = whole.block(b);
+        for (&column, entry) in columns.iter().zip(entries) {
+            if is_known[column as usize] {
+                for (sum, v) in constant.iter_mut().zip(entry) {
+                    *sum += v * values[column as usize];
+                }
+            } else {
+                kept.columns.push(place[column as usize]);
+                kept.values.push(*entry);
+            }
+        }
+        kept.starts.push(kept.columns.len());
+    }
+    (kept, constant)
+}
