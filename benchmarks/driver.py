@@ -8,6 +8,7 @@ import os
 import statistics
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -93,27 +94,27 @@ def iterations_of(record: Record) -> int:
     return sum(count) if isinstance(count, list) else count
 
 
-def clarabel(kind: str, folder: Path, gap: float, **settings: object) -> Record:
-    """Clarabel with its better factorisation, stopped at its first iterate with a certified gap of `gap`.
+def clarabel(kind: str, folder: Path, gaps: Sequence[float], **settings: object) -> list[Record]:
+    """Clarabel with its faster factorisation, stopped at its first iterate with each certified gap (falling).
 
     Its own stopping rule also asks for feasibility and would go on for some iterations more: that is not
     charged to it.
     """
-    best: Record | None = None
-    for method in CLARABEL:
-        once = {**settings, "solver": method, "repeats": 1}
-        record = measure(kind, folder, tolerance=gap, **once)
-        if best is not None and record["seconds"] > 2 * best["seconds"]:
-            continue
-        count = iterations_of(record)
-        while count > 1:
-            earlier = measure(kind, folder, tolerance=gap, max_iterations=count - 1, **once)
-            if gap_of(earlier) > gap:
-                break
+    trials = {
+        method: measure(
+            kind, folder, tolerance=gaps[-1], solver=method, repeats=1, max_iterations=2, **settings
+        )
+        for method in CLARABEL
+    }
+    method = min(trials, key=lambda name: trials[name]["seconds"])
+    settings |= {"solver": method, "tolerance": gaps[-1]}
+    last = measure(kind, folder, repeats=1, **settings)
+    count, reached = iterations_of(last), gap_of(last)
+    records = []
+    for gap in reversed(gaps):
+        while count > 1 and reached <= gap:
             count -= 1
-        enough = {**settings, "solver": method, "max_iterations": count}
-        record = {**measure(kind, folder, tolerance=gap, **enough), "solver": f"clarabel_{method}"}
-        if best is None or record["seconds"] < best["seconds"]:
-            best = record
-    assert best is not None
-    return best
+            reached = gap_of(measure(kind, folder, repeats=1, max_iterations=count, **settings))
+        found = measure(kind, folder, max_iterations=count + 1, **settings)
+        records.append({**found, "solver": f"clarabel_{method}"})
+    return records[::-1]

@@ -75,7 +75,6 @@ def noisy_cube(n: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
 MESHES = {
     "cube, noisy": lambda: noisy_cube(20),
     "bust": lambda: source("bust"),
-    "Spot": lambda: source("spot"),
     "bust, split": lambda: shapes.subdivide(*source("bust")),
     "cube, noisy, large": lambda: noisy_cube(98),
 }

@@ -40,8 +40,8 @@ def _named(problem: Problem) -> Record:
 
 def _beside(record: Record, kind: str, folder: Path, n_vertices: int, **settings: object) -> Record:
     if n_vertices <= LARGEST_FOR_CLARABEL:
-        record["clarabel"] = clarabel(kind, folder, GAP, **settings)
-        record["clarabel_exact"] = clarabel(kind, folder, EXACT, **settings)
+        both = clarabel(kind, folder, (GAP, EXACT), **settings)
+        record["clarabel"], record["clarabel_exact"] = both
     return record
 
 

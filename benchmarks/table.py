@@ -168,7 +168,7 @@ SECTIONS = {
     "flow_step": (
         "One flow step",
         "Three coordinates, one norm per face over all of them, from a cold start, fidelity 500 in units of"
-        " the longest edge, sharpness 0.5. Everything is counted, from the mesh on. Clarabel: the better of"
+        " the longest edge, sharpness 0.5. Everything is counted, from the mesh on. Clarabel: the faster of"
         " its factorisations `qdldl` and `faer`, stopped at its first iterate whose gap, computed in the same"
         " way, is small enough.",
         flow_steps,
