@@ -180,7 +180,7 @@ def test_seams_do_not_tear():
     left = [[v + 15 if 10 <= v < 15 else v for v in quad] if min(quad) >= 10 else quad for quad in quads]
     obj = kit.add_object("Split", split, left)
     whole = kit.add_object("Whole", vertices, quads)
-    bpy.ops.ridgeform.stylize(steps=STEPS)
+    bpy.ops.ridgeform.stylize(steps=STEPS, strength=1.0)
     assert kit.same_bits(kit.coordinates(obj)[25:], kit.coordinates(obj)[10:15])
     obj.select_set(True)
     assert np.abs(kit.coordinates(whole) - vertices).max() > 1e-3
