@@ -9,7 +9,7 @@ use ridgeform_core::shapes;
 use ridgeform_core::solve::cholesky::Cholesky;
 use ridgeform_core::solve::cones::{shrink, Block};
 use ridgeform_core::solve::normal_matrix::NormalMatrix;
-use ridgeform_core::solve::{Columns, Coupling, FreeOperator, Problem, Reduced};
+use ridgeform_core::solve::{Columns, Coupling, FreeOperator, Problem, Reduced, Transposed};
 use ridgeform_core::tools::{stylize, SolveOptions, StylizeOptions};
 
 fn solver(criterion: &mut Criterion) {
@@ -55,12 +55,11 @@ fn solver(criterion: &mut Criterion) {
         coupling: Coupling::Joint,
     };
     let free = FreeOperator::new(&operator, &problem.fixed);
-    let reduced = Reduced::<3>::new(&problem, &free, &[0, 1, 2]).unwrap();
+    let transposed = Transposed::new(&operator);
+    let reduced = Reduced::<3>::new(&problem, &free, &transposed, &[0, 1, 2]).unwrap();
     let (mut h, mut g): (Vec<Block<3>>, Vec<[f64; 3]>) = (Vec::new(), Vec::new());
     group.bench_function("product with H", |bencher| bencher.iter(|| reduced.apply(&reduced.target, &mut h)));
-    group.bench_function("product with the transpose", |bencher| {
-        bencher.iter(|| reduced.apply_transposed(|b| h[b], &mut g))
-    });
+    group.bench_function("product with the transpose", |bencher| bencher.iter(|| reduced.apply_transposed(&h, &mut g)));
     let mut z = vec![[[0.0; 3]; BLOCK]; h.len()];
     group.bench_function("shrinkage", |bencher| {
         bencher.iter(|| z.iter_mut().zip(&h).for_each(|(z, h)| *z = shrink(h, 0.01)));

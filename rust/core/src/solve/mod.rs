@@ -22,6 +22,7 @@ pub use columns::Columns;
 pub use fast_solver::{FastSolver, MAX_JOINT_COLUMNS};
 pub use problem::{Coupling, Problem, Settings, Solution, Solver, Status};
 pub use reduced::{FreeOperator, Reduced};
+pub use transposed::Transposed;
 
 use crate::{Progress, Result};
 use fast_solver::Method;
