@@ -103,7 +103,7 @@ fn certified<const K: usize>(
     let floor = reduced.floor(&at_target);
     let bound = |q: &[Block<K>]| {
         let mut g = Vec::new();
-        reduced.apply_transposed(|b| q[b], &mut g);
+        reduced.apply_transposed(q, &mut g);
         if let Some(constraints) = &reduced.constraints {
             constraints.add_transposed(y, &mut g);
         }

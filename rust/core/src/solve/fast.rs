@@ -110,6 +110,8 @@ struct Run<'r, 's, const K: usize> {
     u: Vec<[f64; K]>,
     previous: Vec<[f64; K]>,
     h: Vec<Block<K>>,
+    /// `R(z − c) − p` of the last step.
+    split: Vec<Block<K>>,
     right: Vec<[f64; K]>,
     y: Vec<[f64; K]>,
     floor: f64,
@@ -157,6 +159,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             u,
             previous,
             h,
+            split: Vec::new(),
             right: Vec::new(),
             y: Vec::new(),
             floor,
@@ -210,13 +213,15 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
 
     fn step_u(&mut self) {
         let (r, z, p, c) = (&self.r, &self.z, &self.p, &self.reduced.constant);
-        self.reduced.apply_transposed(
-            |b| {
+        (0..z.len())
+            .into_par_iter()
+            .with_min_len(GRAIN)
+            .map(|b| {
                 let split = combine(r[b], &z[b], -r[b], &c[b]);
                 combine(1.0, &split, -1.0, &p[b])
-            },
-            &mut self.right,
-        );
+            })
+            .collect_into_vec(&mut self.split);
+        self.reduced.apply_transposed(&self.split, &mut self.right);
         self.previous.clone_from(&self.u);
         self.y = self.system.solve(&self.reduced, &self.right, &mut self.u);
         self.reduced.apply(&self.u, &mut self.h);
@@ -269,7 +274,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             return;
         }
         let mut g = Vec::new();
-        self.reduced.apply_transposed(|b| self.p[b], &mut g);
+        self.reduced.apply_transposed(&self.p, &mut g);
         if let Some(constraints) = &self.reduced.constraints {
             constraints.add_transposed(&self.y, &mut g);
         }

@@ -7,6 +7,7 @@ use crate::solve::fast::{self, Outcome, Warm};
 use crate::solve::problem::{Coupling, Problem, Settings, Solution, Solver, Status};
 use crate::solve::reduced::{FreeOperator, Reduced};
 use crate::solve::system::System;
+use crate::solve::transposed::Transposed;
 use crate::solve::Columns;
 use crate::{Error, Result};
 
@@ -24,6 +25,7 @@ pub struct FastSolver {
 #[derive(Debug)]
 struct Structure {
     free: FreeOperator,
+    transposed: Transposed,
     system: Option<System>,
 }
 
@@ -120,7 +122,8 @@ impl FastSolver {
                 s.free = free;
             }
             structure => {
-                *structure = Some(Structure { free, system: None });
+                let transposed = Transposed::new(&free.operator);
+                *structure = Some(Structure { free, transposed, system: None });
             }
         }
     }
@@ -136,7 +139,7 @@ impl FastSolver {
         let Some(structure) = &mut self.structure else {
             return Ok(());
         };
-        let reduced = Reduced::<K>::new(problem, &structure.free, columns)?;
+        let reduced = Reduced::<K>::new(problem, &structure.free, &structure.transposed, columns)?;
         if reduced.n() == 0 {
             total.add_fixed(&reduced);
             return Ok(());

@@ -17,6 +17,7 @@ pub mod penalty;
 mod problem;
 mod reduced;
 pub mod system;
+mod transposed;
 
 pub use columns::Columns;
 pub use fast_solver::{FastSolver, MAX_JOINT_COLUMNS};

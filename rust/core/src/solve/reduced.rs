@@ -5,14 +5,12 @@ use crate::error::SolveError;
 use crate::solve::cones::{norm, Block};
 use crate::solve::linear_constraints::LinearConstraints;
 use crate::solve::problem::Problem;
+use crate::solve::transposed::Transposed;
 use crate::solve::Columns;
 use rayon::prelude::*;
 
 /// Blocks or rows that one thread takes at least: below that the hand-over costs more than the work.
 pub const GRAIN: usize = 4096;
-
-/// A transposed product has at most this many partial sums, each as long as the result.
-const MOST_PARTS: usize = 4;
 
 /// The free rows of the operator, shared by all columns of a problem.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,6 +55,8 @@ impl FreeOperator {
 pub struct Reduced<'a, const K: usize> {
     /// `H` and who is free.
     pub free: &'a FreeOperator,
+    /// The transposed access to `H`.
+    pub transposed: &'a Transposed,
     /// `c`: what the fixed rows contribute.
     pub constant: Vec<Block<K>>,
     /// `w`.
@@ -74,7 +74,12 @@ impl<'a, const K: usize> Reduced<'a, K> {
     ///
     /// # Errors
     /// [`SolveError::Infeasible`] when a linear constraint speaks of fixed rows only and contradicts them.
-    pub fn new(problem: &'a Problem<'_>, free: &'a FreeOperator, columns: &[usize]) -> Result<Self, SolveError> {
+    pub fn new(
+        problem: &'a Problem<'_>,
+        free: &'a FreeOperator,
+        transposed: &'a Transposed,
+        columns: &[usize],
+    ) -> Result<Self, SolveError> {
         let row_of = |i: usize| -> [f64; K] {
             std::array::from_fn(|c| columns.get(c).map_or(0.0, |&column| problem.target.column(column)[i]))
         };
@@ -95,7 +100,7 @@ impl<'a, const K: usize> Reduced<'a, K> {
             None => None,
             Some((matrix, right)) => Some(LinearConstraints::new(matrix, right, free, columns, &row_of)?),
         };
-        Ok(Self { free, constant, weights: &problem.weights, fidelity, target, constraints })
+        Ok(Self { free, transposed, constant, weights: &problem.weights, fidelity, target, constraints })
     }
 
     /// Number of free rows.
@@ -121,37 +126,9 @@ impl<'a, const K: usize> Reduced<'a, K> {
             .collect_into_vec(out);
     }
 
-    /// `out = Hᵀ y`, for a `y` given block by block.
-    ///
-    /// The blocks are cut into parts that depend on their number only, each with a sum of its own, so that the result
-    /// does not depend on the number of threads.
-    pub fn apply_transposed(&self, y: impl Fn(usize) -> Block<K> + Sync, out: &mut Vec<[f64; K]>) {
-        let m = self.constant.len();
-        let size = m.div_ceil(MOST_PARTS).max(GRAIN);
-        let parts: Vec<Vec<[f64; K]>> = (0..m.div_ceil(size))
-            .into_par_iter()
-            .map(|part| {
-                let mut sum = vec![[0.0; K]; self.n()];
-                for b in part * size..((part + 1) * size).min(m) {
-                    let at = y(b);
-                    let (columns, values) = self.free.operator.block(b);
-                    for (&column, value) in columns.iter().zip(values) {
-                        let row = &mut sum[column as usize];
-                        for (v, x) in value.iter().zip(&at) {
-                            row.iter_mut().zip(x).for_each(|(s, x)| *s += v * x);
-                        }
-                    }
-                }
-                sum
-            })
-            .collect();
-        let mut parts = parts.into_iter();
-        *out = parts.next().unwrap_or_else(|| vec![[0.0; K]; self.n()]);
-        for part in parts {
-            for (sum, more) in out.iter_mut().zip(&part) {
-                sum.iter_mut().zip(more).for_each(|(s, x)| *s += x);
-            }
-        }
+    /// `out = Hᵀ y`.
+    pub fn apply_transposed(&self, y: &[Block<K>], out: &mut Vec<[f64; K]>) {
+        self.transposed.apply(&self.free.operator, y, out);
     }
 
     /// The objective at `u`, where `h = H u + c`.
