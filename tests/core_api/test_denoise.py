@@ -130,7 +130,7 @@ def test_contradictory_constraints_have_no_answer(sphere):
     [
         ({"fidelity": -1.0}, "fidelity: "),
         ({"fidelity": np.nan}, "fidelity: "),
-        ({"energy": "l2_hessian"}, 'energy: "l2_hessian" is not known here; use "l1_hessian"'),
+        ({"energy": "h2"}, 'energy: "h2" is not known here; use "l1_hessian"'),
         ({"dual": "voronoi"}, 'dual: "voronoi" .*use "barycentric" or "circumcentric"'),
         ({"coupling": "none"}, 'coupling: .*use "joint" or "separate"'),
         ({"solver": "mosek"}, 'solver: "mosek" .*use "auto" or "fast" or "clarabel"'),

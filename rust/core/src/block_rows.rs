@@ -17,6 +17,27 @@ pub struct BlockRows {
 }
 
 impl BlockRows {
+    /// A matrix with columns and no blocks yet.
+    #[must_use]
+    pub fn empty(n_columns: usize) -> Self {
+        Self { n_columns, starts: vec![0], columns: Vec::new(), values: Vec::new() }
+    }
+
+    /// Appends a block with these `(column, row values)`, in any order; values of a repeated column add up.
+    pub fn push_block(&mut self, entries: impl IntoIterator<Item = (u32, [f64; BLOCK])>) {
+        let mut sorted: Vec<(u32, [f64; BLOCK])> = entries.into_iter().collect();
+        sorted.sort_by_key(|&(column, _)| column);
+        for same in sorted.chunk_by(|a, b| a.0 == b.0) {
+            let mut sum = [0.0; BLOCK];
+            for (_, value) in same {
+                sum.iter_mut().zip(value).for_each(|(s, v)| *s += v);
+            }
+            self.columns.push(same[0].0);
+            self.values.push(sum);
+        }
+        self.starts.push(self.columns.len());
+    }
+
     /// Number of blocks.
     #[must_use]
     pub fn n_blocks(&self) -> usize {

@@ -91,7 +91,7 @@ pub enum MeshError {
     #[error("the mesh has no face with positive area; nothing can be computed on it")]
     NoFaces,
     /// A dual edge has no length, so the circumcentric Hessian does not exist.
-    #[error("faces {face} and {neighbour} have the same circumcentre: the circumcentric dual edge has no length; use barycentric duals")]
+    #[error("faces {face} and {neighbour} have the same circumcentre: the circumcentric dual edge has no length; use barycentric duals, or circumcentric_or_barycentric to replace such edges only")]
     ZeroDualEdge {
         /// One face.
         face: usize,

@@ -39,7 +39,7 @@ fn gradient(p: [V; 3], u: [f64; 3]) -> V {
 fn centre(p: [V; 3], dual: Dual) -> V {
     match dual {
         Dual::Barycentric => [0, 1, 2].map(|k| (p[0][k] + p[1][k] + p[2][k]) / 3.0),
-        Dual::Circumcentric => {
+        Dual::Circumcentric | Dual::CircumcentricOrBarycentric => {
             let (a, b) = (sub(p[1], p[0]), sub(p[2], p[0]));
             let n = cross(a, b);
             let (u, v) = (cross(b, n), cross(n, a));

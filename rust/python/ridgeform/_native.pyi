@@ -8,8 +8,15 @@ from numpy.typing import ArrayLike, NDArray
 Floats: TypeAlias = NDArray[np.float64]
 Indices: TypeAlias = NDArray[np.int32]
 Coupling: TypeAlias = Literal["joint", "separate"]
-Dual: TypeAlias = Literal["barycentric", "circumcentric"]
-Energy: TypeAlias = Literal["l1_hessian"]
+Dual: TypeAlias = Literal["barycentric", "circumcentric", "circumcentric_or_barycentric"]
+Energy: TypeAlias = Literal[
+    "l1_hessian",
+    "l2_hessian",
+    "l2_curved_hessian",
+    "l2_laplacian",
+    "l1_hessian_stein2018",
+    "l1_edge_laplacian",
+]
 Scale: TypeAlias = Literal["max_edge", "bounding_box", "area"]
 Solver: TypeAlias = Literal["auto", "fast", "clarabel", "clarabel-qdldl", "clarabel-faer"]
 # A SciPy sparse matrix has no type here: the wheel does not depend on SciPy.
@@ -123,7 +130,12 @@ class Stylized:
 def hessian(mesh: Mesh, *, dual: Dual = "barycentric") -> SparseMatrix: ...
 def hessian_norm(mesh: Mesh, values: ArrayLike, *, dual: Dual = "barycentric") -> Floats: ...
 def energy(
-    mesh: Mesh, values: ArrayLike, *, kind: Energy = "l1_hessian", dual: Dual = "barycentric"
+    mesh: Mesh,
+    values: ArrayLike,
+    *,
+    kind: Energy = "l1_hessian",
+    face_weights: ArrayLike | None = None,
+    dual: Dual = "barycentric",
 ) -> float: ...
 def voronoi_mass(mesh: Mesh) -> Floats: ...
 def cotangent_laplacian(mesh: Mesh) -> SparseMatrix: ...

@@ -6,11 +6,11 @@ use ridgeform_core::tools;
 use crate::mesh::Mesh;
 use crate::progress::{handle, Progress};
 use crate::solution::Solution;
-use crate::{arrays, columns, doorway, matrix, options};
+use crate::{arrays, columns, doorway, options};
 
-/// Minimise the L1 Hessian energy of functions plus `fidelity` times their squared distance to `values`.
+/// Minimise an energy of functions plus `fidelity` times their squared distance to `values`.
 ///
-/// Solves min_u Σ_f w_f ‖(H u)_f‖ + fidelity (u - values)ᵀ M (u - values), M the Voronoi mass, subject to A u = b; with
+/// Solves min_u E(u) + fidelity (u - values)ᵀ M (u - values), M the Voronoi mass, subject to A u = b; with
 /// several columns see `coupling`.
 ///
 /// Parameters
@@ -18,14 +18,17 @@ use crate::{arrays, columns, doorway, matrix, options};
 /// mesh : Mesh
 /// values : (n,) or (n,k) array, one row for each vertex
 /// fidelity : float > 0, in energy per area and squared value: twice as large a mesh wants a quarter of it
-/// energy : "l1_hessian"
+/// energy : "l1_hessian" (sharp ridges), "l2_hessian", "l2_curved_hessian" or "l2_laplacian" (smooth), "l1_hessian_stein2018",
+///     "l1_edge_laplacian"; see `energy`
 /// fixed : vertices that keep their values: (n,) booleans or (j,) indices
-/// face_weights : (m,) array w ≥ 0, 1 where None
+/// face_weights : (m,) array w ≥ 0, 1 where None; energies on vertices and edges take the mean of the faces around them
 /// linear_constraints : (A, b) with A (p,n): SparseMatrix, SciPy sparse matrix or array, and b (p,) or (p,k)
 /// coupling : "joint" (one norm for all columns) or "separate" (each column is a problem of its own)
-/// dual : "barycentric" or "circumcentric" dual edges
-/// sharpness : 0 (the convex problem) to 1, reweighted rounds that concentrate curvature
-/// solver : "auto", "fast", "clarabel", "clarabel-qdldl" or "clarabel-faer"
+/// dual : "barycentric", "circumcentric" (MeshError where a dual edge has no length) or "circumcentric_or_barycentric"
+///     (barycentres for such edges); for "l1_hessian" only
+/// sharpness : 0 (the convex problem) to 1, reweighted rounds that concentrate curvature; for "l1_hessian" only
+/// solver : "auto", "fast", "clarabel", "clarabel-qdldl" or "clarabel-faer"; "auto" alone for quadratic energies, which take
+///     one sparse factorisation
 /// tolerance : certified relative gap to reach; None stops on residuals and reports the gap reached
 /// max_iterations, threads : int or None
 /// progress : Progress or None
@@ -64,20 +67,21 @@ pub fn denoise(
     threads: Option<i64>,
     progress: Option<&Bound<'_, Progress>>,
 ) -> PyResult<Solution> {
-    options::only_l1_hessian(py, "energy", energy)?;
-    let (n, m) = (mesh.n_vertices(), mesh.n_faces());
+    let n = mesh.n_vertices();
     let values = columns::read("values", values, n, "vertex")?;
+    let scalar = options::Scalar {
+        energy,
+        face_weights,
+        linear_constraints,
+        coupling,
+        dual,
+        sharpness,
+        solve: options::solve(py, solver, tolerance, max_iterations, threads)?,
+    };
     let options = tools::DenoiseOptions {
         fidelity,
         fixed: fixed.map(|given| arrays::mask("fixed", given, n, "vertex")).transpose()?,
-        face_weights: options::weights("face_weights", face_weights, m, "face")?,
-        linear_constraints: linear_constraints
-            .map(|(a, b)| matrix::read_constraints(&a, &b, n, values.columns.n_columns))
-            .transpose()?,
-        coupling: options::coupling(py, coupling)?,
-        dual: options::dual(py, dual)?,
-        sharpness,
-        solve: options::solve(py, solver, tolerance, max_iterations, threads)?,
+        scalar: scalar.read(py, mesh, values.columns.n_columns)?,
     };
     let progress = handle(progress);
     let solution = doorway::call(py, &progress, || tools::denoise(mesh.inner(), &values.columns, &options, &progress))?;

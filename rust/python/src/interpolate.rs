@@ -6,24 +6,27 @@ use ridgeform_core::tools;
 use crate::mesh::Mesh;
 use crate::progress::{handle, Progress};
 use crate::solution::Solution;
-use crate::{arrays, columns, doorway, matrix, options};
+use crate::{arrays, columns, doorway, options};
 
-/// Minimise the L1 Hessian energy of functions that take given values at given vertices.
+/// Minimise an energy of functions that take given values at given vertices.
 ///
-/// Solves min_u Σ_f w_f ‖(H u)_f‖ subject to u[indices] = values and A u = b; with several columns see `coupling`.
+/// Solves min_u E(u) subject to u[indices] = values and A u = b; with several columns see `coupling`.
 ///
 /// Parameters
 /// ----------
 /// mesh : Mesh
 /// indices : (j,) array of vertex indices
 /// values : (j,) or (j,k) array, one row for each index
-/// energy : "l1_hessian"
-/// face_weights : (m,) array w ≥ 0, 1 where None
+/// energy : "l1_hessian" (sharp ridges), "l2_hessian", "l2_curved_hessian" or "l2_laplacian" (smooth), "l1_hessian_stein2018",
+///     "l1_edge_laplacian"; see `energy`
+/// face_weights : (m,) array w ≥ 0, 1 where None; energies on vertices and edges take the mean of the faces around them
 /// linear_constraints : (A, b) with A (p,n): SparseMatrix, SciPy sparse matrix or array, and b (p,) or (p,k)
 /// coupling : "joint" (one norm for all columns) or "separate" (each column is a problem of its own)
-/// dual : "barycentric" or "circumcentric" dual edges
-/// sharpness : 0 (the convex problem) to 1, reweighted rounds that concentrate curvature
-/// solver : "auto", "fast", "clarabel", "clarabel-qdldl" or "clarabel-faer"
+/// dual : "barycentric", "circumcentric" (MeshError where a dual edge has no length) or "circumcentric_or_barycentric"
+///     (barycentres for such edges); for "l1_hessian" only
+/// sharpness : 0 (the convex problem) to 1, reweighted rounds that concentrate curvature; for "l1_hessian" only
+/// solver : "auto", "fast", "clarabel", "clarabel-qdldl" or "clarabel-faer"; "auto" alone for quadratic energies, which take
+///     one sparse factorisation
 /// tolerance : certified relative gap to reach; None stops on residuals and reports the gap reached
 /// max_iterations, threads : int or None
 /// progress : Progress or None
@@ -61,20 +64,18 @@ pub fn interpolate(
     threads: Option<i64>,
     progress: Option<&Bound<'_, Progress>>,
 ) -> PyResult<Solution> {
-    options::only_l1_hessian(py, "energy", energy)?;
-    let (n, m) = (mesh.n_vertices(), mesh.n_faces());
-    let indices = arrays::indices("indices", indices, n, "vertex")?;
+    let indices = arrays::indices("indices", indices, mesh.n_vertices(), "vertex")?;
     let values = columns::read("values", values, indices.len(), "index")?;
-    let options = tools::InterpolateOptions {
-        face_weights: options::weights("face_weights", face_weights, m, "face")?,
-        linear_constraints: linear_constraints
-            .map(|(a, b)| matrix::read_constraints(&a, &b, n, values.columns.n_columns))
-            .transpose()?,
-        coupling: options::coupling(py, coupling)?,
-        dual: options::dual(py, dual)?,
+    let scalar = options::Scalar {
+        energy,
+        face_weights,
+        linear_constraints,
+        coupling,
+        dual,
         sharpness,
         solve: options::solve(py, solver, tolerance, max_iterations, threads)?,
     };
+    let options = scalar.read(py, mesh, values.columns.n_columns)?;
     let progress = handle(progress);
     let solution = doorway::call(py, &progress, || {
         tools::interpolate(mesh.inner(), &indices, &values.columns, &options, &progress)

@@ -12,7 +12,8 @@ use crate::{columns, doorway, options};
 /// The surface Hessian H = M_F T C G, a SparseMatrix (4m,n): rows xx, xy, yx, yy per face, times the face's area.
 ///
 /// The face's frame has its x axis from corner 0 to corner 1. The entries have no unit: scaling the mesh changes nothing.
-/// `dual`: "barycentric" or "circumcentric" dual edges. Raises MeshError where a circumcentric dual edge has no length.
+/// `dual`: "barycentric" dual edges, "circumcentric" ones, which raise MeshError where one has no length, or
+/// "circumcentric_or_barycentric", which takes barycentres for such edges.
 ///
 /// Source: Rowe et al. 2024, eq. (30).
 #[pyfunction]
@@ -42,19 +43,43 @@ pub fn hessian_norm<'py>(
     Ok(norms.into_pyarray(py))
 }
 
-/// The energy Σ_f A_f ‖H_f(u)‖ of values u, (n,) or (n,k), in the unit of the values.
+/// The energy of values u, (n,) or (n,k).
 ///
-/// Several columns share one norm a face (joint). `kind`: "l1_hessian". Raises ArgumentError for another kind and for values
-/// of another shape, MeshError as `hessian`.
+/// Several columns share one norm a face, edge or entry (joint); the quadratic energies of columns add up.
 ///
-/// Source: Rowe et al. 2024, eq. (18).
+/// Parameters
+/// ----------
+/// mesh : Mesh
+/// values : (n,) or (n,k) array, one row for each vertex
+/// kind : which energy:
+///     "l1_hessian"            Σ_f A_f ‖H_f(u)‖, in the unit of the values: Rowe et al. 2024, eq. (18)
+///     "l2_hessian"            ½ ∫ ‖H_u‖² in space, natural boundary conditions: Stein et al. 2018b
+///     "l2_curved_hessian"     ½ ∫ ‖∇du‖² + κ |du|², intrinsic, natural boundary conditions: Stein et al. 2020a
+///     "l2_laplacian"          ½ ∫ |Δu|², zero Neumann boundary conditions
+///     "l1_hessian_stein2018"  Σ |entries| of the Hessian in space, depends on the axes: Stein et al. 2018b
+///     "l1_edge_laplacian"     Σ_e |D(e) u|, the area-based edge operator: He and Schaefer 2013
+/// face_weights : (m,) array, 1 where None; energies on vertices and edges take the mean of the faces around them
+/// dual : dual edges of "l1_hessian": "barycentric", "circumcentric" or "circumcentric_or_barycentric"
+///
+/// Raises
+/// ------
+/// ArgumentError; MeshError as `hessian`, and for energies in space of a mesh without positions
 #[pyfunction]
-#[pyo3(signature = (mesh, values, *, kind="l1_hessian", dual="barycentric"))]
-pub fn energy(py: Python<'_>, mesh: &Mesh, values: &Bound<'_, PyAny>, kind: &str, dual: &str) -> PyResult<f64> {
-    options::only_l1_hessian(py, "kind", kind)?;
-    let dual = options::dual(py, dual)?;
+#[pyo3(signature = (mesh, values, *, kind="l1_hessian", face_weights=None, dual="barycentric"))]
+pub fn energy(
+    py: Python<'_>,
+    mesh: &Mesh,
+    values: &Bound<'_, PyAny>,
+    kind: &str,
+    face_weights: Option<&Bound<'_, PyAny>>,
+    dual: &str,
+) -> PyResult<f64> {
+    let (energy, dual) = (options::energy(py, "kind", kind)?, options::dual(py, dual)?);
+    let weights = options::weights("face_weights", face_weights, mesh.n_faces(), "face")?;
     let values = columns::read("values", values, mesh.n_vertices(), "vertex")?.columns;
-    doorway::call_briefly(py, || operators::energy(mesh.inner(), &values.data, dual))
+    doorway::call_briefly(py, || {
+        operators::EnergyForm::new(energy, mesh.inner(), weights.as_deref(), dual)?.evaluate(&values.data)
+    })
 }
 
 /// The mixed Voronoi area of every vertex, (n,) float64: the diagonal of the lumped mass matrix; they sum to the total area.

@@ -1,12 +1,14 @@
 //! The keywords that several functions share, from Python's words and numbers to the core's types.
 
 use pyo3::prelude::*;
-use ridgeform_core::operators::Dual;
+use ridgeform_core::operators::{Dual, Energy};
 use ridgeform_core::solve::{Coupling, Solver};
-use ridgeform_core::tools::SolveOptions;
+use ridgeform_core::tools::{ScalarOptions, SolveOptions};
 
 use crate::arrays::finite_floats;
 use crate::errors::argument;
+use crate::matrix;
+use crate::mesh::Mesh;
 
 /// The value that goes with the word `given`.
 ///
@@ -19,12 +21,12 @@ pub fn choice<T: Copy>(py: Python<'_>, name: &'static str, given: &str, accepted
     })
 }
 
-/// `energy=` and `kind=`: the L1 Hessian energy is the one that exists.
+/// `energy=` and `kind=`.
 ///
 /// # Errors
-/// `ArgumentError` for any other.
-pub fn only_l1_hessian(py: Python<'_>, name: &'static str, given: &str) -> PyResult<()> {
-    choice(py, name, given, &[("l1_hessian", ())])
+/// `ArgumentError` for an unknown word.
+pub fn energy(py: Python<'_>, name: &'static str, given: &str) -> PyResult<Energy> {
+    choice(py, name, given, &Energy::ALL)
 }
 
 /// `dual=`.
@@ -32,7 +34,12 @@ pub fn only_l1_hessian(py: Python<'_>, name: &'static str, given: &str) -> PyRes
 /// # Errors
 /// `ArgumentError` for an unknown word.
 pub fn dual(py: Python<'_>, given: &str) -> PyResult<Dual> {
-    choice(py, "dual", given, &[("barycentric", Dual::Barycentric), ("circumcentric", Dual::Circumcentric)])
+    let duals = [
+        ("barycentric", Dual::Barycentric),
+        ("circumcentric", Dual::Circumcentric),
+        ("circumcentric_or_barycentric", Dual::CircumcentricOrBarycentric),
+    ];
+    choice(py, "dual", given, &duals)
 }
 
 /// `coupling=`.
@@ -89,4 +96,43 @@ pub fn weights(
     what: &str,
 ) -> PyResult<Option<Vec<f64>>> {
     given.map(|object| finite_floats(name, object)?.exactly(object.py(), name, length, what)).transpose()
+}
+
+/// The keywords of every scalar problem, as they came from Python.
+pub struct Scalar<'a, 'py> {
+    /// `energy=`
+    pub energy: &'a str,
+    /// `face_weights=`
+    pub face_weights: Option<&'a Bound<'py, PyAny>>,
+    /// `linear_constraints=`
+    pub linear_constraints: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
+    /// `coupling=`
+    pub coupling: &'a str,
+    /// `dual=`
+    pub dual: &'a str,
+    /// `sharpness=`
+    pub sharpness: f64,
+    /// `solver=`, `tolerance=`, `max_iterations=`, `threads=`
+    pub solve: SolveOptions,
+}
+
+impl Scalar<'_, '_> {
+    /// The options for `n_columns` functions on `mesh`.
+    ///
+    /// # Errors
+    /// `ArgumentError` for unknown words and for arrays that do not fit.
+    pub fn read(self, py: Python<'_>, mesh: &Mesh, n_columns: usize) -> PyResult<ScalarOptions> {
+        Ok(ScalarOptions {
+            energy: energy(py, "energy", self.energy)?,
+            face_weights: weights("face_weights", self.face_weights, mesh.n_faces(), "face")?,
+            linear_constraints: self
+                .linear_constraints
+                .map(|(a, b)| matrix::read_constraints(&a, &b, mesh.n_vertices(), n_columns))
+                .transpose()?,
+            coupling: coupling(py, self.coupling)?,
+            dual: dual(py, self.dual)?,
+            sharpness: self.sharpness,
+            solve: self.solve,
+        })
+    }
 }

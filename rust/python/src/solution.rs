@@ -12,7 +12,8 @@ pub struct Solution {
     values: Py<PyAny>,
     /// The objective at `values`.
     objective: f64,
-    /// The certified relative duality gap: no feasible point has an objective lower by more than this share.
+    /// The certified relative duality gap: no feasible point has an objective lower by more than this share. With a quadratic
+    /// energy, what another step of the linear solver would lower it by.
     gap: f64,
     /// Inner iterations, all rounds and columns together.
     iterations: usize,
@@ -20,7 +21,7 @@ pub struct Solution {
     factorisations: usize,
     /// "solved" (the tolerance was reached), "inaccurate" (it was not: the best point is returned) or "stopped".
     status: &'static str,
-    /// The solver that was used.
+    /// The solver that was used; "cholesky" with a quadratic energy.
     solver: &'static str,
 }
 
@@ -57,5 +58,6 @@ fn solver_name(solver: solve::Solver) -> &'static str {
         solve::Solver::Clarabel => "clarabel",
         solve::Solver::ClarabelQdldl => "clarabel-qdldl",
         solve::Solver::ClarabelFaer => "clarabel-faer",
+        solve::Solver::Cholesky => "cholesky",
     }
 }

@@ -52,7 +52,8 @@ impl Stylized {
 /// strength : (n,) array, 0 (stay) to 1 (full effect)
 /// ridge_weights : (m,) array > 0, 1 is neutral, smaller makes ridges cheaper there
 /// delaunay : flip edges to intrinsic Delaunay before each step
-/// dual : "barycentric" or "circumcentric" dual edges
+/// dual : "barycentric", "circumcentric" (MeshError where a dual edge has no length) or "circumcentric_or_barycentric"
+///     (barycentres for such edges)
 /// solver : "auto", "fast", "clarabel", "clarabel-qdldl" or "clarabel-faer"
 /// tolerance : certified relative gap of every step; None stops on residuals and reports the gap reached
 /// max_iterations : at most so many solver iterations in a step, or None

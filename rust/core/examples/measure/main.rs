@@ -16,7 +16,7 @@ use ridgeform_core::operators::{hessian, Dual, HessianPattern};
 use ridgeform_core::progress::Progress;
 use ridgeform_core::solve::{Solution, Solver, Status};
 use ridgeform_core::tools::{
-    denoise, interpolate, stylize, DenoiseOptions, FlowStatus, InterpolateOptions, SolveOptions, StylizeOptions,
+    denoise, interpolate, stylize, DenoiseOptions, FlowStatus, ScalarOptions, SolveOptions, StylizeOptions,
 };
 
 type Outcome = Result<Vec<(&'static str, String)>, Box<dyn std::error::Error>>;
@@ -85,7 +85,7 @@ fn flow(problem: &Problem, arguments: &Arguments) -> Outcome {
 fn interpolation(problem: &Problem, arguments: &Arguments) -> Outcome {
     let mesh = problem.mesh()?;
     let (indices, values) = problem.known()?;
-    let options = InterpolateOptions { solve: solve_options(arguments)?, ..InterpolateOptions::default() };
+    let options = ScalarOptions { solve: solve_options(arguments)?, ..ScalarOptions::default() };
     let mut samples = Samples::new(arguments)?;
     let solution = samples.take(|| interpolate(&mesh, &indices, &values, &options, &Progress::new()))?;
     Ok(solved(&samples, &solution))
@@ -96,7 +96,7 @@ fn denoising(problem: &Problem, arguments: &Arguments) -> Outcome {
     let values = problem.values()?;
     let options = DenoiseOptions {
         fidelity: arguments.number("fidelity", 1e3)?,
-        solve: solve_options(arguments)?,
+        scalar: ScalarOptions { solve: solve_options(arguments)?, ..ScalarOptions::default() },
         ..DenoiseOptions::default()
     };
     let mut samples = Samples::new(arguments)?;

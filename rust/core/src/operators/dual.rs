@@ -15,15 +15,20 @@ impl DualEdge {
     /// The dual edge of `hinge`, or nothing if it has no length.
     pub(crate) fn new(dual: Dual, hinge: &Hinge) -> Option<Self> {
         let ([s_f, h_f], [s_g, h_g]) = (hinge.face, hinge.neighbour);
+        let barycentric = Self([(s_g - s_f) / 3.0, -(h_f + h_g) / 3.0]);
         match dual {
-            Dual::Barycentric => Some(Self([(s_g - s_f) / 3.0, -(h_f + h_g) / 3.0])),
-            Dual::Circumcentric => {
+            Dual::Barycentric => Some(barycentric),
+            Dual::Circumcentric | Dual::CircumcentricOrBarycentric => {
                 // The circumcentre is cot(angle) · length / 2 above the edge's midpoint.
                 let cotangent = |[s, h]: [f64; 2]| (h - s * (hinge.length - s) / h) / hinge.length;
                 let (face, neighbour) = (cotangent([s_f, h_f]), cotangent([s_g, h_g]));
                 let sum = face + neighbour;
                 let size = 1.0 + face.abs() + neighbour.abs();
-                (sum.abs() > COINCIDENT_CIRCUMCENTRES * size).then(|| Self([0.0, -0.5 * hinge.length * sum]))
+                if sum.abs() > COINCIDENT_CIRCUMCENTRES * size {
+                    Some(Self([0.0, -0.5 * hinge.length * sum]))
+                } else {
+                    (dual == Dual::CircumcentricOrBarycentric).then_some(barycentric)
+                }
             }
         }
     }

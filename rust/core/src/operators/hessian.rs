@@ -13,6 +13,7 @@ use crate::block_rows::{BlockRows, BLOCK};
 use crate::error::{Error, MeshError};
 use crate::mesh::{triangle, Connectivity, Mesh};
 use crate::operators::dual::DualEdge;
+use crate::operators::energy::block_squares;
 use crate::operators::Dual;
 
 /// A face's block has up to six columns: its corners and the vertices opposite its edges.
@@ -184,7 +185,7 @@ impl Hinge {
 
     /// The jump of the gradient, neighbour less face, along the normal into `f`: the coefficients of the values at the
     /// halfedge's tail and head, at the opposite corner of `f` and at that of the neighbour.
-    fn jump(&self) -> [f64; 4] {
+    pub(crate) fn jump(&self) -> [f64; 4] {
         let ([s_f, h_f], [s_g, h_g]) = (self.face, self.neighbour);
         let (face, neighbour) = (1.0 / h_f, 1.0 / h_g);
         let head = (s_f * face + s_g * neighbour) / self.length;
@@ -217,24 +218,9 @@ pub fn hessian(mesh: &Mesh, dual: Dual) -> Result<sprs::CsMat<f64>, MeshError> {
     Ok(sprs::CsMat::new((4 * rows.n_blocks(), rows.n_columns), indptr, indices, data))
 }
 
-fn assembled(mesh: &Mesh, dual: Dual) -> Result<BlockRows, MeshError> {
+pub(super) fn assembled(mesh: &Mesh, dual: Dual) -> Result<BlockRows, MeshError> {
     let pattern = HessianPattern::new(mesh.connectivity());
     pattern.assemble(mesh.connectivity(), mesh.edge_lengths(), dual)
-}
-
-/// The area-weighted Frobenius norm of every face's Hessian, jointly over the columns of `values`.
-fn weighted_norms(mesh: &Mesh, values: &[f64], dual: Dual) -> Result<Vec<f64>, Error> {
-    let n = mesh.connectivity().n_vertices();
-    if !values.len().is_multiple_of(n) {
-        let problem =
-            format!("{} numbers are not whole columns of {n} vertex values; pass one per vertex", values.len());
-        return Err(Error::argument("values", problem));
-    }
-    let rows = assembled(mesh, dual)?;
-    let squared = |column: &[f64], b: usize| rows.block_times(b, column).iter().map(|x| x * x).sum::<f64>();
-    Ok((0..rows.n_blocks())
-        .map(|b| values.chunks_exact(n.max(1)).map(|column| squared(column, b)).sum::<f64>().sqrt())
-        .collect())
 }
 
 /// The Frobenius norm `‖H_f(u)‖` of every face's Hessian, not times its area, of `values` (column-major, `n` rows): one
@@ -243,20 +229,12 @@ fn weighted_norms(mesh: &Mesh, values: &[f64], dual: Dual) -> Result<Vec<f64>, E
 /// # Errors
 /// [`Error::Argument`] if `values` are not whole columns, and the errors of [`hessian`].
 pub fn hessian_norm(mesh: &Mesh, values: &[f64], dual: Dual) -> Result<Vec<f64>, Error> {
-    let mut norms = weighted_norms(mesh, values, dual)?;
+    let rows = assembled(mesh, dual)?;
+    let mut norms: Vec<f64> = block_squares(&rows, values)?.into_iter().map(f64::sqrt).collect();
     for (norm, &l) in norms.iter_mut().zip(mesh.edge_lengths()) {
         if *norm > 0.0 {
             *norm /= triangle::area(l);
         }
     }
     Ok(norms)
-}
-
-/// The energy `E_H(u) = Σ_f A_f ‖H_f(u)‖` (Rowe et al. 2024, eq. (18)) of `values` (column-major, `n` rows), with one
-/// norm a face over all columns.
-///
-/// # Errors
-/// [`Error::Argument`] if `values` are not whole columns, and the errors of [`hessian`].
-pub fn energy(mesh: &Mesh, values: &[f64], dual: Dual) -> Result<f64, Error> {
-    Ok(weighted_norms(mesh, values, dual)?.iter().sum())
 }

@@ -1,6 +1,8 @@
-//! The cotangent Laplacian.
+//! The cotangent Laplacian, and the energy of its square.
 
+use crate::block_rows::BlockRows;
 use crate::mesh::{triangle, Connectivity};
+use crate::operators::voronoi_mass;
 
 /// The cotangent Laplacian (Pinkall and Polthier 1993), `n × n`, symmetric and positive semidefinite: `uᵀ L u = ∫ |∇u|²` for
 /// the piecewise linear `u`. Off the diagonal it has `−(cot α + cot β) / 2`; its rows sum to 0.
@@ -48,4 +50,21 @@ pub fn cotangent_laplacian(connectivity: &Connectivity, lengths: &[[f64; 3]]) ->
         indptr.push(indices.len());
     }
     sprs::CsMat::new((n, n), indptr, indices, data)
+}
+
+/// Rows whose squares sum to `∫ |Δu|² = uᵀ L M⁻¹ L u` (Rowe et al. 2024, eq. (1), left, twice): a block a vertex, its only
+/// nonzero row `(L u)_v / √M_v`, with the [`cotangent_laplacian`] `L` and the [`voronoi_mass`] `M`.
+///
+/// At the boundary `L` itself sets the normal derivative to zero (zero Neumann conditions). Vertices without mass have an
+/// empty block.
+#[must_use]
+pub fn laplacian_squares(connectivity: &Connectivity, lengths: &[[f64; 3]]) -> BlockRows {
+    let laplacian = cotangent_laplacian(connectivity, lengths);
+    let mut rows = BlockRows::empty(connectivity.n_vertices());
+    for (row, mass) in laplacian.outer_iterator().zip(voronoi_mass(connectivity, lengths)) {
+        let scale = if mass > 0.0 { 1.0 / mass.sqrt() } else { 0.0 };
+        let entries = row.iter().filter(|&(_, &value)| value * scale != 0.0);
+        rows.push_block(entries.map(|(column, value)| (column as u32, [value * scale, 0.0, 0.0])));
+    }
+    rows
 }

@@ -1,15 +1,24 @@
 //! The discrete operators, all from edge lengths.
 
+mod curved_hessian;
 mod dual;
+mod edge_laplacian;
+mod energy;
 pub mod factors;
 mod hessian;
 mod laplacian;
 mod mass;
+mod mixed_hessian;
 mod mollification;
+mod vertex_weights;
 
-pub use hessian::{energy, hessian, hessian_norm, HessianPattern};
-pub use laplacian::cotangent_laplacian;
+pub use curved_hessian::curved_hessian_squares;
+pub use edge_laplacian::edge_laplacian_rows;
+pub use energy::{Energy, EnergyForm};
+pub use hessian::{hessian, hessian_norm, HessianPattern};
+pub use laplacian::{cotangent_laplacian, laplacian_squares};
 pub use mass::voronoi_mass;
+pub use mixed_hessian::{mixed_hessian_rows, mixed_hessian_squares};
 pub use mollification::{mollify, MOLLIFICATION_MARGIN};
 
 /// Which centres the dual edges join.
@@ -18,6 +27,8 @@ pub enum Dual {
     /// Barycentres: the paper's choice, defined on every mesh.
     #[default]
     Barycentric,
-    /// Circumcentres: the dual edge is normal to its edge, but may have no length.
+    /// Circumcentres: the dual edge is normal to its edge, but may have no length, which is an error.
     Circumcentric,
+    /// Circumcentres, but barycentres for the dual edges that would have no length.
+    CircumcentricOrBarycentric,
 }

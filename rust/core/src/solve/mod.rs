@@ -15,6 +15,7 @@ mod linear_constraints;
 pub mod normal_matrix;
 pub mod penalty;
 mod problem;
+pub mod quadratic;
 mod reduced;
 pub mod system;
 mod transposed;
@@ -25,7 +26,7 @@ pub use problem::{Coupling, Problem, Settings, Solution, Solver, Status};
 pub use reduced::{FreeOperator, Reduced};
 pub use transposed::Transposed;
 
-use crate::{Progress, Result};
+use crate::{Error, Progress, Result};
 use fast_solver::Method;
 
 /// Solves `problem` with the solver named, from a cold start.
@@ -38,6 +39,7 @@ pub fn solve(problem: &Problem<'_>, solver: Solver, settings: &Settings, progres
         Solver::ClarabelQdldl | Solver::ClarabelFaer => Method::Clarabel(solver),
         Solver::Clarabel if problem.n_rows() < conic::QDLDL_BELOW => Method::Clarabel(Solver::ClarabelQdldl),
         Solver::Clarabel => Method::Clarabel(Solver::ClarabelFaer),
+        Solver::Cholesky => return Err(Error::argument("solver", "Cholesky solves quadratic energies only; use auto")),
     };
     FastSolver::new().run(problem, method, settings, progress)
 }

@@ -30,6 +30,8 @@ pub enum Solver {
     ClarabelQdldl,
     /// Clarabel with the factorisation of `faer`.
     ClarabelFaer,
+    /// One sparse Cholesky factorisation: what quadratic energies are solved with, and only they.
+    Cholesky,
 }
 
 /// How a solution was left.
@@ -138,9 +140,17 @@ impl Problem<'_> {
     /// # Errors
     /// [`Error::Argument`] naming the culprit.
     pub fn check(&self) -> Result<()> {
+        check_nonnegative("face_weights", &self.weights, self.operator.n_blocks())?;
+        self.check_shapes()
+    }
+
+    /// [`Problem::check`], but for the sign of the weights, which quadratic problems leave open.
+    pub(super) fn check_shapes(&self) -> Result<()> {
         let (n, m) = (self.n_rows(), self.operator.n_blocks());
+        if self.weights.len() != m {
+            return Err(Error::argument("face_weights", format!("has {} entries, expected {m}", self.weights.len())));
+        }
         self.target.check("values", n)?;
-        check_nonnegative("face_weights", &self.weights, m)?;
         check_nonnegative("fidelity", &self.fidelity, n)?;
         if self.fixed.len() != n {
             return Err(Error::argument("fixed", format!("has {} entries, expected {n}", self.fixed.len())));

@@ -1,34 +1,13 @@
 //! Scattered data interpolation (Rowe et al. 2024, eq. (22)).
 
-use sprs::CsMat;
-
-use super::denoise::ScalarProblem;
-use super::SolveOptions;
+use super::scalar::{ScalarOptions, ScalarProblem};
 use crate::mesh::{Connectivity, Mesh};
-use crate::operators::Dual;
 use crate::progress::Progress;
-use crate::solve::{Columns, Coupling, Solution};
+use crate::solve::{Columns, Solution};
 use crate::{Error, Result};
 
-/// How to interpolate.
-#[derive(Debug, Clone, Default)]
-pub struct InterpolateOptions {
-    /// A weight for each face: smaller where ridges are welcome.
-    pub face_weights: Option<Vec<f64>>,
-    /// `A` (p × n) and `b` (p × k) of `A u = b`.
-    pub linear_constraints: Option<(CsMat<f64>, Columns)>,
-    /// Joint or separate norms of several columns.
-    pub coupling: Coupling,
-    /// Dual edges of the operator.
-    pub dual: Dual,
-    /// 0: the convex energy; towards 1: reweighted rounds with ever sharper ridges.
-    pub sharpness: f64,
-    /// The solver.
-    pub solve: SolveOptions,
-}
-
-/// `min_u Σ_f w_f A_f ‖H_f u‖` with `u` given at the vertices `indices`: row `r` of `values` belongs to `indices[r]`.
-/// Vertices that no face uses get the mean of the given values.
+/// `min_u E(u)` with `u` given at the vertices `indices`: row `r` of `values` belongs to `indices[r]`, `E` is the energy of the
+/// options. Vertices that no face uses get the mean of the given values.
 ///
 /// Source: Rowe et al. 2024, eq. (22).
 ///
@@ -39,7 +18,7 @@ pub fn interpolate(
     mesh: &Mesh,
     indices: &[usize],
     values: &Columns,
-    options: &InterpolateOptions,
+    options: &ScalarOptions,
     progress: &Progress,
 ) -> Result<Solution> {
     let connectivity = mesh.connectivity();
@@ -69,18 +48,7 @@ pub fn interpolate(
     if options.linear_constraints.is_none() {
         refuse_unknown_component(connectivity, &fixed)?;
     }
-    let problem = ScalarProblem {
-        mesh,
-        face_weights: options.face_weights.as_ref(),
-        fidelity: vec![0.0; n],
-        target,
-        fixed,
-        linear_constraints: options.linear_constraints.clone(),
-        coupling: options.coupling,
-        dual: options.dual,
-        sharpness: options.sharpness,
-        solve: &options.solve,
-    };
+    let problem = ScalarProblem { mesh, options, fidelity: vec![0.0; n], target, fixed };
     problem.run(progress)
 }
 

@@ -1,0 +1,276 @@
+//! Quadratic energies: `min ½ Σ_b w_b ‖(H u)_b‖² + Σ_i a_i ‖u_i − t_i‖²` with fixed rows and `A u = b`, by one factorisation.
+//!
+//! The factored matrix carries a shift where the energy alone may not determine `u`; conjugate gradients with that factor as
+//! preconditioner (projected on `A u = 0`, Gould, Hribar and Nocedal 2001) take its effect out again. Where there is
+//! no shift the first step is exact and the second one is iterative refinement.
+
+use crate::block_rows::BlockRows;
+use crate::error::SolveError;
+use crate::progress::Progress;
+use crate::solve::cholesky::Cholesky;
+use crate::solve::linear_constraints::LinearConstraints;
+use crate::solve::normal_matrix::NormalMatrix;
+use crate::solve::problem::{Problem, Settings, Solution, Solver, Status};
+use crate::solve::reduced::FreeOperator;
+use crate::{Error, Result};
+
+/// The shift as a part of the diagonal: above rounding in the factorisation, below the smallest eigenvalue of well posed
+/// problems up to some 100k vertices.
+const SHIFT: f64 = 1e-13;
+
+/// The same with linear constraints that may have to hold the kernel of the energy: small dense pivots of the constraints
+/// are told from dependent ones down to 1e-12.
+const SHIFT_UNDER_CONSTRAINTS: f64 = 1e-9;
+
+/// How much larger a shift is tried when the factorisation fails, and how large it gets.
+const SHIFT_GROWTH: f64 = 100.0;
+const LARGEST_SHIFT: f64 = 1e-6;
+
+/// Steps stop when one more would lower the objective by less than this part of it.
+const ENOUGH: f64 = 1e-14;
+
+/// What rounding leaves of a sum of squares whose terms cancel, as a part of their size: 1e-9 squared.
+const ROUNDING: f64 = 1e-18;
+
+/// Times that the multipliers of the constraints are taken out of a gradient: the second leaves rounding.
+const PROJECTIONS: usize = 2;
+
+/// Steps at most; well posed problems take one or two, those with a large shift some ten.
+const MOST_STEPS: usize = 300;
+
+/// Minimises the quadratic reading of `problem`, column by column (its coupling does not matter).
+///
+/// The gap of the solution is the decrease of the objective that one more step with the factored matrix would bring, relative
+/// like [`Solution::gap`]; without a shift it is the distance to the optimum up to rounding. Weights may be negative as long as
+/// the problem stays convex. Rows of `u` that nothing determines keep their target.
+///
+/// # Errors
+/// Arguments that do not fit, constraints that contradict or repeat each other, a problem that is not convex, or
+/// [`Error::Cancelled`].
+pub fn minimise(problem: &Problem<'_>, settings: &Settings, progress: &Progress) -> Result<Solution> {
+    problem.check_shapes()?;
+    let free = FreeOperator::new(problem.operator, &problem.fixed);
+    let mut newton = Newton::new(problem, &free)?;
+    let mut values = problem.target.clone();
+    let mut total = Totals::default();
+    for c in 0..values.n_columns {
+        progress.check()?;
+        newton.column(c, values.column_mut(c), &mut total, progress)?;
+    }
+    let gap = total.decrease / Problem::gap_scale(total.objective, total.floor);
+    let reached = gap <= settings.tolerance.unwrap_or(ENOUGH.sqrt());
+    Ok(Solution {
+        values,
+        objective: total.objective,
+        dual_objective: total.objective - total.decrease,
+        gap,
+        iterations: total.steps,
+        factorisations: newton.cholesky.n_factorisations(),
+        status: if reached { Status::Solved } else { Status::Inaccurate },
+        solver: Solver::Cholesky,
+    })
+}
+
+/// The sums over columns.
+#[derive(Default)]
+struct Totals {
+    objective: f64,
+    floor: f64,
+    decrease: f64,
+    steps: usize,
+}
+
+/// The factored matrix on the free rows.
+struct Newton<'a> {
+    problem: &'a Problem<'a>,
+    free: &'a FreeOperator,
+    cholesky: Cholesky,
+}
+
+impl<'a> Newton<'a> {
+    fn new(problem: &'a Problem<'a>, free: &'a FreeOperator) -> Result<Self> {
+        let normal = NormalMatrix::new(&free.operator);
+        let mut cholesky = Cholesky::analyse(normal.pattern().clone(), 1)?;
+        if free.free.is_empty() {
+            return Ok(Self { problem, free, cholesky });
+        }
+        let twice: Vec<f64> = free.free.iter().map(|&i| 2.0 * problem.fidelity[i as usize]).collect();
+        let mut values = Vec::new();
+        normal.assemble(&free.operator, &problem.weights, &twice, &mut values);
+        let diagonal: Vec<f64> = normal.pattern().starts[..twice.len()].iter().map(|&s| values[s]).collect();
+        let mean = diagonal.iter().map(|d| d.abs()).sum::<f64>() / diagonal.len() as f64;
+        let scale = if mean > 0.0 { mean } else { 1.0 };
+        let mut shift = match problem.linear_constraints {
+            _ if twice.iter().all(|a| *a > 0.0) => 0.0,
+            None => SHIFT,
+            Some(_) => SHIFT_UNDER_CONSTRAINTS,
+        };
+        loop {
+            for (&s, d) in normal.pattern().starts.iter().zip(&diagonal) {
+                // A row without an entry would make the matrix singular; nothing pulls at it, so it stays where it is.
+                values[s] = if *d == 0.0 { scale } else { d + shift * scale };
+            }
+            match cholesky.factorise(&values) {
+                Ok(()) => return Ok(Self { problem, free, cholesky }),
+                Err(_) if shift < LARGEST_SHIFT => shift = (SHIFT_GROWTH * shift).max(SHIFT),
+                Err(_) if problem.weights.iter().any(|w| *w < 0.0) => return Err(not_convex()),
+                Err(error) => return Err(error.into()),
+            }
+        }
+    }
+
+    /// Minimises over the free rows of column `c`; `u` holds the target before.
+    fn column(&mut self, c: usize, u: &mut [f64], total: &mut Totals, progress: &Progress) -> Result<()> {
+        let target = self.problem.target.column(c);
+        let at_target = self.objective(u, target);
+        let rounding = ROUNDING * self.without_cancelling(target);
+        total.floor += (1e-6 * at_target).max(rounding);
+        let scale = Problem::gap_scale(at_target, rounding);
+        let mut constraints = self.constraints(c)?;
+        if let Some(constraints) = &mut constraints {
+            constraints.prepare(&mut self.cholesky)?;
+        }
+        // One step from the target, corrected to satisfy the constraints.
+        let mut gradient = self.gradient(u, target);
+        let mut point: Vec<[f64; 1]> = gradient.iter().map(|g| [-g]).collect();
+        self.cholesky.solve(point.as_flattened_mut(), 1);
+        point.iter_mut().zip(&self.free.free).for_each(|(x, &i)| x[0] += u[i as usize]);
+        if let Some(constraints) = &mut constraints {
+            constraints.correct(&mut point);
+            constraints.right.fill([0.0]);
+        }
+        point.iter().zip(&self.free.free).for_each(|(x, &i)| u[i as usize] = x[0]);
+        total.steps += 1;
+
+        gradient = self.gradient(u, target);
+        let mut z = self.preconditioned(&mut gradient, constraints.as_ref());
+        let mut slope = dot(&gradient, &z);
+        let mut direction: Vec<f64> = z.iter().map(|z| -z).collect();
+        let mut steps = 1;
+        while 0.5 * slope > ENOUGH * ENOUGH.sqrt() * scale && steps < MOST_STEPS {
+            progress.check()?;
+            let along = self.hessian_times(&direction, u.len());
+            let curvature = dot(&direction, &along);
+            if curvature <= 0.0 {
+                // In the kernel up to rounding there is nothing to gain; clearly below it, everything.
+                let size = dot(&direction, &direction).sqrt() * dot(&along, &along).sqrt();
+                if curvature < -1e-6 * size {
+                    return Err(not_convex());
+                }
+                break;
+            }
+            let length = slope / curvature;
+            let before = self.objective(u, target);
+            let old: Vec<f64> = self.free.free.iter().map(|&i| u[i as usize]).collect();
+            direction.iter().zip(&self.free.free).for_each(|(d, &i)| u[i as usize] += length * d);
+            steps += 1;
+            if self.objective(u, target) > before {
+                // Rounding has the last word.
+                old.iter().zip(&self.free.free).for_each(|(x, &i)| u[i as usize] = *x);
+                break;
+            }
+            gradient = self.gradient(u, target);
+            z = self.preconditioned(&mut gradient, constraints.as_ref());
+            let next = dot(&gradient, &z);
+            direction.iter_mut().zip(&z).for_each(|(d, z)| *d = next / slope * *d - z);
+            slope = next;
+        }
+        total.steps += steps - 1;
+        total.decrease += 0.5 * slope.max(0.0);
+        total.objective += self.objective(u, target);
+        Ok(())
+    }
+
+    fn constraints(&self, c: usize) -> Result<Option<LinearConstraints<1>>> {
+        let target = self.problem.target.column(c);
+        let Some((matrix, right)) = &self.problem.linear_constraints else { return Ok(None) };
+        Ok(Some(LinearConstraints::new(matrix, right, self.free, &[c], &|i| [target[i]])?))
+    }
+
+    /// The factored matrix's inverse times `gradient`, projected on the kernel of the constraints, whose right side is zero.
+    ///
+    /// What the constraints hold is taken out of `gradient` first: left in, its rounding would outgrow the rest (Gould, Hribar
+    /// and Nocedal 2001, section 6).
+    fn preconditioned(&mut self, gradient: &mut [f64], constraints: Option<&LinearConstraints<1>>) -> Vec<f64> {
+        let mut z: Vec<[f64; 1]> = gradient.iter().map(|&g| [g]).collect();
+        self.cholesky.solve(z.as_flattened_mut(), 1);
+        if let Some(constraints) = constraints {
+            for _ in 0..PROJECTIONS {
+                let held: Vec<[f64; 1]> = constraints.correct(&mut z).into_iter().map(|y| [-y[0]]).collect();
+                let mut rest: Vec<[f64; 1]> = gradient.iter().map(|&g| [g]).collect();
+                constraints.add_transposed(&held, &mut rest);
+                gradient.copy_from_slice(rest.as_flattened());
+                z = rest;
+                self.cholesky.solve(z.as_flattened_mut(), 1);
+            }
+            constraints.correct(&mut z);
+        }
+        z.into_flattened()
+    }
+
+    /// The gradient on the free rows.
+    fn gradient(&self, u: &[f64], target: &[f64]) -> Vec<f64> {
+        let mut all = transposed_times(self.problem, u);
+        for (i, g) in all.iter_mut().enumerate() {
+            *g += 2.0 * self.problem.fidelity[i] * (u[i] - target[i]);
+        }
+        self.free.free.iter().map(|&i| all[i as usize]).collect()
+    }
+
+    /// The second derivative times a direction, both on the free rows.
+    fn hessian_times(&self, direction: &[f64], n: usize) -> Vec<f64> {
+        let mut whole = vec![0.0; n];
+        direction.iter().zip(&self.free.free).for_each(|(d, &i)| whole[i as usize] = *d);
+        let product = transposed_times(self.problem, &whole);
+        let entry = |&i: &u32| product[i as usize] + 2.0 * self.problem.fidelity[i as usize] * whole[i as usize];
+        self.free.free.iter().map(entry).collect()
+    }
+
+    fn objective(&self, u: &[f64], target: &[f64]) -> f64 {
+        let term = |(b, w): (usize, &f64)| 0.5 * w * squared(self.problem.operator.block_times(b, u));
+        let energy: f64 = self.problem.weights.iter().enumerate().map(term).sum();
+        let distances = u.iter().zip(target).zip(&self.problem.fidelity);
+        energy + distances.map(|((x, t), a)| a * (x - t) * (x - t)).sum::<f64>()
+    }
+
+    /// The energy at `u` if no two terms of `H u` had opposite signs: what rounding is measured against.
+    fn without_cancelling(&self, u: &[f64]) -> f64 {
+        let size = |operator: &BlockRows, b: usize| {
+            let (columns, values) = operator.block(b);
+            let terms = columns.iter().zip(values).map(|(&j, v)| squared(*v).sqrt() * u[j as usize].abs());
+            terms.sum::<f64>().powi(2)
+        };
+        let weights = self.problem.weights.iter().enumerate();
+        weights.map(|(b, w)| 0.5 * w.abs() * size(self.problem.operator, b)).sum()
+    }
+}
+
+/// `Hᵀ W H u`.
+fn transposed_times(problem: &Problem<'_>, u: &[f64]) -> Vec<f64> {
+    let mut out = vec![0.0; u.len()];
+    for (b, w) in problem.weights.iter().enumerate() {
+        let h = problem.operator.block_times(b, u);
+        let (columns, values) = problem.operator.block(b);
+        for (&column, v) in columns.iter().zip(values) {
+            out[column as usize] += w * (v[0] * h[0] + v[1] * h[1] + v[2] * h[2]);
+        }
+    }
+    out
+}
+
+fn squared(x: [f64; 3]) -> f64 {
+    x[0] * x[0] + x[1] * x[1] + x[2] * x[2]
+}
+
+fn dot(x: &[f64], y: &[f64]) -> f64 {
+    x.iter().zip(y).map(|(a, b)| a * b).sum()
+}
+
+fn not_convex() -> Error {
+    Error::Solve(SolveError::Infeasible {
+        reason:
+            "this energy is not convex on this mesh with these fixed values; fix more vertices, raise the fidelity, or \
+                 use another energy"
+                .into(),
+    })
+}
