@@ -1,16 +1,21 @@
 //! Denoising and interpolation with every energy: against dense systems, between the solvers, and what must be refused.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use ridgeform_core::mesh::Mesh;
+use ridgeform_core::intrinsic::{delaunay_flips, delaunay_flips_carrying};
+use ridgeform_core::mesh::{triangle, Mesh};
 use ridgeform_core::operators::{voronoi_mass, Dual, Energy, EnergyForm};
 use ridgeform_core::shapes::{self, Random};
 use ridgeform_core::solve::{Columns, Coupling, Solution, Solver, Status};
-use ridgeform_core::tools::{denoise, interpolate, DenoiseOptions, ScalarOptions, SolveOptions};
+use ridgeform_core::tools::{denoise, interpolate, DenoiseOptions, EnergyOptions, ScalarOptions, SolveOptions};
 use ridgeform_core::{Error, Progress, Result};
 
 fn options(energy: Energy, solver: Solver, tolerance: f64) -> ScalarOptions {
     let solve = SolveOptions { solver, tolerance: Some(tolerance), ..SolveOptions::default() };
-    ScalarOptions { energy, solve, ..ScalarOptions::default() }
+    ScalarOptions {
+        energy: EnergyOptions { kind: energy, ..EnergyOptions::default() },
+        solve,
+        ..ScalarOptions::default()
+    }
 }
 
 fn ridge(mesh: &Mesh, noise: f64) -> Columns {
@@ -205,7 +210,8 @@ fn columns_and_weights_count() {
     let points = Columns::from_points(mesh.positions().unwrap());
     for (name, energy) in Energy::ALL {
         let run = |values: &Columns, face_weights: Option<Vec<f64>>, fidelity: f64, coupling: Coupling| {
-            let scalar = ScalarOptions { face_weights, coupling, ..options(energy, Solver::Auto, 1e-4) };
+            let mut scalar = ScalarOptions { coupling, ..options(energy, Solver::Auto, 1e-4) };
+            scalar.energy.face_weights = face_weights;
             denoise(&mesh, values, &DenoiseOptions { fidelity, scalar, ..DenoiseOptions::default() }, &Progress::new())
                 .unwrap()
         };
@@ -225,10 +231,11 @@ fn what_makes_no_sense_is_refused() {
     let mesh = shapes::cube(3).mesh().unwrap();
     let refusal = |scalar: &ScalarOptions| interpolated(&mesh, 5, scalar).unwrap_err().to_string();
     for (name, energy) in Energy::ALL.into_iter().filter(|(_, energy)| *energy != Energy::L1Hessian) {
-        let plain = options(energy, Solver::Auto, 1e-3);
+        let mut plain = options(energy, Solver::Auto, 1e-3);
         let text = refusal(&ScalarOptions { sharpness: 0.5, ..plain.clone() });
         assert!(text.starts_with("sharpness") && text.contains(name), "{text}");
-        let text = refusal(&ScalarOptions { dual: Dual::Circumcentric, ..plain });
+        plain.energy.dual = Dual::Circumcentric;
+        let text = refusal(&plain);
         assert!(text.starts_with("dual") && text.contains(name), "{text}");
     }
     let text = refusal(&options(Energy::L2Laplacian, Solver::ClarabelQdldl, 1e-3));
@@ -241,4 +248,44 @@ fn what_makes_no_sense_is_refused() {
     let (indices, values) = known(&mesh, 5);
     let scalar = options(Energy::L2Laplacian, Solver::Auto, 1e-3);
     assert_eq!(interpolate(&mesh, &indices, &values, &scalar, &progress).unwrap_err(), Error::Cancelled);
+}
+
+#[test]
+fn delaunay_flips_help_every_intrinsic_energy_and_keep_the_vertices() {
+    // The same flat square as slivers and as good triangles: flips make the first as good as the second.
+    let affine = |p: &[f64; 3]| 1.0 + 0.5 * p[0] - 0.25 * p[1];
+    let mesh = shapes::grid(12, 12).map(|[x, y, z]| [0.12 * x + 0.9 * y, y, z]).mesh().unwrap();
+    let (connectivity, lengths, flips) = delaunay_flips(mesh.connectivity(), mesh.edge_lengths());
+    assert!(flips > 50);
+    let by_hand = Mesh::from_connectivity(connectivity, lengths).unwrap();
+    let values = Columns::from_column(mesh.positions().unwrap().iter().map(affine).collect());
+    let (indices, some) = ([0, 40, 100, 168], [0, 40, 100, 168].map(|i: usize| values.data[i]).to_vec());
+    for (name, energy) in Energy::ALL {
+        let mut scalar = options(energy, Solver::Auto, 1e-4);
+        scalar.energy.delaunay = true;
+        scalar.energy.face_weights = Some(vec![1.5; mesh.connectivity().n_faces()]);
+        let run = |mesh: &Mesh, scalar: &ScalarOptions| {
+            interpolate(mesh, &indices, &Columns::from_column(some.clone()), scalar, &Progress::new())
+        };
+        let found = run(&mesh, &scalar);
+        if energy.is_extrinsic() {
+            assert!(found.unwrap_err().to_string().starts_with("delaunay"), "{name}");
+            continue;
+        }
+        scalar.energy.delaunay = false;
+        assert_eq!(found.unwrap(), run(&by_hand, &scalar).unwrap(), "{name}");
+    }
+}
+
+#[test]
+fn face_weights_follow_the_flips() {
+    let mesh = shapes::grid(9, 9).map(|[x, y, z]| [0.2 * x + 0.8 * y, y, z]).mesh().unwrap();
+    let mut weights: Vec<f64> = (0..162).map(|f| 1.0 + f64::from(f % 7)).collect();
+    let integral = |lengths: &[[f64; 3]], weights: &[f64]| -> f64 {
+        lengths.iter().zip(weights).map(|(&l, w)| triangle::area(l) * w).sum()
+    };
+    let before = integral(mesh.edge_lengths(), &weights);
+    let (_, lengths, flips) = delaunay_flips_carrying(mesh.connectivity(), mesh.edge_lengths(), &mut weights);
+    assert!(flips > 0 && (integral(&lengths, &weights) / before - 1.0).abs() < 1e-12);
+    assert!(weights.iter().all(|w| (1.0..=7.0).contains(w)));
 }

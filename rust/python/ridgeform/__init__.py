@@ -1,10 +1,10 @@
 """Ridgeform: the L1 surface Hessian as a modeler's tool.
 
 Make a `Mesh` from arrays, then call a function per problem: `stylize` turns it piecewise flat, `denoise` and
-`interpolate` find functions on it with sparse second derivatives, `hessian` and its companions are the
-operators behind them. Arrays of any numeric dtype and memory order go in; fresh C-contiguous `float64` and
-`int32` arrays come out. Long calls release the interpreter lock, report to a `Progress`, and hear Ctrl-C.
-Every failure is a `RidgeformError`.
+`interpolate` find functions on it with sparse second derivatives, `vibration_modes` those of least energy,
+`hessian` and its companions are the operators behind them. Arrays of any numeric dtype and memory order go
+in; fresh C-contiguous `float64` and `int32` arrays come out. Long calls release the interpreter lock, report
+to a `Progress`, and hear Ctrl-C. Every failure is a `RidgeformError`.
 
 Source: Rowe, Jacobson and Stein, Sharpening and Sparsifying with Surface Hessians, SIGGRAPH Asia 2024.
 """
@@ -26,6 +26,7 @@ from ._native import (
     interpolate,
     intrinsic_delaunay,
     stylize,
+    vibration_modes,
     voronoi_mass,
 )
 from .errors import ArgumentError, Cancelled, MeshError, RidgeformError, SolveError
@@ -52,5 +53,6 @@ __all__ = [
     "interpolate",
     "intrinsic_delaunay",
     "stylize",
+    "vibration_modes",
     "voronoi_mass",
 ]

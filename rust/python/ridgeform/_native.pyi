@@ -151,6 +151,7 @@ def interpolate(
     linear_constraints: tuple[AnyMatrix, ArrayLike] | None = None,
     coupling: Coupling = "joint",
     dual: Dual = "barycentric",
+    delaunay: bool = False,
     sharpness: float = 0.0,
     solver: Solver = "auto",
     tolerance: float | None = 1e-3,
@@ -169,6 +170,7 @@ def denoise(
     linear_constraints: tuple[AnyMatrix, ArrayLike] | None = None,
     coupling: Coupling = "joint",
     dual: Dual = "barycentric",
+    delaunay: bool = False,
     sharpness: float = 0.0,
     solver: Solver = "auto",
     tolerance: float | None = 1e-3,
@@ -176,6 +178,20 @@ def denoise(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Solution: ...
+def vibration_modes(
+    mesh: Mesh,
+    count: int,
+    *,
+    energy: Energy = "l1_hessian",
+    face_weights: ArrayLike | None = None,
+    dual: Dual = "barycentric",
+    delaunay: bool = False,
+    solver: Solver = "auto",
+    tolerance: float | None = 1e-3,
+    max_iterations: int | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Floats: ...
 def stylize(
     mesh: Mesh,
     *,

@@ -6,7 +6,7 @@ use ridgeform_core::tools;
 use crate::mesh::Mesh;
 use crate::progress::{handle, Progress};
 use crate::solution::Solution;
-use crate::{arrays, columns, doorway, options};
+use crate::{arrays, columns, doorway, matrix, options};
 
 /// Minimise an energy of functions plus `fidelity` times their squared distance to `values`.
 ///
@@ -26,6 +26,8 @@ use crate::{arrays, columns, doorway, options};
 /// coupling : "joint" (one norm for all columns) or "separate" (each column is a problem of its own)
 /// dual : "barycentric", "circumcentric" (MeshError where a dual edge has no length) or "circumcentric_or_barycentric"
 ///     (barycentres for such edges); for "l1_hessian" only
+/// delaunay : flip edges to the intrinsic Delaunay triangulation first; values stay at the vertices, face weights are averaged
+///     over the two faces of each flip; not for energies in space
 /// sharpness : 0 (the convex problem) to 1, reweighted rounds that concentrate curvature; for "l1_hessian" only
 /// solver : "auto", "fast", "clarabel", "clarabel-qdldl" or "clarabel-faer"; "auto" alone for quadratic energies, which take
 ///     one sparse factorisation
@@ -46,7 +48,7 @@ use crate::{arrays, columns, doorway, options};
 /// Rowe et al. 2024, eqs. (21) and (23).
 #[pyfunction]
 #[pyo3(signature = (mesh, values, *, fidelity, energy="l1_hessian", fixed=None, face_weights=None, linear_constraints=None,
-    coupling="joint", dual="barycentric", sharpness=0.0, solver="auto", tolerance=1e-3, max_iterations=None,
+    coupling="joint", dual="barycentric", delaunay=false, sharpness=0.0, solver="auto", tolerance=1e-3, max_iterations=None,
     threads=None, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn denoise(
@@ -60,6 +62,7 @@ pub fn denoise(
     linear_constraints: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>,
     coupling: &str,
     dual: &str,
+    delaunay: bool,
     sharpness: f64,
     solver: &str,
     tolerance: Option<f64>,
@@ -69,19 +72,20 @@ pub fn denoise(
 ) -> PyResult<Solution> {
     let n = mesh.n_vertices();
     let values = columns::read("values", values, n, "vertex")?;
-    let scalar = options::Scalar {
-        energy,
-        face_weights,
-        linear_constraints,
-        coupling,
-        dual,
+    let energy = options::EnergyWords { energy, face_weights, dual, delaunay };
+    let scalar = tools::ScalarOptions {
+        energy: energy.read(py, mesh)?,
+        linear_constraints: linear_constraints
+            .map(|(a, b)| matrix::read_constraints(&a, &b, mesh.n_vertices(), values.columns.n_columns))
+            .transpose()?,
+        coupling: options::coupling(py, coupling)?,
         sharpness,
         solve: options::solve(py, solver, tolerance, max_iterations, threads)?,
     };
     let options = tools::DenoiseOptions {
         fidelity,
         fixed: fixed.map(|given| arrays::mask("fixed", given, n, "vertex")).transpose()?,
-        scalar: scalar.read(py, mesh, values.columns.n_columns)?,
+        scalar,
     };
     let progress = handle(progress);
     let solution = doorway::call(py, &progress, || tools::denoise(mesh.inner(), &values.columns, &options, &progress))?;

@@ -6,7 +6,7 @@ use ridgeform_core::tools;
 use crate::mesh::Mesh;
 use crate::progress::{handle, Progress};
 use crate::solution::Solution;
-use crate::{arrays, columns, doorway, options};
+use crate::{arrays, columns, doorway, matrix, options};
 
 /// Minimise an energy of functions that take given values at given vertices.
 ///
@@ -24,6 +24,8 @@ use crate::{arrays, columns, doorway, options};
 /// coupling : "joint" (one norm for all columns) or "separate" (each column is a problem of its own)
 /// dual : "barycentric", "circumcentric" (MeshError where a dual edge has no length) or "circumcentric_or_barycentric"
 ///     (barycentres for such edges); for "l1_hessian" only
+/// delaunay : flip edges to the intrinsic Delaunay triangulation first; values stay at the vertices, face weights are averaged
+///     over the two faces of each flip; not for energies in space
 /// sharpness : 0 (the convex problem) to 1, reweighted rounds that concentrate curvature; for "l1_hessian" only
 /// solver : "auto", "fast", "clarabel", "clarabel-qdldl" or "clarabel-faer"; "auto" alone for quadratic energies, which take
 ///     one sparse factorisation
@@ -44,7 +46,7 @@ use crate::{arrays, columns, doorway, options};
 /// Rowe et al. 2024, eq. (22).
 #[pyfunction]
 #[pyo3(signature = (mesh, indices, values, *, energy="l1_hessian", face_weights=None, linear_constraints=None,
-    coupling="joint", dual="barycentric", sharpness=0.0, solver="auto", tolerance=1e-3, max_iterations=None,
+    coupling="joint", dual="barycentric", delaunay=false, sharpness=0.0, solver="auto", tolerance=1e-3, max_iterations=None,
     threads=None, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn interpolate(
@@ -57,6 +59,7 @@ pub fn interpolate(
     linear_constraints: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>,
     coupling: &str,
     dual: &str,
+    delaunay: bool,
     sharpness: f64,
     solver: &str,
     tolerance: Option<f64>,
@@ -66,19 +69,19 @@ pub fn interpolate(
 ) -> PyResult<Solution> {
     let indices = arrays::indices("indices", indices, mesh.n_vertices(), "vertex")?;
     let values = columns::read("values", values, indices.len(), "index")?;
-    let scalar = options::Scalar {
-        energy,
-        face_weights,
-        linear_constraints,
-        coupling,
-        dual,
+    let energy = options::EnergyWords { energy, face_weights, dual, delaunay };
+    let scalar = tools::ScalarOptions {
+        energy: energy.read(py, mesh)?,
+        linear_constraints: linear_constraints
+            .map(|(a, b)| matrix::read_constraints(&a, &b, mesh.n_vertices(), values.columns.n_columns))
+            .transpose()?,
+        coupling: options::coupling(py, coupling)?,
         sharpness,
         solve: options::solve(py, solver, tolerance, max_iterations, threads)?,
     };
-    let options = scalar.read(py, mesh, values.columns.n_columns)?;
     let progress = handle(progress);
     let solution = doorway::call(py, &progress, || {
-        tools::interpolate(mesh.inner(), &indices, &values.columns, &options, &progress)
+        tools::interpolate(mesh.inner(), &indices, &values.columns, &scalar, &progress)
     })?;
     Ok(Solution::new(py, solution, values.single))
 }

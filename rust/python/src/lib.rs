@@ -11,6 +11,7 @@ mod errors;
 mod interpolate;
 mod matrix;
 mod mesh;
+mod modes;
 mod operators;
 mod options;
 mod progress;
@@ -38,6 +39,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(operators::boundary_loops, module)?)?;
     module.add_function(wrap_pyfunction!(denoise::denoise, module)?)?;
     module.add_function(wrap_pyfunction!(interpolate::interpolate, module)?)?;
+    module.add_function(wrap_pyfunction!(modes::vibration_modes, module)?)?;
     module.add_function(wrap_pyfunction!(stylize::stylize, module)?)?;
     Ok(())
 }

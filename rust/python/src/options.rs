@@ -3,11 +3,10 @@
 use pyo3::prelude::*;
 use ridgeform_core::operators::{Dual, Energy};
 use ridgeform_core::solve::{Coupling, Solver};
-use ridgeform_core::tools::{ScalarOptions, SolveOptions};
+use ridgeform_core::tools::{EnergyOptions, SolveOptions};
 
 use crate::arrays::finite_floats;
 use crate::errors::argument;
-use crate::matrix;
 use crate::mesh::Mesh;
 
 /// The value that goes with the word `given`.
@@ -98,41 +97,30 @@ pub fn weights(
     given.map(|object| finite_floats(name, object)?.exactly(object.py(), name, length, what)).transpose()
 }
 
-/// The keywords of every scalar problem, as they came from Python.
-pub struct Scalar<'a, 'py> {
+/// The keywords that say which energy, as they came from Python.
+#[derive(Clone, Copy)]
+pub struct EnergyWords<'a, 'py> {
     /// `energy=`
     pub energy: &'a str,
     /// `face_weights=`
     pub face_weights: Option<&'a Bound<'py, PyAny>>,
-    /// `linear_constraints=`
-    pub linear_constraints: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
-    /// `coupling=`
-    pub coupling: &'a str,
     /// `dual=`
     pub dual: &'a str,
-    /// `sharpness=`
-    pub sharpness: f64,
-    /// `solver=`, `tolerance=`, `max_iterations=`, `threads=`
-    pub solve: SolveOptions,
+    /// `delaunay=`
+    pub delaunay: bool,
 }
 
-impl Scalar<'_, '_> {
-    /// The options for `n_columns` functions on `mesh`.
+impl EnergyWords<'_, '_> {
+    /// The options on `mesh`.
     ///
     /// # Errors
-    /// `ArgumentError` for unknown words and for arrays that do not fit.
-    pub fn read(self, py: Python<'_>, mesh: &Mesh, n_columns: usize) -> PyResult<ScalarOptions> {
-        Ok(ScalarOptions {
-            energy: energy(py, "energy", self.energy)?,
+    /// `ArgumentError` for unknown words and for weights that do not fit.
+    pub fn read(self, py: Python<'_>, mesh: &Mesh) -> PyResult<EnergyOptions> {
+        Ok(EnergyOptions {
+            kind: energy(py, "energy", self.energy)?,
             face_weights: weights("face_weights", self.face_weights, mesh.n_faces(), "face")?,
-            linear_constraints: self
-                .linear_constraints
-                .map(|(a, b)| matrix::read_constraints(&a, &b, mesh.n_vertices(), n_columns))
-                .transpose()?,
-            coupling: coupling(py, self.coupling)?,
             dual: dual(py, self.dual)?,
-            sharpness: self.sharpness,
-            solve: self.solve,
+            delaunay: self.delaunay,
         })
     }
 }

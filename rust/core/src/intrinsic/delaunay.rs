@@ -19,19 +19,44 @@ const FLIPS_PER_FACE: usize = 100;
 /// neighbour along two edges; the connectivity carries its twins, so that is no harm.
 #[must_use]
 pub fn delaunay_flips(connectivity: &Connectivity, lengths: &[[f64; 3]]) -> (Connectivity, Vec<[f64; 3]>, usize) {
+    delaunay_flips_carrying(connectivity, lengths, &mut [])
+}
+
+/// [`delaunay_flips`], with values of the faces carried along: a flip gives both new faces the mean of the two old ones by
+/// area, so that the integral over the surface stays and faces that no flip touches keep their value.
+///
+/// `face_values` has an entry a face, or none at all.
+pub fn delaunay_flips_carrying(
+    connectivity: &Connectivity,
+    lengths: &[[f64; 3]],
+    face_values: &mut [f64],
+) -> (Connectivity, Vec<[f64; 3]>, usize) {
     let mut surface = Surface { connectivity: connectivity.clone(), lengths: lengths.to_vec() };
     let mut stack: Vec<usize> = connectivity.edges().filter(|&h| connectivity.twin(h).is_some()).collect();
     let limit = FLIPS_PER_FACE * connectivity.n_faces();
     let mut n_flips = 0;
     while let Some(h) = stack.pop() {
         if n_flips < limit && surface.excess(h) > ANGLE_TOLERANCE {
+            let pair = surface.connectivity.twin(h).map(|twin| [h / 3, twin / 3]);
+            let areas = pair.map(|faces| faces.map(|f| area(surface.lengths[f])));
             if let Some(flip) = surface.flip(h) {
                 n_flips += 1;
+                if let (Some(faces), Some(areas), false) = (pair, areas, face_values.is_empty()) {
+                    average(face_values, faces, areas);
+                }
                 stack.extend(flip.outer.map(|(_, new)| new));
             }
         }
     }
     (surface.connectivity, surface.lengths, n_flips)
+}
+
+/// Gives two faces the mean of their values by area; equal values stay to the last bit.
+fn average(values: &mut [f64], [f, g]: [usize; 2], areas: [f64; 2]) {
+    if values[f] != values[g] {
+        let mean = (areas[0] * values[f] + areas[1] * values[g]) / (areas[0] + areas[1]);
+        (values[f], values[g]) = (mean, mean);
+    }
 }
 
 /// A triangulation that changes.

@@ -2,4 +2,4 @@
 
 mod delaunay;
 
-pub use delaunay::delaunay_flips;
+pub use delaunay::{delaunay_flips, delaunay_flips_carrying};

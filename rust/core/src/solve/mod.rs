@@ -9,6 +9,7 @@ pub mod cholesky;
 mod columns;
 pub mod cones;
 pub mod conic;
+pub mod eigen;
 pub mod fast;
 mod fast_solver;
 mod linear_constraints;

@@ -2,7 +2,6 @@
 
 use super::scalar::{ScalarOptions, ScalarProblem};
 use crate::mesh::Mesh;
-use crate::operators::voronoi_mass;
 use crate::progress::Progress;
 use crate::solve::{Columns, Solution};
 use crate::{Error, Result};
@@ -42,13 +41,7 @@ pub fn denoise(mesh: &Mesh, values: &Columns, options: &DenoiseOptions, progress
     if fixed.len() != n {
         return Err(Error::argument("fixed", format!("has {} entries, expected one per vertex: {n}", fixed.len())));
     }
-    let mass = voronoi_mass(mesh.connectivity(), mesh.edge_lengths());
-    let problem = ScalarProblem {
-        mesh,
-        options: &options.scalar,
-        fidelity: mass.iter().map(|m| options.fidelity * m).collect(),
-        target: values.clone(),
-        fixed,
-    };
+    let problem =
+        ScalarProblem { mesh, options: &options.scalar, fidelity: options.fidelity, target: values.clone(), fixed };
     problem.run(progress)
 }

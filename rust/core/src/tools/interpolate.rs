@@ -48,7 +48,7 @@ pub fn interpolate(
     if options.linear_constraints.is_none() {
         refuse_unknown_component(connectivity, &fixed)?;
     }
-    let problem = ScalarProblem { mesh, options, fidelity: vec![0.0; n], target, fixed };
+    let problem = ScalarProblem { mesh, options, fidelity: 0.0, target, fixed };
     problem.run(progress)
 }
 

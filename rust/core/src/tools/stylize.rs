@@ -5,7 +5,7 @@ use super::sharpness::{block_norms, sharpened_weights};
 use super::SolveOptions;
 use crate::block_rows::BlockRows;
 use crate::error::MeshError;
-use crate::intrinsic::delaunay_flips;
+use crate::intrinsic::delaunay_flips_carrying;
 use crate::mesh::{edge_lengths, triangle, Connectivity, Mesh};
 use crate::operators::{mollify, voronoi_mass, Dual, HessianPattern};
 use crate::progress::{Progress, Report};
@@ -171,6 +171,8 @@ struct Flow<'a> {
 struct Step {
     operator: BlockRows,
     areas: Vec<f64>,
+    /// The ridge weights of its faces, which may be flipped ones.
+    base: Vec<f64>,
     mass: Vec<f64>,
     norms: Vec<f64>,
     unit: f64,
@@ -259,9 +261,10 @@ impl<'a> Flow<'a> {
         let mut lengths = edge_lengths(self.connectivity.faces(), &self.points);
         let unit = self.unit(&lengths);
         let flipped;
+        let mut base = self.base.clone();
         let (connectivity, pattern) = if self.options.delaunay {
             mollify(self.connectivity, &mut lengths);
-            let (connectivity, flipped_lengths, _) = delaunay_flips(self.connectivity, &lengths);
+            let (connectivity, flipped_lengths, _) = delaunay_flips_carrying(self.connectivity, &lengths, &mut base);
             lengths = flipped_lengths;
             let pattern = HessianPattern::new(&connectivity);
             flipped = (connectivity, pattern);
@@ -274,7 +277,7 @@ impl<'a> Flow<'a> {
         let areas = lengths.iter().map(|&l| triangle::area(l)).collect();
         let mass = voronoi_mass(connectivity, &lengths);
         let norms = block_norms(&operator, &Columns::from_points(&self.points), self.options.coupling);
-        Ok(Step { operator, areas, mass, norms, unit })
+        Ok(Step { operator, areas, base, mass, norms, unit })
     }
 
     fn unit(&self, lengths: &[[f64; 3]]) -> f64 {
@@ -299,7 +302,7 @@ impl<'a> Flow<'a> {
             .collect();
         let problem = Problem {
             operator: &step.operator,
-            weights: sharpened_weights(&step.norms, &step.areas, &self.base, self.options.sharpness),
+            weights: sharpened_weights(&step.norms, &step.areas, &step.base, self.options.sharpness),
             fidelity: (0..n)
                 .map(|i| if fixed[i] { 0.0 } else { fidelity * step.mass[i] / strength.map_or(1.0, |s| s[i]) })
                 .collect(),

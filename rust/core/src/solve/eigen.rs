@@ -1,0 +1,238 @@
+//! The smallest eigenpairs of a quadratic energy against a mass, by inverse iteration on a subspace.
+
+use crate::block_rows::BlockRows;
+use crate::error::SolveError;
+use crate::progress::Progress;
+use crate::solve::cholesky::Cholesky;
+use crate::solve::normal_matrix::NormalMatrix;
+use crate::solve::Columns;
+use crate::{Error, Result};
+
+/// Vectors in the subspace beyond those asked for: as many again and some; modes of a surface then converge by 4 to 10 a round.
+const SPARE: usize = 8;
+
+/// Largest residual of a pair, relative to the largest eigenvalue asked for.
+const ACCURACY: f64 = 1e-8;
+
+/// Rounds at most; modes of meshes take 10 to 30.
+const MOST_ROUNDS: usize = 300;
+
+/// The shift as a part of the scale of eigenvalues: small against them, large against rounding.
+const SHIFT: f64 = 0.1;
+
+/// How often the shift grows tenfold while the shifted matrix is not positive definite.
+const SHIFT_ATTEMPTS: usize = 8;
+
+/// Eigenpairs, ascending.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Eigenpairs {
+    /// The eigenvalues.
+    pub values: Vec<f64>,
+    /// The eigenvectors, orthonormal with respect to the mass; zero where there is no mass.
+    pub vectors: Columns,
+}
+
+/// `uᵀ Q u = Σ_b weights_b ‖(H u)_b‖²` against `uᵀ M u`.
+#[derive(Debug, Clone, Copy)]
+pub struct Pencil<'a> {
+    /// `H`.
+    pub operator: &'a BlockRows,
+    /// One per block; they may be negative.
+    pub weights: &'a [f64],
+    /// The diagonal of `M`; rows without mass take no part.
+    pub mass: &'a [f64],
+    /// About how large the smallest positive eigenvalues are.
+    pub scale: f64,
+}
+
+impl Pencil<'_> {
+    /// The `count` smallest eigenvalues of `Q u = λ M u` and their vectors; `count` must not exceed the rows with mass.
+    ///
+    /// The first rows of the start are a fixed sequence, so that the same input gives the same bits.
+    ///
+    /// # Errors
+    /// [`SolveError`] when the matrix cannot be factored or the iteration does not settle; [`Error::Cancelled`].
+    pub fn smallest(&self, count: usize, progress: &Progress) -> Result<Eigenpairs> {
+        let n = self.mass.len();
+        let massive = self.mass.iter().filter(|m| **m > 0.0).count();
+        let size = massive.min(2 * count + SPARE);
+        let (mut cholesky, shift) = self.factored(size)?;
+        let mut block: Vec<Vec<f64>> = (0..size)
+            .map(|j| {
+                let step = (j as f64 + 2.5).sqrt();
+                (0..n).map(|i| if self.mass[i] > 0.0 { ((i + 1) as f64 * step).fract() - 0.5 } else { 0.0 }).collect()
+            })
+            .collect();
+        block[0].iter_mut().zip(self.mass).for_each(|(x, m)| *x = if *m > 0.0 { 1.0 } else { 0.0 });
+        for _ in 0..MOST_ROUNDS {
+            progress.check()?;
+            let mut right: Vec<f64> = block.iter().flat_map(|x| x.iter().zip(self.mass).map(|(x, m)| m * x)).collect();
+            cholesky.solve(&mut right, size);
+            block = right.chunks_exact(n).map(<[f64]>::to_vec).collect();
+            self.orthonormalise(&mut block)?;
+            let images: Vec<Vec<f64>> = block.iter().map(|x| self.times(x)).collect();
+            let projected: Vec<Vec<f64>> = images.iter().map(|y| block.iter().map(|x| dot(x, y)).collect()).collect();
+            let (values, rotation) = symmetric_eigen(projected);
+            block = combined(&block, &rotation);
+            let images = combined(&images, &rotation);
+            let largest = values[count - 1].abs().max(shift);
+            let residual = (0..count).map(|j| self.residual(&block[j], &images[j], values[j])).fold(0.0, f64::max);
+            if residual <= ACCURACY * largest {
+                let data = block[..count].concat();
+                return Ok(Eigenpairs {
+                    values: values[..count].to_vec(),
+                    vectors: Columns { n_rows: n, n_columns: count, data },
+                });
+            }
+        }
+        let reason = format!("{count} modes did not settle in {MOST_ROUNDS} rounds; ask for fewer");
+        Err(Error::Solve(SolveError::Factorisation { reason }))
+    }
+
+    /// The factor of `Q + shift·M`, and the shift.
+    fn factored(&self, n_right: usize) -> Result<(Cholesky, f64)> {
+        let normal = NormalMatrix::new(self.operator);
+        let mut cholesky = Cholesky::analyse(normal.pattern().clone(), n_right)?;
+        let mut values = Vec::new();
+        let mut shift = SHIFT * self.scale;
+        let mut attempt = 0;
+        loop {
+            let diagonal: Vec<f64> = self.mass.iter().map(|m| shift * m).collect();
+            normal.assemble(self.operator, self.weights, &diagonal, &mut values);
+            for (&start, m) in normal.pattern().starts.iter().zip(self.mass) {
+                if *m == 0.0 && values[start] == 0.0 {
+                    values[start] = 1.0;
+                }
+            }
+            attempt += 1;
+            match cholesky.factorise(&values) {
+                Ok(()) => return Ok((cholesky, shift)),
+                Err(error) if attempt == SHIFT_ATTEMPTS => return Err(error.into()),
+                Err(_) => shift *= 10.0,
+            }
+        }
+    }
+
+    /// `Q u`, zero where there is no mass.
+    fn times(&self, u: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; u.len()];
+        for (b, w) in self.weights.iter().enumerate() {
+            let h = self.operator.block_times(b, u);
+            let (columns, values) = self.operator.block(b);
+            for (&column, v) in columns.iter().zip(values) {
+                out[column as usize] += w * (v[0] * h[0] + v[1] * h[1] + v[2] * h[2]);
+            }
+        }
+        out.iter_mut().zip(self.mass).filter(|(_, m)| **m == 0.0).for_each(|(x, _)| *x = 0.0);
+        out
+    }
+
+    /// The length of `Q u − λ M u` in the norm of the inverse mass.
+    fn residual(&self, u: &[f64], image: &[f64], value: f64) -> f64 {
+        let terms = u.iter().zip(image).zip(self.mass).filter(|(_, m)| **m > 0.0);
+        terms.map(|((x, y), m)| (y - value * m * x).powi(2) / m).sum::<f64>().sqrt()
+    }
+
+    /// Gram and Schmidt, twice, against the mass.
+    fn orthonormalise(&self, block: &mut [Vec<f64>]) -> Result<()> {
+        for j in 0..block.len() {
+            let (before, rest) = block.split_at_mut(j);
+            let Some(x) = rest.first_mut() else { continue };
+            x.iter_mut().zip(self.mass).filter(|(_, m)| **m == 0.0).for_each(|(x, _)| *x = 0.0);
+            for _ in 0..2 {
+                for y in before.iter() {
+                    let along = mass_dot(self.mass, x, y);
+                    x.iter_mut().zip(y).for_each(|(x, y)| *x -= along * y);
+                }
+                let length = mass_dot(self.mass, x, x).sqrt();
+                if !(length > 0.0 && length.is_finite()) {
+                    let reason = "the modes are not independent; ask for fewer".into();
+                    return Err(Error::Solve(SolveError::Factorisation { reason }));
+                }
+                x.iter_mut().for_each(|x| *x /= length);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// `xᵀ M y`.
+#[must_use]
+pub fn mass_dot(mass: &[f64], x: &[f64], y: &[f64]) -> f64 {
+    mass.iter().zip(x.iter().zip(y)).map(|(m, (x, y))| m * x * y).sum()
+}
+
+fn dot(x: &[f64], y: &[f64]) -> f64 {
+    x.iter().zip(y).map(|(x, y)| x * y).sum()
+}
+
+/// The linear combinations of `block` in the columns of `rotation` (one vector a column).
+fn combined(block: &[Vec<f64>], rotation: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let combine = |coefficients: &Vec<f64>| {
+        let mut sum = vec![0.0; block[0].len()];
+        for (x, c) in block.iter().zip(coefficients) {
+            sum.iter_mut().zip(x).for_each(|(s, x)| *s += c * x);
+        }
+        sum
+    };
+    rotation.iter().map(combine).collect()
+}
+
+/// The eigenvalues of a small symmetric matrix, ascending, and its eigenvectors: Jacobi's rotations, which give the same bits
+/// on any number of threads.
+#[must_use]
+pub fn symmetric_eigen(mut a: Vec<Vec<f64>>) -> (Vec<f64>, Vec<Vec<f64>>) {
+    let n = a.len();
+    let mut vectors: Vec<Vec<f64>> = (0..n).map(|j| (0..n).map(|i| f64::from(u8::from(i == j))).collect()).collect();
+    // Convergence is quadratic: some ten sweeps at most.
+    for _ in 0..30 {
+        let off: f64 = (0..n).map(|i| (0..i).map(|j| a[i][j] * a[i][j]).sum::<f64>()).sum();
+        let whole: f64 = a.iter().flatten().map(|x| x * x).sum();
+        if off <= 1e-32 * whole {
+            break;
+        }
+        for p in 0..n {
+            for q in p + 1..n {
+                if a[p][q] == 0.0 {
+                    continue;
+                }
+                let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
+                let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
+                let c = 1.0 / t.hypot(1.0);
+                let s = c * t;
+                for row in &mut a {
+                    (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
+                }
+                let (upper, lower) = a.split_at_mut(q);
+                let pairs = upper[p].iter_mut().zip(&mut lower[0]);
+                pairs.for_each(|(x, y)| (*x, *y) = (c * *x - s * *y, s * *x + c * *y));
+                let (left, right) = vectors.split_at_mut(q);
+                let pairs = left[p].iter_mut().zip(&mut right[0]);
+                pairs.for_each(|(x, y)| (*x, *y) = (c * *x - s * *y, s * *x + c * *y));
+            }
+        }
+    }
+    let mut pairs: Vec<(f64, Vec<f64>)> = vectors.into_iter().enumerate().map(|(j, v)| (a[j][j], v)).collect();
+    pairs.sort_by(|x, y| x.0.total_cmp(&y.0));
+    pairs.into_iter().unzip()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn jacobi_diagonalises() {
+        let a = vec![vec![2.0, -1.0, 0.0], vec![-1.0, 2.0, -1.0], vec![0.0, -1.0, 2.0]];
+        let (values, vectors) = symmetric_eigen(a.clone());
+        let root = 2.0_f64.sqrt();
+        for (found, expected) in values.iter().zip([2.0 - root, 2.0, 2.0 + root]) {
+            assert!((found - expected).abs() < 1e-14);
+        }
+        for (value, v) in values.iter().zip(&vectors) {
+            for (row, x) in a.iter().zip(v) {
+                assert!((dot(row, v) - value * x).abs() < 1e-14);
+            }
+        }
+    }
+}
