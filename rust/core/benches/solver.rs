@@ -7,9 +7,8 @@ use ridgeform_core::operators::{voronoi_mass, Dual, HessianPattern};
 use ridgeform_core::progress::Progress;
 use ridgeform_core::shapes;
 use ridgeform_core::solve::cholesky::Cholesky;
-use ridgeform_core::solve::cones::{shrink, Block};
 use ridgeform_core::solve::normal_matrix::NormalMatrix;
-use ridgeform_core::solve::{Columns, Coupling, FreeOperator, Problem, Reduced, Transposed};
+use ridgeform_core::solve::{Columns, Coupling, FreeOperator, Problem, Reduced, Sweep};
 use ridgeform_core::tools::{stylize, SolveOptions, StylizeOptions};
 
 fn solver(criterion: &mut Criterion) {
@@ -29,21 +28,19 @@ fn solver(criterion: &mut Criterion) {
         bencher.iter(|| normal.assemble(&operator, &ones, &fidelity, &mut entries));
     });
     group.bench_function("factorisation, symbolic", |bencher| {
-        bencher.iter_batched(
-            || normal.pattern().clone(),
-            |pattern| Cholesky::analyse(pattern, 3),
-            BatchSize::PerIteration,
-        );
+        bencher.iter_batched(|| normal.pattern().clone(), Cholesky::analyse, BatchSize::PerIteration);
     });
-    let mut cholesky = Cholesky::analyse(normal.pattern().clone(), 3).unwrap();
+    let mut cholesky = Cholesky::analyse(normal.pattern().clone()).unwrap();
     group.bench_function("factorisation, numeric", |bencher| bencher.iter(|| cholesky.factorise(&entries)));
     let points = Columns::from_points(&shape.vertices);
-    for (name, k) in [("triangular solves, one column", 1), ("triangular solves, three columns", 3)] {
-        let right = &points.data[..k * points.n_rows];
-        group.bench_function(name, |bencher| {
-            bencher.iter_batched(|| right.to_vec(), |mut right| cholesky.solve(&mut right, k), BatchSize::PerIteration);
-        });
-    }
+    let one: Vec<[f64; 1]> = shape.vertices.iter().map(|x| [x[0]]).collect();
+    group.bench_function("triangular solves, one column", |bencher| {
+        bencher.iter_batched(|| one.clone(), |mut right| cholesky.solve(&mut right), BatchSize::PerIteration);
+    });
+    group.bench_function("triangular solves, three columns", |bencher| {
+        let right = || shape.vertices.clone();
+        bencher.iter_batched(right, |mut right| cholesky.solve(&mut right), BatchSize::PerIteration);
+    });
 
     let problem = Problem {
         operator: &operator,
@@ -55,15 +52,14 @@ fn solver(criterion: &mut Criterion) {
         coupling: Coupling::Joint,
     };
     let free = FreeOperator::new(&operator, &problem.fixed);
-    let transposed = Transposed::new(&operator);
-    let reduced = Reduced::<3>::new(&problem, &free, &transposed, &[0, 1, 2]).unwrap();
-    let (mut h, mut g): (Vec<Block<3>>, Vec<[f64; 3]>) = (Vec::new(), Vec::new());
-    group.bench_function("product with H", |bencher| bencher.iter(|| reduced.apply(&reduced.target, &mut h)));
-    group.bench_function("product with the transpose", |bencher| bencher.iter(|| reduced.apply_transposed(&h, &mut g)));
-    let mut z = vec![[[0.0; 3]; BLOCK]; h.len()];
-    group.bench_function("shrinkage", |bencher| {
-        bencher.iter(|| z.iter_mut().zip(&h).for_each(|(z, h)| *z = shrink(h, 0.01)));
-    });
+    let reduced = Reduced::<4>::new(&problem, &free, &[0, 1, 2]).unwrap();
+    let r = vec![100.0; operator.n_blocks()];
+    for (name, check) in [("pass over the blocks", false), ("pass over the blocks, with a check", true)] {
+        let mut sweep = Sweep::new(&reduced, &r, |_| ([[0.0; 4]; BLOCK], [[0.0; 4]; BLOCK]));
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| sweep.advance(&reduced, &r, &reduced.target, check));
+        });
+    }
 
     let options = StylizeOptions {
         iterations: 1,

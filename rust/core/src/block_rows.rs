@@ -45,6 +45,7 @@ impl BlockRows {
     }
 
     /// The columns and values of block `b`.
+    #[inline(always)]
     #[must_use]
     pub fn block(&self, b: usize) -> (&[u32], &[[f64; BLOCK]]) {
         let range = self.starts[b]..self.starts[b + 1];

@@ -3,6 +3,8 @@
 //! `min_u Σ_f A_f ‖H_f u‖²` with the values at `indices.u32` known (`fidelity=0`), or plus `α ‖u − u₀‖²_M`: one
 //! factorisation, one solve. Its parts are timed as well, in the order in which they run.
 
+use std::convert::Infallible;
+
 use ridgeform_core::block_rows::BlockRows;
 use ridgeform_core::mesh::{triangle, Mesh};
 use ridgeform_core::operators::{voronoi_mass, Dual, HessianPattern};
@@ -24,15 +26,14 @@ pub fn measure(problem: &Problem, arguments: &Arguments) -> Outcome {
 
     let mut quadratic = Quadratic::new(&mesh, &values, &known, fidelity)?;
     let mut symbolic = Samples::new(arguments)?;
-    quadratic.cholesky = symbolic.take(|| Cholesky::analyse(quadratic.normal.pattern().clone(), 3))?;
+    quadratic.cholesky = symbolic.take(|| Cholesky::analyse(quadratic.normal.pattern().clone()))?;
     let mut numeric = Samples::new(arguments)?;
     numeric.take(|| quadratic.cholesky.factorise(&quadratic.entries))?;
-    let columns = [&quadratic.right[..]; 3].concat();
-    let n = quadratic.right.len();
+    let columns: Vec<[f64; 3]> = quadratic.right.iter().map(|[x]| [*x; 3]).collect();
     let mut one = Samples::new(arguments)?;
-    one.take(|| quadratic.back_substitute(&columns[..n], 1))?;
+    one.take(|| quadratic.back_substitute(&quadratic.right.clone()))?;
     let mut three = Samples::new(arguments)?;
-    three.take(|| quadratic.back_substitute(&columns, 3))?;
+    three.take(|| quadratic.back_substitute(&columns))?;
     let mut fields = whole.fields();
     fields.push(("factor_entries", quadratic.cholesky.factor_len().to_string()));
     fields.extend([
@@ -50,7 +51,7 @@ pub fn measure(problem: &Problem, arguments: &Arguments) -> Outcome {
 
 /// The normal equations, ready to be factored.
 struct Quadratic {
-    right: Vec<f64>,
+    right: Vec<[f64; 1]>,
     normal: NormalMatrix,
     cholesky: Cholesky,
     entries: Vec<f64>,
@@ -67,31 +68,31 @@ impl Quadratic {
         known.iter().for_each(|&i| is_known[i] = true);
         let (operator, constant) = without_columns(&whole, values, &is_known);
         let free: Vec<usize> = (0..values.len()).filter(|&i| !is_known[i]).collect();
-        let mut right: Vec<f64> = free.iter().map(|&i| fidelity * mass[i] * values[i]).collect();
+        let mut right: Vec<[f64; 1]> = free.iter().map(|&i| [fidelity * mass[i] * values[i]]).collect();
         for (b, constant) in constant.iter().enumerate() {
             let (columns, entries) = operator.block(b);
             for (&column, entry) in columns.iter().zip(entries) {
                 let product: f64 = entry.iter().zip(constant).map(|(x, y)| x * y).sum();
-                right[column as usize] -= per_face[b] * product;
+                right[column as usize][0] -= per_face[b] * product;
             }
         }
         let diagonal: Vec<f64> = free.iter().map(|&i| fidelity * mass[i]).collect();
         let normal = NormalMatrix::new(&operator);
-        let cholesky = Cholesky::analyse(normal.pattern().clone(), 1)?;
+        let cholesky = Cholesky::analyse(normal.pattern().clone())?;
         let mut entries = Vec::new();
         normal.assemble(&operator, &per_face, &diagonal, &mut entries);
         Ok(Self { right, normal, cholesky, entries })
     }
 
-    fn back_substitute(&mut self, columns: &[f64], k: usize) -> Result<Vec<f64>, std::convert::Infallible> {
-        let mut solution = columns.to_vec();
-        self.cholesky.solve(&mut solution, k);
+    fn back_substitute<const K: usize>(&mut self, right: &[[f64; K]]) -> Result<Vec<[f64; K]>, Infallible> {
+        let mut solution = right.to_vec();
+        self.cholesky.solve(&mut solution);
         Ok(solution)
     }
 
-    fn solve(mut self) -> Result<Vec<f64>, Box<dyn std::error::Error>> {
+    fn solve(mut self) -> Result<Vec<[f64; 1]>, Box<dyn std::error::Error>> {
         self.cholesky.factorise(&self.entries)?;
-        self.cholesky.solve(&mut self.right, 1);
+        self.cholesky.solve(&mut self.right);
         Ok(self.right)
     }
 }

@@ -6,44 +6,58 @@ use crate::block_rows::BLOCK;
 pub type Block<const K: usize> = [[f64; K]; BLOCK];
 
 /// The Frobenius norm of a block.
+#[inline(always)]
 #[must_use]
 pub fn norm<const K: usize>(x: &Block<K>) -> f64 {
     inner(x, x).sqrt()
 }
 
 /// The Frobenius inner product of two blocks.
+#[inline(always)]
 #[must_use]
 pub fn inner<const K: usize>(x: &Block<K>, y: &Block<K>) -> f64 {
-    let mut sum = 0.0;
-    for (a, b) in x.iter().zip(y) {
-        for (s, t) in a.iter().zip(b) {
-            sum += s * t;
+    // A sum for each column: they fit a vector register, one sum of all would wait for itself.
+    let mut sums = [0.0; K];
+    for r in 0..BLOCK {
+        for c in 0..K {
+            sums[c] += x[r][c] * y[r][c];
         }
     }
-    sum
+    sums.iter().sum()
 }
 
 /// `a·x + b·y`.
+#[inline(always)]
 #[must_use]
 pub fn combine<const K: usize>(a: f64, x: &Block<K>, b: f64, y: &Block<K>) -> Block<K> {
-    std::array::from_fn(|r| std::array::from_fn(|c| a * x[r][c] + b * y[r][c]))
+    let mut out = *x;
+    for r in 0..BLOCK {
+        for c in 0..K {
+            out[r][c] = a * x[r][c] + b * y[r][c];
+        }
+    }
+    out
 }
 
 /// `x` scaled by `a`.
+#[inline(always)]
 #[must_use]
 pub fn scaled<const K: usize>(a: f64, x: &Block<K>) -> Block<K> {
-    x.map(|row| row.map(|v| a * v))
+    let mut out = *x;
+    for row in &mut out {
+        for v in row {
+            *v *= a;
+        }
+    }
+    out
 }
 
 /// Shrinkage, the proximal map of `t·‖·‖`: shortens `x` by `t`, to zero where it is shorter than that.
+#[inline(always)]
 #[must_use]
 pub fn shrink<const K: usize>(x: &Block<K>, t: f64) -> Block<K> {
     let length = norm(x);
-    if length <= t {
-        [[0.0; K]; BLOCK]
-    } else {
-        scaled(1.0 - t / length, x)
-    }
+    scaled(if length <= t { 0.0 } else { 1.0 - t / length }, x)
 }
 
 #[cfg(test)]

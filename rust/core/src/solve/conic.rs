@@ -11,7 +11,7 @@ use clarabel::solver::{
 use crate::block_rows::BLOCK;
 use crate::error::SolveError;
 use crate::progress::Progress;
-use crate::solve::certificate::bound_along_ray;
+use crate::solve::certificate::{bound_along_ray, DualPoint};
 use crate::solve::cones::{norm, scaled, Block};
 use crate::solve::fast::Outcome;
 use crate::solve::problem::{Problem, Settings, Status};
@@ -31,12 +31,12 @@ const MARGIN: f64 = 0.01;
 /// [`SolveError`] when Clarabel cannot make anything of the problem; [`Error::Cancelled`].
 pub fn minimise<const K: usize>(
     reduced: &Reduced<'_, K>,
-    n_columns: usize,
     method: &str,
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Outcome<K>> {
-    let program = Program::new(reduced, n_columns);
+    let n_columns = reduced.n_columns;
+    let program = Program::new(reduced);
     let tolerance = settings.tolerance.map_or(1e-9, |t| (MARGIN * t).clamp(1e-11, 1e-3));
     let options = DefaultSettings {
         verbose: false,
@@ -102,12 +102,16 @@ fn certified<const K: usize>(
     reduced.apply(&reduced.target, &mut at_target);
     let floor = reduced.floor(&at_target);
     let bound = |q: &[Block<K>]| {
+        let mut dual_point = DualPoint::default();
+        for (b, (q, w)) in q.iter().zip(reduced.weights).enumerate() {
+            dual_point.add(q, *w, &reduced.constant(b));
+        }
         let mut g = Vec::new();
-        reduced.apply_transposed(q, &mut g);
+        reduced.apply_transposed(|b| q[b], &mut g);
         if let Some(constraints) = &reduced.constraints {
             constraints.add_transposed(y, &mut g);
         }
-        bound_along_ray(reduced, q, y, &g, &u)
+        bound_along_ray(reduced, &dual_point, y, &g, &u)
     };
     let mut dual = bound(q);
     if reduced.fidelity.iter().all(|a| *a > 0.0) {
@@ -130,8 +134,8 @@ struct Program<const K: usize> {
 }
 
 impl<const K: usize> Program<K> {
-    fn new(reduced: &Reduced<'_, K>, k: usize) -> Self {
-        let (n, m) = (reduced.n(), reduced.constant.len());
+    fn new(reduced: &Reduced<'_, K>) -> Self {
+        let (n, m, k) = (reduced.n(), reduced.n_blocks(), reduced.n_columns);
         let n_variables = k * n + m;
         let mut linear = vec![0.0; n_variables];
         let mut diagonal = Vec::new();
@@ -165,7 +169,8 @@ impl<const K: usize> Program<K> {
             }
             cones.push(ZeroConeT(n_equalities));
         }
-        for (b, constant) in reduced.constant.iter().enumerate() {
+        for b in 0..m {
+            let constant = reduced.constant(b);
             row.push(right.len());
             column.push(k * n + b);
             value.push(-1.0);

@@ -8,6 +8,9 @@ use crate::solve::normal_matrix::NormalMatrix;
 use crate::solve::Columns;
 use crate::{Error, Result};
 
+/// Vectors that one triangular solve takes: a vector register's worth.
+const AT_ONCE: usize = 4;
+
 /// Vectors in the subspace beyond those asked for: as many again and some; modes of a surface then converge by 4 to 10 a round.
 const SPARE: usize = 8;
 
@@ -56,7 +59,7 @@ impl Pencil<'_> {
         let n = self.mass.len();
         let massive = self.mass.iter().filter(|m| **m > 0.0).count();
         let size = massive.min(2 * count + SPARE);
-        let (mut cholesky, shift) = self.factored(size)?;
+        let (mut cholesky, shift) = self.factored()?;
         let mut block: Vec<Vec<f64>> = (0..size)
             .map(|j| {
                 let step = (j as f64 + 2.5).sqrt();
@@ -66,9 +69,14 @@ impl Pencil<'_> {
         block[0].iter_mut().zip(self.mass).for_each(|(x, m)| *x = if *m > 0.0 { 1.0 } else { 0.0 });
         for _ in 0..MOST_ROUNDS {
             progress.check()?;
-            let mut right: Vec<f64> = block.iter().flat_map(|x| x.iter().zip(self.mass).map(|(x, m)| m * x)).collect();
-            cholesky.solve(&mut right, size);
-            block = right.chunks_exact(n).map(<[f64]>::to_vec).collect();
+            for group in block.chunks_mut(AT_ONCE) {
+                let row = |i: usize| std::array::from_fn(|c| group.get(c).map_or(0.0, |x| self.mass[i] * x[i]));
+                let mut right: Vec<[f64; AT_ONCE]> = (0..n).map(row).collect();
+                cholesky.solve(&mut right);
+                for (c, x) in group.iter_mut().enumerate() {
+                    x.iter_mut().zip(&right).for_each(|(x, row)| *x = row[c]);
+                }
+            }
             self.orthonormalise(&mut block)?;
             let images: Vec<Vec<f64>> = block.iter().map(|x| self.times(x)).collect();
             let projected: Vec<Vec<f64>> = images.iter().map(|y| block.iter().map(|x| dot(x, y)).collect()).collect();
@@ -90,9 +98,9 @@ impl Pencil<'_> {
     }
 
     /// The factor of `Q + shift·M`, and the shift.
-    fn factored(&self, n_right: usize) -> Result<(Cholesky, f64)> {
+    fn factored(&self) -> Result<(Cholesky, f64)> {
         let normal = NormalMatrix::new(self.operator);
-        let mut cholesky = Cholesky::analyse(normal.pattern().clone(), n_right)?;
+        let mut cholesky = Cholesky::analyse(normal.pattern().clone())?;
         let mut values = Vec::new();
         let mut shift = SHIFT * self.scale;
         let mut attempt = 0;

@@ -4,31 +4,30 @@
 //! `z ← shrink(h + p/R, w/R)`, multipliers `p ← p + R (h − z)`. The point `p + R(Hu + c − z)` before the shrinkage solves
 //! the dual equations exactly, which is what the certificate is made of.
 
-use rayon::prelude::*;
-
 use crate::block_rows::BLOCK;
 use crate::progress::{Progress, Report};
-use crate::solve::certificate::bound_along_ray;
-use crate::solve::cones::{combine, norm, scaled, shrink, Block};
+use crate::solve::certificate::{bound_along_ray, DualPoint};
+use crate::solve::cones::{norm, scaled, Block};
 use crate::solve::penalty::{reweighted, uniform_scale};
 use crate::solve::problem::{Problem, Settings, Status};
-use crate::solve::reduced::{Reduced, GRAIN};
+use crate::solve::reduced::Reduced;
+use crate::solve::sweep::{Sums, Sweep};
 use crate::solve::system::System;
 use crate::Result;
 
-/// Over-relaxation: 1.5 to 1.8 is usual for alternating directions; 1.7 was the best measured.
-const RELAXATION: f64 = 1.7;
-
 /// Iterations between two looks at the certificate and the stopping rules.
-const CHECK_EVERY: usize = 5;
+const CHECK_EVERY: usize = 3;
 
 /// Default bound on the iterations; a problem that needs more is better served by an interior-point method.
 const MAX_ITERATIONS: usize = 3000;
 
 /// Without a tolerance the iteration stops when the objective falls by less than this part between two checks and
-/// `H u + c` and `z` differ by less than [`SPLIT_RESIDUAL`]: the true error is then about this part.
-const RESIDUAL_GOAL: f64 = 1e-4;
+/// `H u + c` and `z` differ by less than [`SPLIT_RESIDUAL`]: the true error is then about [`RESIDUAL_GOAL`].
+const STILL: f64 = 6e-5;
 const SPLIT_RESIDUAL: f64 = 2e-2;
+
+/// The true error that a run without a tolerance aims at.
+const RESIDUAL_GOAL: f64 = 1e-4;
 
 /// A gap this small also means a true error of about 1e-4: the bound is the slower of the two by a factor of ten (measured
 /// on the flow), so there is no need to wait for the residuals.
@@ -105,14 +104,9 @@ struct Run<'r, 's, const K: usize> {
     reduced: Reduced<'r, K>,
     system: &'s mut System,
     r: Vec<f64>,
-    z: Vec<Block<K>>,
-    p: Vec<Block<K>>,
+    sweep: Sweep<K>,
     u: Vec<[f64; K]>,
     previous: Vec<[f64; K]>,
-    h: Vec<Block<K>>,
-    /// `R(z − c) − p` of the last step.
-    split: Vec<Block<K>>,
-    right: Vec<[f64; K]>,
     y: Vec<[f64; K]>,
     floor: f64,
     best: Best<K>,
@@ -135,37 +129,21 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         floor: f64,
         progress: &Progress,
     ) -> Result<Self> {
-        let m = reduced.constant.len();
-        let (r, z, p, next_reweighting) = match warm {
-            Some(warm) => {
-                let p = warm.p.iter().zip(reduced.weights).map(|(p, w)| scaled(*w, p)).collect();
-                (reweighted(&warm.length, reduced.weights), warm.z, p, REWEIGHT_WARM)
-            }
+        let (r, next_reweighting) = match &warm {
+            Some(warm) => (reweighted(&warm.length, reduced.weights), REWEIGHT_WARM),
             None => {
                 let scale = uniform_scale(&mut reduced, system, &h, progress)?;
-                let zero = vec![[[0.0; K]; BLOCK]; m];
-                (reduced.weights.iter().map(|w| scale * w).collect(), zero.clone(), zero, REWEIGHT_COLD)
+                (reduced.weights.iter().map(|w| scale * w).collect(), REWEIGHT_COLD)
             }
         };
         system.factorise(&mut reduced, &r)?;
+        let sweep = Sweep::new(&reduced, &r, |b| match &warm {
+            Some(warm) => (warm.z[b], scaled(reduced.weights[b], &warm.p[b])),
+            None => ([[0.0; K]; BLOCK], [[0.0; K]; BLOCK]),
+        });
         let best = Best { u: reduced.target.clone(), primal: f64::INFINITY, dual: 0.0 };
         let (u, previous) = (reduced.target.clone(), Vec::new());
-        Ok(Self {
-            reduced,
-            system,
-            r,
-            z,
-            p,
-            u,
-            previous,
-            h,
-            split: Vec::new(),
-            right: Vec::new(),
-            y: Vec::new(),
-            floor,
-            best,
-            next_reweighting,
-        })
+        Ok(Self { reduced, system, r, sweep, u, previous, y: Vec::new(), floor, best, next_reweighting })
     }
 
     fn iterate(mut self, settings: &Settings, progress: &Progress) -> Result<Outcome<K>> {
@@ -180,20 +158,18 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
                 break;
             }
             iterations += 1;
-            self.step_u();
-            let primal = self.reduced.objective(&self.u, &self.h);
+            self.previous.clone_from(&self.u);
+            self.y = self.system.solve(&self.reduced, self.sweep.right(), &mut self.u);
+            let check = iterations % CHECK_EVERY == 0 || iterations == max;
+            let sums = self.sweep.advance(&self.reduced, &self.r, &self.u, check);
+            let primal = sums.norms + self.reduced.fidelity_term(&self.u);
             if primal < self.best.primal && self.is_feasible() {
                 self.best.primal = primal;
                 self.best.u.clone_from(&self.u);
             }
-            let check = iterations % CHECK_EVERY == 0 || iterations == max;
             if check {
-                self.bound_from_equations();
-            }
-            self.step_z();
-            if check {
-                self.bound_from_multipliers();
-                if self.is_done(settings, last_check) {
+                self.bound(&sums);
+                if self.is_done(settings, last_check, &sums) {
                     status = Status::Solved;
                     break;
                 }
@@ -204,60 +180,24 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             }
             if iterations == self.next_reweighting {
                 self.next_reweighting *= 3;
-                self.r = reweighted(&self.lengths(), self.reduced.weights);
-                self.system.factorise(&mut self.reduced, &self.r)?;
+                self.reweight()?;
             }
         }
         Ok(self.outcome(iterations, status))
     }
 
-    fn step_u(&mut self) {
-        let (r, z, p, c) = (&self.r, &self.z, &self.p, &self.reduced.constant);
-        (0..z.len())
-            .into_par_iter()
-            .with_min_len(GRAIN)
-            .map(|b| {
-                let split = combine(r[b], &z[b], -r[b], &c[b]);
-                combine(1.0, &split, -1.0, &p[b])
-            })
-            .collect_into_vec(&mut self.split);
-        self.reduced.apply_transposed(&self.split, &mut self.right);
-        self.previous.clone_from(&self.u);
-        self.y = self.system.solve(&self.reduced, &self.right, &mut self.u);
-        self.reduced.apply(&self.u, &mut self.h);
+    /// New penalties from the lengths that the blocks have now; split variables and multipliers stay.
+    fn reweight(&mut self) -> Result<()> {
+        let r = reweighted(&self.lengths(), self.reduced.weights);
+        self.system.factorise(&mut self.reduced, &r)?;
+        let sweep = Sweep::new(&self.reduced, &r, |b| self.sweep.split(self.reduced.weights, &self.r, b));
+        (self.r, self.sweep) = (r, sweep);
+        Ok(())
     }
 
-    /// Shrinkage and multipliers.
-    fn step_z(&mut self) {
-        let (r, w, h) = (&self.r, self.reduced.weights, &self.h);
-        self.z.par_iter_mut().zip(self.p.par_iter_mut()).enumerate().with_min_len(GRAIN).for_each(|(b, (z, p))| {
-            if r[b] > 0.0 {
-                let relaxed = combine(RELAXATION, &h[b], 1.0 - RELAXATION, z);
-                let moved = combine(1.0, &relaxed, 1.0 / r[b], p);
-                *z = shrink(&moved, w[b] / r[b]);
-                *p = combine(r[b], &moved, -r[b], z);
-            }
-        });
-    }
-
-    /// `Σ w ‖H u + c − z‖` over `Σ w ‖H u + c‖`.
-    fn residual(&self) -> f64 {
-        let (mut off, mut all) = (0.0, 0.0);
-        for ((h, z), w) in self.h.iter().zip(&self.z).zip(self.reduced.weights) {
-            off += w * norm(&combine(1.0, h, -1.0, z));
-            all += w * norm(h);
-        }
-        off / all.max(f64::MIN_POSITIVE)
-    }
-
-    /// The lower bound from `p + R (H u + c − z)`, whose `Hᵀq + Aᵀy` the linear system has already computed.
-    fn bound_from_equations(&mut self) {
-        let q: Vec<Block<K>> = (0..self.h.len())
-            .map(|b| {
-                let gap = combine(1.0, &self.h[b], -1.0, &self.z[b]);
-                combine(1.0, &self.p[b], self.r[b], &gap)
-            })
-            .collect();
+    /// Lower bounds from `p + R (H u + c − z)`, whose `Hᵀq + Aᵀy` the linear system has computed, and, where there is
+    /// fidelity everywhere, from the multipliers themselves, which are never too long.
+    fn bound(&mut self, sums: &Sums) {
         let g: Vec<[f64; K]> = (0..self.u.len())
             .map(|i| {
                 let (a, proximal) = (2.0 * self.reduced.fidelity[i], self.system.proximal()[i]);
@@ -265,33 +205,31 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
                 std::array::from_fn(|c| a * (t[c] - u[c]) + proximal * (before[c] - u[c]))
             })
             .collect();
-        self.best.dual = self.best.dual.max(bound_along_ray(&self.reduced, &q, &self.y, &g, &self.u));
+        self.bound_from(&sums.from_equations, &g);
+        if self.reduced.fidelity.iter().all(|a| *a > 0.0) {
+            let mut g = self.sweep.product().to_vec();
+            if let Some(constraints) = &self.reduced.constraints {
+                constraints.add_transposed(&self.y, &mut g);
+            }
+            self.bound_from(&sums.multipliers, &g);
+        }
     }
 
-    /// The lower bound from the multipliers themselves, which are never too long; needs fidelity everywhere.
-    fn bound_from_multipliers(&mut self) {
-        if self.reduced.fidelity.iter().any(|a| *a <= 0.0) {
-            return;
-        }
-        let mut g = Vec::new();
-        self.reduced.apply_transposed(&self.p, &mut g);
-        if let Some(constraints) = &self.reduced.constraints {
-            constraints.add_transposed(&self.y, &mut g);
-        }
-        self.best.dual = self.best.dual.max(bound_along_ray(&self.reduced, &self.p, &self.y, &g, &self.u));
+    fn bound_from(&mut self, q: &DualPoint, g: &[[f64; K]]) {
+        self.best.dual = self.best.dual.max(bound_along_ray(&self.reduced, q, &self.y, g, &self.u));
     }
 
     fn is_feasible(&self) -> bool {
         self.u.iter().flatten().all(|x| x.is_finite())
     }
 
-    fn is_done(&self, settings: &Settings, last_check: f64) -> bool {
+    fn is_done(&self, settings: &Settings, last_check: f64, sums: &Sums) -> bool {
         let scale = Problem::gap_scale(self.best.primal, self.floor);
         match settings.tolerance {
             Some(tolerance) => self.best.primal - self.best.dual <= tolerance * scale,
             None => {
                 self.best.primal - self.best.dual <= GAP_ENOUGH * scale
-                    || (last_check - self.best.primal < RESIDUAL_GOAL * scale && self.residual() < SPLIT_RESIDUAL)
+                    || (last_check - self.best.primal < STILL * scale && sums.split < SPLIT_RESIDUAL * sums.norms)
             }
         }
     }
@@ -310,14 +248,22 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         }
     }
 
+    /// The typical length of `(H u + c)_b` and `z_b`.
     fn lengths(&self) -> Vec<f64> {
-        self.h.iter().zip(&self.z).map(|(h, z)| 0.5 * (norm(h) + norm(z))).collect()
+        let mut h = Vec::new();
+        self.reduced.apply(&self.u, &mut h);
+        let z = |b| self.sweep.split(self.reduced.weights, &self.r, b).0;
+        h.iter().enumerate().map(|(b, h)| 0.5 * (norm(h) + norm(&z(b)))).collect()
     }
 
     fn outcome(self, iterations: usize, status: Status) -> Outcome<K> {
         let length = self.lengths();
-        let p = self.p.iter().zip(self.reduced.weights);
-        let p = p.map(|(p, w)| if *w > 0.0 { scaled(1.0 / w, p) } else { *p }).collect();
+        let weights = self.reduced.weights;
+        let split = weights.iter().enumerate().map(|(b, &w)| {
+            let (z, p) = self.sweep.split(weights, &self.r, b);
+            (z, if w > 0.0 { scaled(1.0 / w, &p) } else { p })
+        });
+        let (z, p) = split.unzip();
         Outcome {
             u: self.best.u,
             primal: self.best.primal,
@@ -325,7 +271,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             floor: self.floor,
             iterations,
             status,
-            warm: Some(Warm { z: self.z, p, length }),
+            warm: Some(Warm { z, p, length }),
         }
     }
 }

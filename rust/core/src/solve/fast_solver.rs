@@ -7,7 +7,6 @@ use crate::solve::fast::{self, Outcome, Warm};
 use crate::solve::problem::{Coupling, Problem, Settings, Solution, Solver, Status};
 use crate::solve::reduced::{FreeOperator, Reduced};
 use crate::solve::system::System;
-use crate::solve::transposed::Transposed;
 use crate::solve::Columns;
 use crate::{Error, Result};
 
@@ -25,7 +24,6 @@ pub struct FastSolver {
 #[derive(Debug)]
 struct Structure {
     free: FreeOperator,
-    transposed: Transposed,
     system: Option<System>,
 }
 
@@ -102,8 +100,8 @@ impl FastSolver {
             match columns.len() {
                 1 => self.group::<1>(problem, columns, warm, &call, &mut total)?,
                 2 => self.group::<2>(problem, columns, warm, &call, &mut total)?,
-                3 => self.group::<3>(problem, columns, warm, &call, &mut total)?,
-                4 => self.group::<4>(problem, columns, warm, &call, &mut total)?,
+                // Rows of four fill a vector register, and the solves leave the empty column out.
+                3 | 4 => self.group::<4>(problem, columns, warm, &call, &mut total)?,
                 5..=8 => self.group::<8>(problem, columns, warm, &call, &mut total)?,
                 _ => self.group::<MAX_JOINT_COLUMNS>(problem, columns, warm, &call, &mut total)?,
             }
@@ -122,8 +120,7 @@ impl FastSolver {
                 s.free = free;
             }
             structure => {
-                let transposed = Transposed::new(&free.operator);
-                *structure = Some(Structure { free, transposed, system: None });
+                *structure = Some(Structure { free, system: None });
             }
         }
     }
@@ -139,7 +136,7 @@ impl FastSolver {
         let Some(structure) = &mut self.structure else {
             return Ok(());
         };
-        let reduced = Reduced::<K>::new(problem, &structure.free, &structure.transposed, columns)?;
+        let reduced = Reduced::<K>::new(problem, &structure.free, columns)?;
         if reduced.n() == 0 {
             total.add_fixed(&reduced);
             return Ok(());
@@ -147,12 +144,12 @@ impl FastSolver {
         let outcome = match call.method {
             Method::Clarabel(solver) => {
                 let method = if solver == Solver::ClarabelFaer { "faer" } else { "qdldl" };
-                conic::minimise(&reduced, columns.len(), method, call.settings, call.progress)?
+                conic::minimise(&reduced, method, call.settings, call.progress)?
             }
             Method::Fast => {
                 let system = match &mut structure.system {
                     Some(system) => system,
-                    empty => empty.insert(System::new(&structure.free, K)?),
+                    empty => empty.insert(System::new(&structure.free)?),
                 };
                 let before = system.n_factorisations();
                 let warm = warm.and_then(|w| w.restore(problem.operator.n_blocks()));
@@ -231,7 +228,8 @@ impl Total {
 
     /// Everything is fixed: the objective is a constant and its own bound.
     fn add_fixed<const K: usize>(&mut self, reduced: &Reduced<'_, K>) {
-        let objective = reduced.objective(&[], &reduced.constant);
+        let constant: Vec<_> = (0..reduced.n_blocks()).map(|b| reduced.constant(b)).collect();
+        let objective = reduced.objective(&[], &constant);
         self.primal += objective;
         self.dual += objective;
     }

@@ -15,7 +15,7 @@ pub struct LinearConstraints<const K: usize> {
     /// `b` less what the fixed rows contribute.
     pub right: Vec<[f64; K]>,
     /// `K⁻¹Aᵀ`, column by column.
-    response: Vec<f64>,
+    response: Vec<[f64; 1]>,
     /// The factored `A K⁻¹ Aᵀ`.
     schur: Option<DenseCholesky>,
 }
@@ -106,18 +106,18 @@ impl<const K: usize> LinearConstraints<K> {
     pub fn prepare(&mut self, cholesky: &mut Cholesky) -> Result<(), SolveError> {
         let (n, p) = (cholesky.pattern().n, self.rows.len());
         self.response.clear();
-        self.response.resize(n * p, 0.0);
+        self.response.resize(n * p, [0.0]);
         for (row, column) in self.rows.iter().zip(self.response.chunks_exact_mut(n.max(1))) {
             for &(i, v) in row {
-                column[i as usize] += v;
+                column[i as usize][0] += v;
             }
-            cholesky.solve(column, 1);
+            cholesky.solve(column);
         }
         let mut schur = vec![0.0; p * p];
         for (i, row) in self.rows.iter().enumerate() {
             for j in 0..=i {
                 let column = &self.response[j * n..(j + 1) * n];
-                schur[j * p + i] = row.iter().map(|&(k, v)| v * column[k as usize]).sum();
+                schur[j * p + i] = row.iter().map(|&(k, v)| v * column[k as usize][0]).sum();
             }
         }
         let dependent = || SolveError::Infeasible {
@@ -139,7 +139,7 @@ impl<const K: usize> LinearConstraints<K> {
             schur.solve(&mut y);
         }
         for (column, y) in self.response.chunks_exact(n.max(1)).zip(&y) {
-            for (x, r) in u.iter_mut().zip(column) {
+            for (x, [r]) in u.iter_mut().zip(column) {
                 x.iter_mut().zip(y).for_each(|(x, y)| *x -= r * y);
             }
         }

@@ -18,14 +18,15 @@ pub mod penalty;
 mod problem;
 pub mod quadratic;
 mod reduced;
+mod sweep;
 pub mod system;
-mod transposed;
+mod triangular;
 
 pub use columns::Columns;
 pub use fast_solver::{FastSolver, MAX_JOINT_COLUMNS};
 pub use problem::{Coupling, Problem, Settings, Solution, Solver, Status};
 pub use reduced::{FreeOperator, Reduced};
-pub use transposed::Transposed;
+pub use sweep::Sweep;
 
 use crate::{Error, Progress, Result};
 use fast_solver::Method;

@@ -42,8 +42,7 @@ pub fn uniform_scale<const K: usize>(
         let r: Vec<f64> = reduced.weights.iter().map(|w| scale * w).collect();
         system.factorise(reduced, &r)?;
         let mut right = Vec::new();
-        let constant: Vec<Block<K>> = r.iter().zip(&reduced.constant).map(|(r, c)| scaled(-r, c)).collect();
-        reduced.apply_transposed(&constant, &mut right);
+        reduced.apply_transposed(|b| scaled(-r[b], &reduced.constant(b)), &mut right);
         let mut u = reduced.target.clone();
         system.solve(reduced, &right, &mut u);
         let mut smooth = Vec::new();

@@ -90,7 +90,7 @@ struct Newton<'a> {
 impl<'a> Newton<'a> {
     fn new(problem: &'a Problem<'a>, free: &'a FreeOperator) -> Result<Self> {
         let normal = NormalMatrix::new(&free.operator);
-        let mut cholesky = Cholesky::analyse(normal.pattern().clone(), 1)?;
+        let mut cholesky = Cholesky::analyse(normal.pattern().clone())?;
         if free.free.is_empty() {
             return Ok(Self { problem, free, cholesky });
         }
@@ -133,7 +133,7 @@ impl<'a> Newton<'a> {
         // One step from the target, corrected to satisfy the constraints.
         let mut gradient = self.gradient(u, target);
         let mut point: Vec<[f64; 1]> = gradient.iter().map(|g| [-g]).collect();
-        self.cholesky.solve(point.as_flattened_mut(), 1);
+        self.cholesky.solve(&mut point);
         point.iter_mut().zip(&self.free.free).for_each(|(x, &i)| x[0] += u[i as usize]);
         if let Some(constraints) = &mut constraints {
             constraints.correct(&mut point);
@@ -193,7 +193,7 @@ impl<'a> Newton<'a> {
     /// and Nocedal 2001, section 6).
     fn preconditioned(&mut self, gradient: &mut [f64], constraints: Option<&LinearConstraints<1>>) -> Vec<f64> {
         let mut z: Vec<[f64; 1]> = gradient.iter().map(|&g| [g]).collect();
-        self.cholesky.solve(z.as_flattened_mut(), 1);
+        self.cholesky.solve(&mut z);
         if let Some(constraints) = constraints {
             for _ in 0..PROJECTIONS {
                 let held: Vec<[f64; 1]> = constraints.correct(&mut z).into_iter().map(|y| [-y[0]]).collect();
@@ -201,7 +201,7 @@ impl<'a> Newton<'a> {
                 constraints.add_transposed(&held, &mut rest);
                 gradient.copy_from_slice(rest.as_flattened());
                 z = rest;
-                self.cholesky.solve(z.as_flattened_mut(), 1);
+                self.cholesky.solve(&mut z);
             }
             constraints.correct(&mut z);
         }

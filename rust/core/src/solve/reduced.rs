@@ -5,12 +5,38 @@ use crate::error::SolveError;
 use crate::solve::cones::{norm, Block};
 use crate::solve::linear_constraints::LinearConstraints;
 use crate::solve::problem::Problem;
-use crate::solve::transposed::Transposed;
 use crate::solve::Columns;
 use rayon::prelude::*;
 
 /// Blocks or rows that one thread takes at least: below that the hand-over costs more than the work.
 pub const GRAIN: usize = 4096;
+
+/// A transposed product has at most this many partial sums, each as long as the result.
+const MOST_PARTS: usize = 4;
+
+/// How the blocks are cut into parts that threads take, each with sums of its own: by the number of blocks alone, so that
+/// results do not depend on the number of threads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Parts {
+    /// Blocks in each part but the last.
+    pub size: usize,
+    /// Number of parts, at least one.
+    pub count: usize,
+}
+
+impl Parts {
+    /// The parts of `m` blocks.
+    #[must_use]
+    pub fn of(m: usize) -> Self {
+        let size = m.div_ceil(MOST_PARTS).max(GRAIN);
+        Self { size, count: m.div_ceil(size).max(1) }
+    }
+
+    /// The blocks of a part.
+    fn range(self, part: usize, m: usize) -> std::ops::Range<usize> {
+        part * self.size..((part + 1) * self.size).min(m)
+    }
+}
 
 /// The free rows of the operator, shared by all columns of a problem.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,10 +81,10 @@ impl FreeOperator {
 pub struct Reduced<'a, const K: usize> {
     /// `H` and who is free.
     pub free: &'a FreeOperator,
-    /// The transposed access to `H`.
-    pub transposed: &'a Transposed,
-    /// `c`: what the fixed rows contribute.
-    pub constant: Vec<Block<K>>,
+    /// How many of the `K` columns are in use; the others are zero.
+    pub n_columns: usize,
+    /// `c`: what the fixed rows contribute; empty where none is fixed.
+    constant: Vec<Block<K>>,
     /// `w`.
     pub weights: &'a [f64],
     /// `a` on the free rows.
@@ -74,19 +100,15 @@ impl<'a, const K: usize> Reduced<'a, K> {
     ///
     /// # Errors
     /// [`SolveError::Infeasible`] when a linear constraint speaks of fixed rows only and contradicts them.
-    pub fn new(
-        problem: &'a Problem<'_>,
-        free: &'a FreeOperator,
-        transposed: &'a Transposed,
-        columns: &[usize],
-    ) -> Result<Self, SolveError> {
+    pub fn new(problem: &'a Problem<'_>, free: &'a FreeOperator, columns: &[usize]) -> Result<Self, SolveError> {
         let row_of = |i: usize| -> [f64; K] {
             std::array::from_fn(|c| columns.get(c).map_or(0.0, |&column| problem.target.column(column)[i]))
         };
         let target: Vec<[f64; K]> = free.free.iter().map(|&i| row_of(i as usize)).collect();
         let fidelity = free.free.iter().map(|&i| problem.fidelity[i as usize]).collect();
-        let mut constant = vec![[[0.0; K]; BLOCK]; problem.operator.n_blocks()];
+        let mut constant = Vec::new();
         if free.free.len() < problem.n_rows() {
+            constant.resize(problem.operator.n_blocks(), [[0.0; K]; BLOCK]);
             for (b, sum) in constant.iter_mut().enumerate() {
                 let (block_columns, values) = problem.operator.block(b);
                 for (&column, value) in block_columns.iter().zip(values) {
@@ -100,7 +122,7 @@ impl<'a, const K: usize> Reduced<'a, K> {
             None => None,
             Some((matrix, right)) => Some(LinearConstraints::new(matrix, right, free, columns, &row_of)?),
         };
-        Ok(Self { free, transposed, constant, weights: &problem.weights, fidelity, target, constraints })
+        Ok(Self { free, n_columns: columns.len(), constant, weights: &problem.weights, fidelity, target, constraints })
     }
 
     /// Number of free rows.
@@ -109,15 +131,28 @@ impl<'a, const K: usize> Reduced<'a, K> {
         self.target.len()
     }
 
+    /// Number of blocks.
+    #[must_use]
+    pub fn n_blocks(&self) -> usize {
+        self.free.operator.n_blocks()
+    }
+
+    /// `c` of block `b`: what the fixed rows contribute.
+    #[inline(always)]
+    #[must_use]
+    pub fn constant(&self, b: usize) -> Block<K> {
+        self.constant.get(b).copied().unwrap_or([[0.0; K]; BLOCK])
+    }
+
     /// `out = H u + c`.
     pub fn apply(&self, u: &[[f64; K]], out: &mut Vec<Block<K>>) {
         let operator = &self.free.operator;
-        (0..self.constant.len())
+        (0..self.n_blocks())
             .into_par_iter()
             .with_min_len(GRAIN)
             .map(|b| {
                 let (columns, values) = operator.block(b);
-                let mut sum = self.constant[b];
+                let mut sum = self.constant(b);
                 for (&column, value) in columns.iter().zip(values) {
                     add_outer(&mut sum, value, &u[column as usize]);
                 }
@@ -126,9 +161,30 @@ impl<'a, const K: usize> Reduced<'a, K> {
             .collect_into_vec(out);
     }
 
-    /// `out = Hᵀ y`.
-    pub fn apply_transposed(&self, y: &[Block<K>], out: &mut Vec<[f64; K]>) {
-        self.transposed.apply(&self.free.operator, y, out);
+    /// `out = Hᵀ y`, for a `y` given block by block.
+    pub fn apply_transposed(&self, y: impl Fn(usize) -> Block<K> + Sync, out: &mut Vec<[f64; K]>) {
+        let parts = Parts::of(self.n_blocks());
+        let sums: Vec<Vec<[f64; K]>> = (0..parts.count)
+            .into_par_iter()
+            .map(|part| {
+                let mut sum = vec![[0.0; K]; self.n()];
+                for b in parts.range(part, self.n_blocks()) {
+                    let at = y(b);
+                    let (columns, values) = self.free.operator.block(b);
+                    for (&column, value) in columns.iter().zip(values) {
+                        add_outer_transposed(&mut sum[column as usize], value, &at);
+                    }
+                }
+                sum
+            })
+            .collect();
+        let mut sums = sums.into_iter();
+        *out = sums.next().unwrap_or_else(|| vec![[0.0; K]; self.n()]);
+        for part in sums {
+            for (sum, more) in out.iter_mut().zip(&part) {
+                sum.iter_mut().zip(more).for_each(|(s, x)| *s += x);
+            }
+        }
     }
 
     /// The objective at `u`, where `h = H u + c`.
@@ -144,13 +200,13 @@ impl<'a, const K: usize> Reduced<'a, K> {
     pub fn floor(&self, h: &[Block<K>]) -> f64 {
         let operator = &self.free.operator;
         let mut without_cancelling = 0.0;
-        for (b, (w, c)) in self.weights.iter().zip(&self.constant).enumerate() {
+        for (b, w) in self.weights.iter().enumerate() {
             let (columns, values) = operator.block(b);
             let terms = columns.iter().zip(values).map(|(&j, v)| {
                 let row = v.iter().map(|x| x * x).sum::<f64>().sqrt();
                 row * self.target[j as usize].iter().map(|x| x * x).sum::<f64>().sqrt()
             });
-            without_cancelling += w * (norm(c) + terms.sum::<f64>());
+            without_cancelling += w * (norm(&self.constant(b)) + terms.sum::<f64>());
         }
         (1e-6 * self.objective(&self.target, h)).max(1e-9 * without_cancelling)
     }
@@ -179,11 +235,21 @@ impl<'a, const K: usize> Reduced<'a, K> {
 }
 
 /// `sum += value ⊗ x`.
-#[inline]
-fn add_outer<const K: usize>(sum: &mut Block<K>, value: &[f64; BLOCK], x: &[f64; K]) {
-    for (s, v) in sum.iter_mut().zip(value) {
-        for (t, y) in s.iter_mut().zip(x) {
-            *t += v * y;
+#[inline(always)]
+pub fn add_outer<const K: usize>(sum: &mut Block<K>, value: &[f64; BLOCK], x: &[f64; K]) {
+    for r in 0..BLOCK {
+        for c in 0..K {
+            sum[r][c] += value[r] * x[c];
+        }
+    }
+}
+
+/// `sum += valueᵀ x`.
+#[inline(always)]
+pub fn add_outer_transposed<const K: usize>(sum: &mut [f64; K], value: &[f64; BLOCK], x: &Block<K>) {
+    for r in 0..BLOCK {
+        for c in 0..K {
+            sum[c] += value[r] * x[r][c];
         }
     }
 }

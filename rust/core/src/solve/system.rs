@@ -20,18 +20,17 @@ pub struct System {
     cholesky: Cholesky,
     values: Vec<f64>,
     proximal: Vec<f64>,
-    buffer: Vec<f64>,
 }
 
 impl System {
-    /// Analyses the pattern of the free operator for up to `n_right` right sides.
+    /// Analyses the pattern of the free operator.
     ///
     /// # Errors
     /// [`SolveError::Factorisation`] when memory runs out.
-    pub fn new(free: &FreeOperator, n_right: usize) -> Result<Self, SolveError> {
+    pub fn new(free: &FreeOperator) -> Result<Self, SolveError> {
         let normal = NormalMatrix::new(&free.operator);
-        let cholesky = Cholesky::analyse(normal.pattern().clone(), n_right)?;
-        Ok(Self { normal, cholesky, values: Vec::new(), proximal: Vec::new(), buffer: Vec::new() })
+        let cholesky = Cholesky::analyse(normal.pattern().clone())?;
+        Ok(Self { normal, cholesky, values: Vec::new(), proximal: Vec::new() })
     }
 
     /// Numeric factorisations made so far.
@@ -83,17 +82,14 @@ impl System {
         right: &[[f64; K]],
         u: &mut [[f64; K]],
     ) -> Vec<[f64; K]> {
-        let n = u.len();
-        self.buffer.resize(n * K, 0.0);
-        for (i, (row, x)) in right.iter().zip(u.iter()).enumerate() {
+        for (i, (x, row)) in u.iter_mut().zip(right).enumerate() {
             let (a, p) = (2.0 * reduced.fidelity[i], self.proximal[i]);
-            for c in 0..K {
-                self.buffer[c * n + i] = row[c] + a * reduced.target[i][c] + p * x[c];
-            }
+            let target = &reduced.target[i];
+            *x = std::array::from_fn(|c| row[c] + a * target[c] + p * x[c]);
         }
-        self.cholesky.solve(&mut self.buffer, K);
-        for (i, x) in u.iter_mut().enumerate() {
-            *x = std::array::from_fn(|c| self.buffer[c * n + i]);
+        match reduced.n_columns {
+            3 => self.cholesky.solve_columns::<3, K>(u),
+            _ => self.cholesky.solve_columns::<K, K>(u),
         }
         reduced.constraints.as_ref().map_or_else(Vec::new, |constraints| constraints.correct(u))
     }

@@ -1,0 +1,286 @@
+//! Triangular solves with a supernodal Cholesky factor, for a few right sides at once.
+//!
+//! A general dense kernel spends most of its time on packing when a panel has a handful of columns and there are three
+//! right sides. Here four columns of a panel at a time are applied to one right side after the other, straight from the
+//! factor.
+
+use pulp::{Arch, Simd, WithSimd};
+
+/// Columns of a panel that are applied together: fewer passes over the right sides, few enough for the registers.
+const COLUMNS: usize = 4;
+
+/// The most numbers in a vector register. Columns are read in whole registers, past their end: what stands there meets only
+/// padding.
+pub const LANES: usize = 8;
+
+/// The structure of a factor `L` by supernodes: columns with the same pattern, stored as one dense panel each.
+#[derive(Debug, Clone, Default)]
+pub struct Panels {
+    /// The first column of each panel, and the number of columns at the end.
+    pub begin: Vec<usize>,
+    /// Where the values of each panel start: column by column, the rows of the triangle first.
+    pub values: Vec<usize>,
+    /// Where the rows below the triangle of each panel start in `rows`.
+    pub below: Vec<usize>,
+    /// The rows below the triangles.
+    pub rows: Vec<u32>,
+}
+
+/// The numbers of a factor.
+#[derive(Debug, Clone, Copy)]
+pub struct Values<'v> {
+    /// The panels, one after the other, and [`LANES`] zeros.
+    pub panels: &'v [f64],
+    /// The reciprocal of each diagonal entry: divisions would be half the time.
+    pub reciprocals: &'v [f64],
+}
+
+/// One panel with its values.
+struct Panel<'p> {
+    begin: usize,
+    n_columns: usize,
+    below: &'p [u32],
+    values: &'p [f64],
+    reciprocals: &'p [f64],
+}
+
+impl Panels {
+    #[inline(always)]
+    fn panel<'p>(&'p self, s: usize, values: Values<'p>) -> Panel<'p> {
+        let (begin, end) = (self.begin[s], self.begin[s + 1]);
+        Panel {
+            begin,
+            n_columns: end - begin,
+            below: &self.rows[self.below[s]..self.below[s + 1]],
+            values: &values.panels[self.values[s]..self.values[s + 1] + LANES],
+            reciprocals: &values.reciprocals[begin..end],
+        }
+    }
+
+    /// The most rows that a panel has.
+    fn longest(&self) -> usize {
+        let rows = |s| self.begin[s + 1] - self.begin[s] + self.below[s + 1] - self.below[s];
+        (0..self.count()).map(rows).max().unwrap_or(0)
+    }
+
+    /// The reciprocals of the diagonal of the factor with these values.
+    pub fn reciprocals(&self, values: &[f64], out: &mut Vec<f64>) {
+        out.clear();
+        for s in 0..self.count() {
+            let n_columns = self.begin[s + 1] - self.begin[s];
+            let n_rows = n_columns + self.below[s + 1] - self.below[s];
+            out.extend((0..n_columns).map(|j| 1.0 / values[self.values[s] + j * n_rows + j]));
+        }
+    }
+
+    fn count(&self) -> usize {
+        self.begin.len().saturating_sub(1)
+    }
+
+    /// Solves `L Lᵀ x = right` in place; `values` belong to `L`, rows are in the order of the factor.
+    pub fn solve<const K: usize>(&self, values: Values<'_>, x: &mut [[f64; K]], space: &mut Vec<f64>) {
+        space.clear();
+        space.resize((self.longest() + LANES) * K, 0.0);
+        Arch::new().dispatch(Both { panels: self, values, x, space });
+    }
+}
+
+/// Both triangular solves, to be compiled for each set of vector instructions.
+struct Both<'b, const K: usize> {
+    panels: &'b Panels,
+    values: Values<'b>,
+    x: &'b mut [[f64; K]],
+    space: &'b mut [f64],
+}
+
+impl<const K: usize> WithSimd for Both<'_, K> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        for s in 0..self.panels.count() {
+            self.panels.panel(s, self.values).forward(simd, self.x, self.space);
+        }
+        for s in (0..self.panels.count()).rev() {
+            self.panels.panel(s, self.values).backward(simd, self.x, self.space);
+        }
+    }
+}
+
+impl Panel<'_> {
+    #[inline(always)]
+    fn n_rows(&self) -> usize {
+        self.n_columns + self.below.len()
+    }
+
+    /// The stretch of working space that a right side takes: its rows, and zeros to fill the last register.
+    #[inline(always)]
+    fn stride(&self) -> usize {
+        self.n_rows() + LANES
+    }
+
+    /// Column `j` from row `from` on, in registers.
+    #[inline(always)]
+    fn column<S: Simd>(&self, j: usize, from: usize) -> &[S::f64s] {
+        let n = self.n_rows();
+        let registers = (n - from).div_ceil(S::F64_LANES);
+        S::as_simd_f64s(&self.values[j * n + from..j * n + from + registers * S::F64_LANES]).0
+    }
+
+    /// The rows of this panel's triangle, right side by right side, and zeros behind the rows below.
+    #[inline(always)]
+    fn load<const K: usize>(&self, x: &[[f64; K]], space: &mut [f64]) {
+        let (n, stride) = (self.n_rows(), self.stride());
+        for (i, x) in x[self.begin..self.begin + self.n_columns].iter().enumerate() {
+            for c in 0..K {
+                space[c * stride + i] = x[c];
+            }
+        }
+        for c in 0..K {
+            space[c * stride + n..(c + 1) * stride].fill(0.0);
+        }
+    }
+
+    #[inline(always)]
+    fn store<const K: usize>(&self, x: &mut [[f64; K]], space: &[f64]) {
+        for (i, x) in x[self.begin..self.begin + self.n_columns].iter_mut().enumerate() {
+            *x = std::array::from_fn(|c| space[c * self.stride() + i]);
+        }
+    }
+
+    /// `x ← L⁻¹x` for the columns of this panel, and what that does to the rows below.
+    #[inline(always)]
+    fn forward<S: Simd, const K: usize>(&self, simd: S, x: &mut [[f64; K]], space: &mut [f64]) {
+        let (stride, s) = (self.stride(), self.n_columns);
+        self.load(x, space);
+        for c in 0..K {
+            space[c * stride + s..(c + 1) * stride].fill(0.0);
+        }
+        let mut j = 0;
+        while j + COLUMNS <= s {
+            self.eliminate::<S, COLUMNS, K>(simd, j, space);
+            j += COLUMNS;
+        }
+        while j < s {
+            self.eliminate::<S, 1, K>(simd, j, space);
+            j += 1;
+        }
+        self.store(x, space);
+        for (i, &row) in self.below.iter().enumerate() {
+            let x = &mut x[row as usize];
+            for c in 0..K {
+                x[c] += space[c * stride + s + i];
+            }
+        }
+    }
+
+    /// Solves for the rows `j..j + J` and takes their columns off the rows below.
+    #[inline(always)]
+    fn eliminate<S: Simd, const J: usize, const K: usize>(&self, simd: S, j: usize, space: &mut [f64]) {
+        let (n, stride) = (self.n_rows(), self.stride());
+        let mut columns: [&[S::f64s]; J] = [&[]; J];
+        for (a, column) in columns.iter_mut().enumerate() {
+            *column = self.column::<S>(j + a, j + J);
+        }
+        for c in 0..K {
+            let (top, below) = space[c * stride + j..(c + 1) * stride].split_at_mut(J);
+            for a in 0..J {
+                let column = &self.values[(j + a) * n + j..(j + a) * n + j + J];
+                top[a] *= self.reciprocals[j + a];
+                for b in a + 1..J {
+                    top[b] -= column[b] * top[a];
+                }
+            }
+            subtract(simd, columns, top, below);
+        }
+    }
+
+    /// `x ← L⁻ᵀx` for the columns of this panel, from the rows below.
+    #[inline(always)]
+    fn backward<S: Simd, const K: usize>(&self, simd: S, x: &mut [[f64; K]], space: &mut [f64]) {
+        let (stride, s) = (self.stride(), self.n_columns);
+        self.load(x, space);
+        for (i, &row) in self.below.iter().enumerate() {
+            let x = &x[row as usize];
+            for c in 0..K {
+                space[c * stride + s + i] = x[c];
+            }
+        }
+        let mut j = s;
+        while j % COLUMNS != 0 {
+            j -= 1;
+            self.substitute::<S, 1, K>(simd, j, space);
+        }
+        while j > 0 {
+            j -= COLUMNS;
+            self.substitute::<S, COLUMNS, K>(simd, j, space);
+        }
+        self.store(x, space);
+    }
+
+    /// Solves for the rows `j..j + J` when all below are known.
+    #[inline(always)]
+    fn substitute<S: Simd, const J: usize, const K: usize>(&self, simd: S, j: usize, space: &mut [f64]) {
+        let (n, stride) = (self.n_rows(), self.stride());
+        let mut sums = [[0.0; K]; J];
+        for (a, sums) in sums.iter_mut().enumerate() {
+            let mut right: [&[f64]; K] = [&[]; K];
+            for (c, right) in right.iter_mut().enumerate() {
+                *right = &space[c * stride + j + J..(c + 1) * stride];
+            }
+            *sums = products(simd, self.column::<S>(j + a, j + J), right);
+        }
+        for c in 0..K {
+            let top = &mut space[c * stride + j..c * stride + j + J];
+            for a in (0..J).rev() {
+                let column = &self.values[(j + a) * n + j..(j + a) * n + j + J];
+                let mut x = top[a] - sums[a][c];
+                for b in a + 1..J {
+                    x -= column[b] * top[b];
+                }
+                top[a] = x * self.reciprocals[j + a];
+            }
+        }
+    }
+}
+
+/// `t -= Σ columns[j] x[j]`.
+#[inline(always)]
+fn subtract<S: Simd, const J: usize>(simd: S, columns: [&[S::f64s]; J], x: &[f64], t: &mut [f64]) {
+    let (t, _) = S::as_mut_simd_f64s(t);
+    let n = columns[0].len();
+    let t = &mut t[..n];
+    let mut splats = [simd.splat_f64s(0.0); J];
+    let mut shorter = columns;
+    for j in 0..J {
+        splats[j] = simd.splat_f64s(x[j]);
+        shorter[j] = &columns[j][..n];
+    }
+    for (i, t) in t.iter_mut().enumerate() {
+        let mut sum = *t;
+        for j in 0..J {
+            sum = simd.negate_mul_add_e_f64s(shorter[j][i], splats[j], sum);
+        }
+        *t = sum;
+    }
+}
+
+/// `⟨column, t⟩` for every `t`.
+#[inline(always)]
+fn products<S: Simd, const K: usize>(simd: S, column: &[S::f64s], t: [&[f64]; K]) -> [f64; K] {
+    let mut right: [&[S::f64s]; K] = [&[]; K];
+    for c in 0..K {
+        right[c] = &S::as_simd_f64s(t[c]).0[..column.len()];
+    }
+    let mut sums = [simd.splat_f64s(0.0); K];
+    for (i, &entry) in column.iter().enumerate() {
+        for c in 0..K {
+            sums[c] = simd.mul_add_e_f64s(entry, right[c][i], sums[c]);
+        }
+    }
+    let mut total = [0.0; K];
+    for c in 0..K {
+        total[c] = simd.reduce_sum_f64s(sums[c]);
+    }
+    total
+}
