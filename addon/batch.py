@@ -22,7 +22,8 @@ import bpy
 from . import files, selection
 from .console import ProgressBar
 from .settings import default_settings
-from .tools.stylize import RefusedError, Stylization
+from .tools.run import RefusedError
+from .tools.stylize import Stylization
 
 COMMAND = "ridgeform"
 POLL_SECONDS = 0.05

@@ -19,6 +19,8 @@ class Task:
 
     name: str
     call: Callable[[ridgeform.Progress], object]
+    counted: str = "step"
+    """What the progress counts."""
     progress: ridgeform.Progress = field(default_factory=ridgeform.Progress)
     result: object | None = None
     error: Exception | None = None
@@ -99,7 +101,7 @@ _last_summary: list[dict[str, object]] = []
 def last_summary() -> list[dict[str, object]]:
     """What the last run did: one dictionary per mesh, with plain values that JSON can hold.
 
-    Keys: name, vertices, faces, energy_before, energy_after, gap, steps, status, seconds, warnings, error.
+    Keys: tool, name, vertices, faces, energy_before, energy_after, gap, steps, status, seconds, warnings, error.
     """
     return [dict(entry) for entry in _last_summary]
 

@@ -5,7 +5,8 @@ Coordinates are `float32` arrays (n, 3) in object space, the bits that Blender s
 Mode is the edited mesh, which `flush_edit_mode` copies into the mesh's own arrays first.
 """
 
-from collections.abc import Iterable
+import contextlib
+from collections.abc import Iterable, Iterator
 from typing import Protocol
 
 import bmesh
@@ -17,6 +18,19 @@ def flush_edit_mode(obj: bpy.types.Object) -> None:
     """Bring the arrays of a mesh in Edit Mode up to date with what is edited; does nothing in Object Mode."""
     if obj.data.is_editmode:
         obj.update_from_editmode()
+
+
+@contextlib.contextmanager
+def object_mode() -> Iterator[None]:
+    """Leave Edit Mode for all objects that are in it, and come back: much cannot be read or made there."""
+    edited = bpy.context.mode == "EDIT_MESH"
+    if edited:
+        bpy.ops.object.mode_set(mode="OBJECT")
+    try:
+        yield
+    finally:
+        if edited:
+            bpy.ops.object.mode_set(mode="EDIT")
 
 
 def triangles(mesh: bpy.types.Mesh) -> np.ndarray:

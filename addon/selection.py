@@ -9,6 +9,20 @@ import bpy
 MODES = ("OBJECT", "EDIT_MESH")
 
 
+@dataclass(frozen=True)
+class Needs:
+    """What a tool needs of a mesh beyond its faces."""
+
+    coordinates: bool = True
+    """Whether it writes coordinates, which a modifier or a lock may forbid."""
+    selection: bool = True
+    """Whether something must be selected in Edit Mode."""
+
+
+MOVES = Needs()
+"""What a tool needs that moves the selection."""
+
+
 @dataclass
 class Selection:
     """The mesh objects that take part, each mesh once, and a sentence for each that was left out."""
@@ -17,7 +31,7 @@ class Selection:
     skipped: list[str] = field(default_factory=list)
 
 
-def reason_against(obj: bpy.types.Object) -> str | None:
+def reason_against(obj: bpy.types.Object, needs: Needs = MOVES) -> str | None:
     """Why the mesh of this object cannot be worked on, and what to do about it; `None` if it can."""
     mesh, name, key = obj.data, obj.name, obj.active_shape_key
     reasons = (
@@ -25,15 +39,15 @@ def reason_against(obj: bpy.types.Object) -> str | None:
         (mesh.override_library, f'"{name}" has overridden mesh data: make its mesh local first'),
         (not mesh.is_editable, f'"{name}" cannot be edited'),
         (
-            any(modifier.type == "MULTIRES" for modifier in obj.modifiers),
+            needs.coordinates and any(modifier.type == "MULTIRES" for modifier in obj.modifiers),
             f'"{name}" has a Multiresolution modifier: apply it first',
         ),
         (
-            mesh.is_editmode and mesh.total_vert_sel == 0,
+            needs.selection and mesh.is_editmode and mesh.total_vert_sel == 0,
             f'Nothing is selected in "{name}": select the part to work on',
         ),
         (not mesh.is_editmode and len(mesh.polygons) == 0, f'"{name}" has no faces'),
-        (key and key.lock_shape, f'The active shape key of "{name}" is locked: unlock it first'),
+        (needs.coordinates and key and key.lock_shape, f'The active shape key of "{name}" is locked: unlock it first'),
     )
     return next((reason for applies, reason in reasons if applies), None)
 
@@ -45,7 +59,7 @@ def mesh_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
     return sorted((obj for obj in chosen if obj.type == "MESH"), key=lambda obj: obj != active)
 
 
-def usable(objects: Iterable[bpy.types.Object]) -> Selection:
+def usable(objects: Iterable[bpy.types.Object], needs: Needs = MOVES) -> Selection:
     """Those of the objects that can be worked on; linked duplicates share one mesh, which is taken once."""
     selection = Selection()
     seen = set()
@@ -53,7 +67,7 @@ def usable(objects: Iterable[bpy.types.Object]) -> Selection:
         if obj.data in seen:
             continue
         seen.add(obj.data)
-        reason = reason_against(obj)
+        reason = reason_against(obj, needs)
         if reason is None:
             selection.objects.append(obj)
         else:
@@ -61,12 +75,12 @@ def usable(objects: Iterable[bpy.types.Object]) -> Selection:
     return selection
 
 
-def reason_disabled(context: bpy.types.Context) -> str | None:
+def reason_disabled(context: bpy.types.Context, needs: Needs = MOVES) -> str | None:
     """Why a tool cannot start here, for the tooltip of its button; `None` if it can."""
     if context.mode not in MODES:
         return "Switch to Object Mode or to the Edit Mode of a mesh"
     objects = mesh_objects(context)
     if not objects:
         return "Select a mesh object"
-    selection = usable(objects)
+    selection = usable(objects, needs)
     return None if selection.objects else selection.skipped[0]

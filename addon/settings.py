@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The settings of each tool, and how a modeler's sliders become the paper's numbers."""
+"""The settings of stylize, and how a modeler's sliders become the paper's numbers."""
 
 from types import SimpleNamespace
 
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
-RIDGE_PULL = 10.0
-"""How much cheaper (or dearer) full paint makes ridges: a decade is visible and still solves well."""
-
+from .shared_settings import RidgeSettings, SolverSettings, defaults_of, setting_names
 
 def fidelity_of(strength: float) -> float:
     """The fidelity weight η of eq. (24), on a surface of unit area, that a strength from 0 to 1 stands for.
@@ -19,17 +17,7 @@ def fidelity_of(strength: float) -> float:
     return 10.0 ** (9.25 - 4.0 * strength)
 
 
-def ridge_weights_of(painted: np.ndarray, triangles: np.ndarray, avoid: bool) -> np.ndarray:
-    """Face weights (m,) of the energy from a painted vertex group (n,) of 0 to 1.
-
-    Nothing painted is 1, so neutral. Painted 1 divides the cost of ridges by `RIDGE_PULL`, or multiplies it
-    with `avoid`.
-    """
-    exponent = painted.astype(np.float64)[triangles].mean(axis=1)
-    return RIDGE_PULL ** (exponent if avoid else -exponent)
-
-
-class StylizeSettings:
+class StylizeSettings(RidgeSettings, SolverSettings):
     """The settings of stylize, shared by the operator, the sidebar panel, presets and the batch command."""
 
     steps: IntProperty(
@@ -62,15 +50,6 @@ class StylizeSettings:
         name="Mask",
         description="Vertex group that says where and how strongly to stylize. Vertices that are not in it "
         "stay where they are",
-    )
-    ridge_group: StringProperty(
-        name="Ridges",
-        description="Vertex group painted where ridges should form. What is not painted is neutral",
-    )
-    avoid_ridges: BoolProperty(
-        name="Avoid Ridges",
-        description="Keep ridges away from the painted vertices instead of drawing them there",
-        default=False,
     )
     output: EnumProperty(
         name="Result",
@@ -155,43 +134,11 @@ class StylizeSettings:
         ),
         default="max_edge",
     )
-    coupling: EnumProperty(
-        name="Coupling",
-        description="How the three coordinates share ridges",
-        items=(
-            (
-                "joint",
-                "Joint",
-                "One norm over all three coordinates: the result does not depend on the object's axes",
-            ),
-            ("separate", "Separate", "Each coordinate by itself, as in the paper"),
-        ),
-        default="joint",
-    )
-    dual: EnumProperty(
-        name="Dual",
-        description="The dual edges of the Hessian",
-        items=(
-            ("barycentric", "Barycentric", "Between centers of mass: safe on every mesh"),
-            ("circumcentric", "Circumcentric", "Between circumcenters: for well-shaped triangles"),
-        ),
-        default="barycentric",
-    )
     delaunay: BoolProperty(
         name="Intrinsic Delaunay",
         description="Compute each step on the intrinsic Delaunay triangulation. Helps with long, thin "
         "triangles",
         default=False,
-    )
-    solver: EnumProperty(
-        name="Solver",
-        description="What solves the problem of each step",
-        items=(
-            ("auto", "Automatic", "Chosen by the problem"),
-            ("fast", "Fast", "The specialised first-order solver"),
-            ("clarabel", "Clarabel", "The general interior-point solver: slow and accurate"),
-        ),
-        default="auto",
     )
     tolerance: FloatProperty(
         name="Tolerance",
@@ -202,16 +149,10 @@ class StylizeSettings:
         max=1.0,
         precision=6,
     )
-    max_iterations: IntProperty(
-        name="Iterations",
-        description="The most iterations of the solver in a step. 0 leaves it to the solver",
-        default=0,
-        min=0,
-    )
 
 
-SETTING_NAMES = tuple(StylizeSettings.__annotations__)
-"""The names of all settings of stylize, in the order in which they are shown."""
+SETTING_NAMES = setting_names(StylizeSettings)
+"""The names of all settings of stylize."""
 
 
 def default_settings(**changes: object) -> SimpleNamespace:
@@ -219,14 +160,7 @@ def default_settings(**changes: object) -> SimpleNamespace:
 
     Raises `TypeError` for a name that is not a setting.
     """
-    unknown = sorted(set(changes) - set(SETTING_NAMES))
-    if unknown:
-        raise TypeError(f"Stylize has no setting {', '.join(unknown)}.")
-    values = {
-        name: annotation.keywords.get("default", "")
-        for name, annotation in StylizeSettings.__annotations__.items()
-    }
-    return SimpleNamespace(**(values | changes))
+    return defaults_of(StylizeSettings, **changes)
 
 
 def stylize_options(settings: object) -> dict[str, object]:

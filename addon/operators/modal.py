@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The modal run of a job: live preview, Esc restores, Enter keeps, status bar and cursor show progress."""
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import bpy
@@ -40,6 +41,10 @@ class Run(Protocol):
     """What a tool gives to be run: its job, and what to do with it on the main thread."""
 
     job: Job
+    done: Sequence[object]
+    """What has a result."""
+    errors: Sequence[str]
+    """A sentence for each mesh that failed."""
 
     def preview(self) -> bool:
         """Show how far the job is; whether there was something new."""
@@ -49,6 +54,9 @@ class Run(Protocol):
 
     def apply(self) -> None:
         """Write the result."""
+
+    def report(self) -> str:
+        """What happened, in one line."""
 
 
 def action_of(event_type: str, value: str) -> str:
@@ -76,10 +84,10 @@ def abort(run: Run) -> None:
 
 
 def status_line(job: Job) -> str:
-    """Where a job is, for the status bar: which mesh, step, energy and gap."""
+    """Where a job is, for the status bar: which mesh, step or iteration, energy and gap."""
     task = job.current
     progress = task.progress
-    parts = [f"{task.name}: {progress.stage or 'starting'}", f"step {progress.iteration}"]
+    parts = [f"{task.name}: {progress.stage or 'starting'}", f"{task.counted} {progress.iteration}"]
     if progress.energy is not None:
         parts.append(f"energy {progress.energy:.4g}")
     if progress.gap is not None:
@@ -88,11 +96,16 @@ def status_line(job: Job) -> str:
 
 
 class ModalRun:
-    """Mixin for operators with a live preview: call `begin_modal` from `invoke`, define `finished`."""
+    """Mixin for operators that compute while Blender draws: call `begin_modal` from `invoke`."""
 
-    def finished(self, context: bpy.types.Context, run: Run) -> set[str]:
-        """Apply the run and report; returns what the operator returns."""
-        raise NotImplementedError
+    def finished(self, _context: bpy.types.Context, run: Run) -> set[str]:
+        """Write the result of a run and report what happened; returns what the operator returns."""
+        run.apply()
+        if not run.done:
+            self.report({"ERROR"}, "; ".join(run.errors))
+            return {"CANCELLED"}
+        self.report({"WARNING"} if run.errors else {"INFO"}, run.report())
+        return {"FINISHED"}
 
     def begin_modal(self, context: bpy.types.Context, run: Run) -> set[str]:
         """Start the job and hand over to `modal`."""

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import ridgeform
 from bl_ext.user_default.ridgeform import job, mesh_io
-from bl_ext.user_default.ridgeform.settings import default_settings, ridge_weights_of, stylize_options
+from bl_ext.user_default.ridgeform.settings import default_settings, stylize_options
+from bl_ext.user_default.ridgeform.shared_settings import ridge_weights_of
 from bl_ext.user_default.ridgeform.tools import stylize as tool
 
 STEPS = 3
