@@ -101,7 +101,8 @@ _last_summary: list[dict[str, object]] = []
 def last_summary() -> list[dict[str, object]]:
     """What the last run did: one dictionary per mesh, with plain values that JSON can hold.
 
-    Keys: tool, name, vertices, faces, energy_before, energy_after, gap, steps, status, seconds, warnings, error.
+    Keys: tool, name, vertices, faces, energy_before, energy_after, gap, steps, status, seconds, warnings,
+    error; for the tools on attributes also attribute and result.
     """
     return [dict(entry) for entry in _last_summary]
 

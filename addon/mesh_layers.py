@@ -11,7 +11,7 @@ from .finishing.surface_map import SurfaceMap
 
 # Blender's name of the value, its type, and how many of it one element has. Text has no fast access and is
 # left out.
-_KINDS = {
+ATTRIBUTE_KINDS = {
     "FLOAT": ("value", np.float32, 1),
     "INT": ("value", np.int32, 1),
     "INT8": ("value", np.int32, 1),
@@ -84,9 +84,9 @@ def read_layers(obj: bpy.types.Object) -> Layers:
     attributes = []
     for attribute in mesh.attributes:
         hidden = attribute.name.startswith(".") and attribute.name not in _SEAMS
-        if hidden or attribute.name in _TOPOLOGY or attribute.data_type not in _KINDS:
+        if hidden or attribute.name in _TOPOLOGY or attribute.data_type not in ATTRIBUTE_KINDS:
             continue
-        prop, dtype, size = _KINDS[attribute.data_type]
+        prop, dtype, size = ATTRIBUTE_KINDS[attribute.data_type]
         values = np.empty(len(attribute.data) * size, dtype)
         attribute.data.foreach_get(prop, values)
         attributes.append(
@@ -177,7 +177,7 @@ def replace_faces(obj: bpy.types.Object, points: np.ndarray, faces: np.ndarray, 
         attribute = mesh.attributes.get(layer.name)
         if attribute is None:
             attribute = mesh.attributes.new(layer.name, layer.data_type, layer.domain)
-        attribute.data.foreach_set(_KINDS[layer.data_type][0], np.ascontiguousarray(values).ravel())
+        attribute.data.foreach_set(ATTRIBUTE_KINDS[layer.data_type][0], np.ascontiguousarray(values).ravel())
     _write_groups(obj, layers.groups, layers.active["group"])
     _set_active_layers(mesh, layers.active)
     mesh.validate()

@@ -47,7 +47,10 @@ def reason_against(obj: bpy.types.Object, needs: Needs = MOVES) -> str | None:
             f'Nothing is selected in "{name}": select the part to work on',
         ),
         (not mesh.is_editmode and len(mesh.polygons) == 0, f'"{name}" has no faces'),
-        (needs.coordinates and key and key.lock_shape, f'The active shape key of "{name}" is locked: unlock it first'),
+        (
+            needs.coordinates and key and key.lock_shape,
+            f'The active shape key of "{name}" is locked: unlock it first',
+        ),
     )
     return next((reason for applies, reason in reasons if applies), None)
 

@@ -8,6 +8,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, St
 
 from .shared_settings import RidgeSettings, SolverSettings, defaults_of, setting_names
 
+
 def fidelity_of(strength: float) -> float:
     """The fidelity weight η of eq. (24), on a surface of unit area, that a strength from 0 to 1 stands for.
 

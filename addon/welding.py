@@ -31,8 +31,11 @@ class Weld:
 
     def mean_of(self, values: np.ndarray) -> np.ndarray:
         """The mean of values (n,) over the vertices of each welded vertex (k,)."""
-        count = np.bincount(self.vertex, minlength=len(self.first))
-        return np.bincount(self.vertex, weights=values, minlength=len(self.first)) / count
+        return self.sum_of(values) / self.sum_of(np.ones(len(values)))
+
+    def sum_of(self, values: np.ndarray) -> np.ndarray:
+        """The sum of values (n,) over the vertices of each welded vertex (k,)."""
+        return np.bincount(self.vertex, weights=values, minlength=len(self.first))
 
 
 def weld_seams(coordinates: np.ndarray, triangles: np.ndarray) -> Weld:
@@ -48,6 +51,21 @@ def weld_seams(coordinates: np.ndarray, triangles: np.ndarray) -> Weld:
     welded = vertex[triangles].astype(np.int32)
     kept = (welded != np.roll(welded, 1, axis=1)).all(axis=1)
     return Weld(vertex, first, welded[kept], kept)
+
+
+def connected_parts(triangles: np.ndarray, n_vertices: int) -> np.ndarray:
+    """The lowest vertex (n,) of the connected part of each vertex; triangles sharing one are joined."""
+    label = np.arange(n_vertices)
+    while True:
+        corner = label[triangles]
+        joined = label.copy()
+        # Whole parts are joined, not single vertices: so few rounds are enough.
+        np.minimum.at(joined, corner.ravel(), np.repeat(corner.min(axis=1), 3))
+        while not np.array_equal(joined, joined[joined]):
+            joined = joined[joined]
+        if np.array_equal(joined, label):
+            return label
+        label = joined[label]
 
 
 def _border_vertices(triangles: np.ndarray, n_vertices: int) -> np.ndarray:

@@ -3,9 +3,13 @@
 
 import bpy
 
-from . import modal, stylize
+from . import attributes, modal, stylize
 
-_CLASSES = (stylize.RIDGEFORM_OT_stylize,)
+_CLASSES = (
+    stylize.RIDGEFORM_OT_stylize,
+    attributes.RIDGEFORM_OT_denoise_attribute,
+    attributes.RIDGEFORM_OT_interpolate_attribute,
+)
 
 
 def register() -> None:

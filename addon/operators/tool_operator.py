@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the operators of all tools share: when they can start, where their settings come from, how they run."""
+"""What the operators of all tools share: when they can start, whence their settings, how they run."""
 
 from typing import ClassVar
 
@@ -15,12 +15,16 @@ from .modal import ModalRun
 class ToolOperator(ModalRun):
     """Mixin for an operator over one tool; the class itself also has the tool's settings among its bases."""
 
-    tool: ClassVar[type[Run]]
+    # Not more exactly: what typing is given it keeps, with all that hangs on it, and Blender 4.2 as a module
+    # then crashes when Python ends.
+    tool: ClassVar[type]
+    """The tool: a kind of `Run`."""
     settings: ClassVar[type]
     """The class of the tool's settings."""
     panel: ClassVar[str]
     """The name of the scene's property with the settings of the sidebar panel."""
-    needs: ClassVar[selection.Needs] = selection.MOVES
+    needs = selection.MOVES
+    """What the tool needs of a mesh."""
 
     from_panel: BoolProperty(
         name="From Panel",

@@ -81,8 +81,8 @@ class Run(ABC):
         """Show how far the job is; whether there was something new."""
         return False
 
-    def restore(self) -> None:
-        """Put everything back as it was."""
+    def restore(self) -> None:  # noqa: B027
+        """Put everything back as it was; nothing to do for a tool that writes at the end only."""
 
     @property
     def done(self) -> list[Part]:

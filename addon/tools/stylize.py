@@ -143,9 +143,7 @@ def _prepare(obj: bpy.types.Object, settings: object) -> FlowPart:
     if not moving.all():
         options["fixed"] = ~moving
     task = Task(obj.name, partial(_flow, vertices[weld.first], weld.triangles, options))
-    part = FlowPart(
-        obj, task, len(vertices), coordinates=coordinates, weld=weld, free=moving[weld.vertex]
-    )
+    part = FlowPart(obj, task, len(vertices), coordinates=coordinates, weld=weld, free=moving[weld.vertex])
     scales = np.abs(obj.matrix_world.to_scale())
     if scales.max() > UNEVEN_SCALE * scales.min():
         part.warnings.append(

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sidebar tab, the menu entries and the presets."""
 
-from . import menus, panel, presets
+from . import attribute_panel, menus, presets, stylize_panel
 
-_MODULES = (presets, panel, menus)
+_MODULES = (presets, stylize_panel, attribute_panel, menus)
 
 
 def register() -> None:

@@ -7,6 +7,8 @@ import bpy
 def _draw(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
     self.layout.separator()
     self.layout.operator("ridgeform.stylize", icon="MOD_DECIM")
+    self.layout.operator("ridgeform.denoise_attribute", icon="MOD_SMOOTH")
+    self.layout.operator("ridgeform.interpolate_attribute", icon="MOD_DATA_TRANSFER")
 
 
 def _menus() -> tuple[type, type]:

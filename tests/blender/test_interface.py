@@ -7,10 +7,14 @@ import bpy
 import pytest
 from bl_ext.user_default import ridgeform as addon
 from bl_ext.user_default.ridgeform import job
-from bl_ext.user_default.ridgeform.settings import SETTING_NAMES, default_settings, fidelity_of
+from bl_ext.user_default.ridgeform.attribute_settings import DenoiseSettings, InterpolateSettings
+from bl_ext.user_default.ridgeform.settings import StylizeSettings, default_settings, fidelity_of
+from bl_ext.user_default.ridgeform.shared_settings import defaults_of, setting_names
 
 CLASSES = (
     "RIDGEFORM_OT_stylize",
+    "RIDGEFORM_OT_denoise_attribute",
+    "RIDGEFORM_OT_interpolate_attribute",
     "RIDGEFORM_OT_stylize_preset_add",
     "RIDGEFORM_MT_stylize_presets",
     "RIDGEFORM_PT_stylize",
@@ -18,7 +22,16 @@ CLASSES = (
     "RIDGEFORM_PT_stylize_last_steps",
     "RIDGEFORM_PT_stylize_expert",
     "RIDGEFORM_PT_stylize_presets",
+    "RIDGEFORM_PT_denoise",
+    "RIDGEFORM_PT_denoise_expert",
+    "RIDGEFORM_PT_interpolate",
+    "RIDGEFORM_PT_interpolate_expert",
 )
+TOOLS = {
+    "stylize": ("ridgeform_stylize", StylizeSettings),
+    "denoise_attribute": ("ridgeform_denoise", DenoiseSettings),
+    "interpolate_attribute": ("ridgeform_interpolate", InterpolateSettings),
+}
 MENUS = ("VIEW3D_MT_object", "VIEW3D_MT_edit_mesh")
 HANDLERS = ("load_pre", "undo_pre", "redo_pre")
 
@@ -29,7 +42,7 @@ def trace():
         "classes": {name for name in CLASSES if hasattr(bpy.types, name)},
         "menus": [len(getattr(bpy.types, menu)._dyn_ui_initialize()) for menu in MENUS],
         "handlers": [len(getattr(bpy.app.handlers, name)) for name in HANDLERS],
-        "scene": hasattr(bpy.types.Scene, "ridgeform_stylize"),
+        "scene": [hasattr(bpy.types.Scene, name) for name, _ in TOOLS.values()],
         "presets": bool(bpy.utils.preset_paths("ridgeform/stylize")),
     }
 
@@ -37,7 +50,7 @@ def trace():
 def test_registering_and_unregistering_leave_nothing():
     there = trace()
     assert there["classes"] == set(CLASSES)
-    assert there["scene"]
+    assert all(there["scene"])
     assert there["presets"]
     addon.unregister()
     gone = trace()
@@ -45,19 +58,21 @@ def test_registering_and_unregistering_leave_nothing():
         "classes": set(),
         "menus": [count - 1 for count in there["menus"]],
         "handlers": [count - 1 for count in there["handlers"]],
-        "scene": False,
+        "scene": [False] * len(TOOLS),
         "presets": False,
     }
     addon.register()
     assert trace() == there
 
 
-def test_panel_and_operator_have_the_same_settings():
-    panel = bpy.context.scene.ridgeform_stylize
-    operator = bpy.ops.ridgeform.stylize.get_rna_type().properties
-    for name in SETTING_NAMES:
+@pytest.mark.parametrize("tool", list(TOOLS))
+def test_panel_and_operator_have_the_same_settings(tool):
+    scene_name, settings = TOOLS[tool]
+    panel = getattr(bpy.context.scene, scene_name)
+    operator = getattr(bpy.ops.ridgeform, tool).get_rna_type().properties
+    for name in setting_names(settings):
         assert panel.bl_rna.properties[name].name == operator[name].name
-        value = getattr(default_settings(), name)
+        value = getattr(defaults_of(settings), name)
         assert getattr(panel, name) == (pytest.approx(value) if isinstance(value, float) else value)
 
 
@@ -81,8 +96,20 @@ def test_button_takes_the_settings_of_the_panel():
     assert job.last_summary()[0]["steps"] == 3
 
 
-def test_operator_is_undoable_and_takes_presets():
-    assert {"REGISTER", "UNDO", "PRESET"} <= bpy.types.RIDGEFORM_OT_stylize.bl_options
+def test_buttons_of_the_attribute_panels_take_their_settings():
+    obj = kit.bumpy_box()
+    obj.data.attributes.new("heat", "FLOAT", "POINT").data[3].value = 1.0
+    obj.data.attributes.new("cold", "FLOAT", "POINT").data[4].value = 1.0
+    bpy.context.scene.ridgeform_denoise.attribute = "heat"
+    bpy.ops.ridgeform.denoise_attribute("INVOKE_DEFAULT", from_panel=True)
+    assert job.last_summary()[0]["attribute"] == "heat"
+    bpy.ops.ridgeform.denoise_attribute("INVOKE_DEFAULT", attribute="cold")
+    assert job.last_summary()[0]["attribute"] == "cold"
+
+
+@pytest.mark.parametrize("tool", list(TOOLS))
+def test_operator_is_undoable_and_takes_presets(tool):
+    assert {"REGISTER", "UNDO", "PRESET"} <= getattr(bpy.types, f"RIDGEFORM_OT_{tool}").bl_options
 
 
 def test_wrong_wheel_is_refused(monkeypatch):

@@ -187,19 +187,6 @@ def test_seams_do_not_tear():
     assert np.abs(kit.coordinates(whole) - vertices).max() > 1e-3
 
 
-def test_undo_gives_the_mesh_back_and_redo_the_result():
-    obj = kit.bumpy_box()
-    bpy.ops.ed.undo_push(message="made")
-    before = kit.coordinates(obj)
-    bpy.ops.ridgeform.stylize(steps=STEPS)
-    bpy.ops.ed.undo_push(message="stylized")
-    after = kit.coordinates(bpy.data.objects["Box"])
-    bpy.ops.ed.undo()
-    assert kit.same_bits(kit.coordinates(bpy.data.objects["Box"]), before)
-    bpy.ops.ed.redo()
-    assert kit.same_bits(kit.coordinates(bpy.data.objects["Box"]), after)
-
-
 def test_running_twice_from_the_same_state_gives_the_same_bits():
     results = []
     for _ in range(2):

@@ -1,34 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar tab "Ridgeform" of the 3D viewport."""
+"""The panel "Stylize" of the sidebar tab "Ridgeform"."""
 
 import bpy
 
-from .. import job
 from ..settings import StylizeSettings
 from . import stylize_settings
 from .presets import RIDGEFORM_PT_stylize_presets
-
-LAST_RUN_LINES = 4
+from .sidebar import Sidebar, draw_last_run
 
 
 class RidgeformStylizeSettings(StylizeSettings, bpy.types.PropertyGroup):
     """The settings of the panel, saved with the scene as `scene.ridgeform_stylize`."""
 
 
-class _Sidebar:
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Ridgeform"
-
-    @property
-    def split_layout(self) -> bpy.types.UILayout:
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        return layout
-
-
-class RIDGEFORM_PT_stylize(_Sidebar, bpy.types.Panel):  # noqa: N801
+class RIDGEFORM_PT_stylize(Sidebar, bpy.types.Panel):  # noqa: N801
     """Sliders and the button."""
 
     bl_label = "Stylize"
@@ -45,17 +30,10 @@ class RIDGEFORM_PT_stylize(_Sidebar, bpy.types.Panel):  # noqa: N801
         row = layout.row()
         row.scale_y = 1.4
         row.operator("ridgeform.stylize", icon="MOD_DECIM").from_panel = True
-        column = layout.column(align=True)
-        done = [entry for entry in job.last_summary() if entry["energy_after"] is not None]
-        for entry in done[:LAST_RUN_LINES]:
-            energies = f"{entry['energy_before']:.3g} → {entry['energy_after']:.3g}"
-            column.label(text=f"{entry['name']}: energy {energies}", icon="INFO")
-            column.label(text=f"{entry['steps']} steps, {entry['seconds']:.1f} s", icon="BLANK1")
-        if len(done) > LAST_RUN_LINES:
-            column.label(text=f"… and {len(done) - LAST_RUN_LINES} more")
+        draw_last_run(layout, "stylize", "steps")
 
 
-class _SubPanel(_Sidebar):
+class _SubPanel(Sidebar):
     bl_parent_id = "RIDGEFORM_PT_stylize"
     bl_options = {"DEFAULT_CLOSED"}
 

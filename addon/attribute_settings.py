@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The settings of the tools on attributes, and how a modeler's sliders become the paper's numbers."""
+
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+
+from .attribute_names import search_names
+from .shared_settings import RidgeSettings, SolverSettings
+
+
+def denoise_fidelity_of(strength: float, spread: float, area: float) -> float:
+    """The fidelity weight of eq. (23) that a strength from 0 to 1 stands for.
+
+    E_H has the unit of the values, the fidelity term that of values² times area: so the weight is measured
+    against the spread of the values (their standard deviation) and the area of the surface. Then a strength
+    means the same for every size and density of the mesh and every unit of the values. Least error on five
+    meshes of 642 to 11 533 vertices: at 0.4 for noise of 5 % of the spread, at 0.5 for 20 %, at 0.6 for 50 %.
+    """
+    return 10.0 ** (6.0 - 4.0 * strength) / (spread * area)
+
+
+class DisplaySettings:
+    """How a result is shown."""
+
+    display: EnumProperty(
+        name="Show",
+        description="How the result is shown. Colours are always shown as they are",
+        items=(
+            ("NONE", "Nothing", "Leave the view and the materials as they are"),
+            (
+                "VIEWPORT",
+                "Viewport Colors",
+                'Show the values as colours in Solid shading, stored in the attribute "ridgeform_shown"',
+            ),
+            (
+                "MATERIAL",
+                "Material",
+                "Give the mesh a material that turns the values into colours, also for rendering",
+            ),
+        ),
+        default="VIEWPORT",
+    )
+    bands: IntProperty(
+        name="Bands",
+        description="Bands of one colour each in the material: their borders are isolines. 0 is smooth",
+        default=0,
+        min=0,
+        max=32,
+    )
+
+
+class AttributeSettings(DisplaySettings, RidgeSettings, SolverSettings):
+    """The settings that denoising and interpolating share."""
+
+    attribute: StringProperty(
+        name="Attribute",
+        description="Attribute or vertex group to work on. Empty: the active one",
+        search=search_names,
+    )
+    output: EnumProperty(
+        name="Result",
+        description="Where the result goes",
+        items=(
+            ("NEW", "New Attribute", "Leave the values as they are and put the result into a new attribute"),
+            ("IN_PLACE", "In Place", "Write over the values"),
+        ),
+        default="NEW",
+    )
+    sharpness: FloatProperty(
+        name="Sharpness",
+        description="How much further ridges are sharpened: 0 is the energy of the paper, 1 prefers few and "
+        "hard ridges",
+        default=0.0,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+    )
+    tolerance: FloatProperty(
+        name="Tolerance",
+        description="Certified relative duality gap that the result must reach",
+        default=0.001,
+        min=1e-8,
+        max=1.0,
+        precision=6,
+    )
+
+
+class DenoiseSettings(AttributeSettings):
+    """The settings of denoising, shared by the operator, the panel, presets and the batch command."""
+
+    strength: FloatProperty(
+        name="Strength",
+        description="How much is smoothed away: 0 keeps the values, 1 leaves only the broadest slopes. The "
+        "same for every size and density of the mesh and every unit of the values",
+        default=0.5,
+        min=0.0,
+        max=1.5,
+        soft_max=1.0,
+        subtype="FACTOR",
+    )
+    use_fidelity: BoolProperty(
+        name="Set Fidelity",
+        description="Set the fidelity weight of the paper instead of the strength",
+        default=False,
+    )
+    fidelity: FloatProperty(
+        name="Fidelity",
+        description="Fidelity weight (Rowe et al. 2024, eq. 23), in the mesh's own units: larger stays "
+        "closer to the values",
+        default=1000.0,
+        min=1e-9,
+        max=1e15,
+        soft_min=1e-3,
+        soft_max=1e8,
+        precision=3,
+    )
+
+
+class InterpolateSettings(AttributeSettings):
+    """The settings of interpolating, shared by the operator, the panel, presets and the batch command."""
+
+    known: EnumProperty(
+        name="Known",
+        description="Which values are kept. All others are computed",
+        items=(
+            ("SELECTED", "Selected Vertices", "Spread the values of the selected vertices over the mesh"),
+            ("UNSELECTED", "Fill the Selection", "Compute the selected vertices from the others"),
+            ("GROUP", "Vertex Group", "Spread the values of the vertices in a group over the mesh"),
+        ),
+        default="SELECTED",
+    )
+    known_group: StringProperty(
+        name="Known In",
+        description="Vertex group of the vertices whose values are known. Empty: the vertex group worked on",
+    )
+
+
+def solve_options(settings: object) -> dict[str, object]:
+    """The keyword arguments of `ridgeform.denoise` and `ridgeform.interpolate`, the same for every mesh."""
+    return {
+        "sharpness": settings.sharpness,
+        "coupling": settings.coupling,
+        "dual": settings.dual,
+        "solver": settings.solver,
+        "tolerance": settings.tolerance,
+        "max_iterations": settings.max_iterations or None,
+    }
