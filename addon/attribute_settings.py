@@ -48,6 +48,31 @@ class DisplaySettings:
     )
 
 
+ENERGIES = (
+    ("l1_hessian", "Sharp (L1 Hessian)", "Flat slopes that meet in sharp creases (Rowe et al. 2024)"),
+    ("l2_hessian", "Smooth (L2 Hessian)", "Smooth, also along borders (Stein et al. 2018)"),
+    (
+        "l2_curved_hessian",
+        "Smooth, Curved (L2 Hessian)",
+        "Smooth, also along borders, and true to the curvature of the surface (Stein et al. 2020)",
+    ),
+    ("l2_laplacian", "Smooth, Flat Borders (L2 Laplacian)", "Smooth, but level towards borders"),
+    (
+        "l1_hessian_stein2018",
+        "Sharp along Axes (L1 Hessian in space)",
+        "Sharp creases that depend on how the object is turned (Stein et al. 2018)",
+    ),
+    (
+        "l1_edge_laplacian",
+        "Sharp along Edges (L1 Edge Laplacian)",
+        "Sharp creases along the edges of the mesh (He and Schaefer 2013)",
+    ),
+)
+"""The energies of the package, for a modeler."""
+QUADRATIC = {"l2_hessian", "l2_curved_hessian", "l2_laplacian"}
+"""Those that are sums of squares."""
+
+
 class AttributeSettings(DisplaySettings, RidgeSettings, SolverSettings):
     """The settings that denoising and interpolating share."""
 
@@ -64,6 +89,12 @@ class AttributeSettings(DisplaySettings, RidgeSettings, SolverSettings):
             ("IN_PLACE", "In Place", "Write over the values"),
         ),
         default="NEW",
+    )
+    energy: EnumProperty(
+        name="Energy",
+        description="What kind of values is looked for",
+        items=ENERGIES,
+        default="l1_hessian",
     )
     sharpness: FloatProperty(
         name="Sharpness",
@@ -136,11 +167,14 @@ class InterpolateSettings(AttributeSettings):
 
 def solve_options(settings: object) -> dict[str, object]:
     """The keyword arguments of `ridgeform.denoise` and `ridgeform.interpolate`, the same for every mesh."""
+    ours = settings.energy == "l1_hessian"
     return {
-        "sharpness": settings.sharpness,
+        "energy": settings.energy,
+        # The other energies have no sharpness and no dual edges, and quadratic ones need no choice of a solver.
+        "sharpness": settings.sharpness if ours else 0.0,
         "coupling": settings.coupling,
-        "dual": settings.dual,
-        "solver": settings.solver,
+        "dual": settings.dual if ours else "barycentric",
+        "solver": "auto" if settings.energy in QUADRATIC else settings.solver,
         "tolerance": settings.tolerance,
         "max_iterations": settings.max_iterations or None,
     }

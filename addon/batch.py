@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The batch command: stylize files without a window.
+"""The batch command: the tools on files, without a window.
 
 `blender --command ridgeform stylize FILES -o OUT` with the installed extension, or, from a checkout with the
 wheel and the `bpy` package installed, `python -m addon stylize FILES -o OUT`.
@@ -9,7 +9,6 @@ import argparse
 import contextlib
 import ctypes
 import json
-import math
 import os
 import sys
 import time
@@ -20,10 +19,9 @@ from pathlib import Path
 import bpy
 
 from . import files, selection
+from .batch_options import TOOLS, parser, settings_from
 from .console import ProgressBar
-from .settings import default_settings
-from .tools.run import RefusedError
-from .tools.stylize import Stylization
+from .tools.run import RefusedError, Run
 
 COMMAND = "ridgeform"
 POLL_SECONDS = 0.05
@@ -33,10 +31,10 @@ INTERRUPTED = 130
 def main(arguments: Sequence[str]) -> int:
     """Run the command line; returns 0, 1 if a file failed, 2 if it is wrong, 130 if interrupted."""
     try:
-        options = _parser().parse_args(arguments)
+        options = parser().parse_args(arguments)
     except SystemExit as leaving:
         return int(leaving.code or 0)
-    settings = _settings_from(options)
+    settings = settings_from(options)
     failed = False
     taken: set[Path] = set()
     try:
@@ -73,7 +71,7 @@ def _one_file(
             raise files.FileError(f"{target} is already the output of another file")
         if target == source.resolve():
             raise files.FileError(f"{source.name} would be overwritten: choose another output")
-        run = _stylize_file(source, settings)
+        run = _run_file(source, TOOLS[options.tool].run, settings)
         files.write_file(target)
         taken.add(target)
         record |= _record_of(run) | {"output": str(target)}
@@ -89,9 +87,9 @@ def _one_file(
     return record
 
 
-def _stylize_file(source: Path, settings: object) -> Stylization:
-    chosen = selection.usable(files.read_file(source))
-    run = Stylization(chosen.objects, settings, chosen.skipped)
+def _run_file(source: Path, tool: type[Run], settings: object) -> Run:
+    chosen = selection.usable(files.read_file(source), tool.needs)
+    run = tool(chosen.objects, settings, chosen.skipped)
     run.job.start()
     try:
         with ProgressBar(source.name) as bar:
@@ -106,13 +104,14 @@ def _stylize_file(source: Path, settings: object) -> Stylization:
     return run
 
 
-def _record_of(run: Stylization) -> dict[str, object]:
+def _record_of(run: Run) -> dict[str, object]:
     done = [entry for entry in run.summary if entry["energy_after"] is not None]
+    befores = [entry["energy_before"] for entry in done]
     warnings = [f'"{entry["name"]}": {note}' for entry in run.summary for note in entry["warnings"]]
     return {
         "vertices": sum(entry["vertices"] for entry in done),
         "faces": sum(entry["faces"] for entry in done),
-        "energy_before": sum(entry["energy_before"] for entry in done),
+        "energy_before": None if None in befores else sum(befores),
         "energy_after": sum(entry["energy_after"] for entry in done),
         "gap": max((entry["gap"] for entry in done), default=None),
         "warnings": warnings + run.skipped,
@@ -161,77 +160,9 @@ def _sentence(record: dict[str, object]) -> str:
         return f"{record['file']}: failed: {record['error']}"
     notes = "".join(f"\n  note: {note}" for note in record["warnings"])
     where = f"{record['file']} → {record['output']}"
-    energies = f"energy {record['energy_before']:.4g} → {record['energy_after']:.4g}, gap {record['gap']:.1g}"
+    before = "" if record["energy_before"] is None else f"{record['energy_before']:.4g} → "
+    energies = f"energy {before}{record['energy_after']:.4g}, gap {record['gap']:.1g}"
     return f"{where}: {record['vertices']} vertices, {energies}, {record['seconds']:.1f} s{notes}"
-
-
-def _settings_from(options: argparse.Namespace) -> object:
-    given = {
-        name: value
-        for name, value in vars(options).items()
-        if value is not None
-        and name not in {"tool", "files", "output", "format", "json", "reduce", "shape_key", "mark"}
-    }
-    if options.fidelity is not None:
-        given["use_fidelity"] = True
-    if options.reduce is not None:
-        given |= {"reduce": True, "reduce_ratio": options.reduce}
-    if options.shape_key:
-        given["output"] = "SHAPE_KEY"
-    if options.mark:
-        given["marks"] = {kind.upper() for kind in options.mark}
-    if options.mark_angle is not None:
-        given["mark_angle"] = math.radians(options.mark_angle)
-    return default_settings(**given)
-
-
-def _suffix(text: str) -> str:
-    return "." + text.lower().lstrip(".")
-
-
-def _parser() -> argparse.ArgumentParser:
-    defaults = default_settings()
-    parser = argparse.ArgumentParser(prog="ridgeform", description="Ridgeform without a window.")
-    tools = parser.add_subparsers(dest="tool", required=True, metavar="TOOL")
-    stylize = tools.add_parser("stylize", help="make meshes piecewise flat, with crisp ridges")
-    add = stylize.add_argument
-    add("files", nargs="+", type=Path, metavar="FILE", help=f"what to read: {' '.join(files.FORMATS)}")
-    add(
-        "-o", "--output", type=Path, required=True, metavar="OUT", help="the file, or the folder, to write to"
-    )
-    add(
-        "--format", type=_suffix, choices=list(files.FORMATS), help="write into the folder OUT in this format"
-    )
-    add("--json", action="store_true", help="print one JSON record per file on standard output")
-    add("--steps", type=int, help=f"flow steps ({defaults.steps})")
-    add("--strength", type=float, help=f"0 to 1 ({defaults.strength})")
-    add("--sharpness", type=float, help=f"0 to 1 ({defaults.sharpness})")
-    add("--strength-group", metavar="NAME", help="vertex group that masks the strength")
-    add("--ridge-group", metavar="NAME", help="vertex group painted where ridges should form")
-    add("--avoid-ridges", action="store_true", default=None, help="keep ridges away from what is painted")
-    add("--shape-key", action="store_true", help="put the result into a new shape key")
-    add("--keep-volume", action="store_true", default=None, help="scale closed meshes to their old volume")
-    add("--mark", action="append", choices=("sharp", "crease", "bevel"), help="mark ridges; may be repeated")
-    add("--mark-angle", type=float, metavar="DEGREES", help="least angle between the faces at a ridge (20)")
-    add("--reduce", type=float, metavar="RATIO", help="keep this share of the triangles")
-    add("--fidelity", type=float, help="fidelity weight of the paper instead of --strength")
-    add("--scale", choices=("max_edge", "bounding_box", "area"), help="unit of --fidelity (max_edge)")
-    add("--coupling", choices=("joint", "separate"), help="norm over the three coordinates (joint)")
-    add("--dual", choices=("barycentric", "circumcentric"), help="dual edges (barycentric)")
-    add(
-        "--delaunay",
-        action="store_true",
-        default=None,
-        help="compute on the intrinsic Delaunay triangulation",
-    )
-    add("--solver", choices=("auto", "fast", "clarabel"), help="solver of each step (auto)")
-    add(
-        "--tolerance",
-        type=float,
-        help="certified relative gap of each step; 0: stop when nothing visible changes",
-    )
-    add("--max-iterations", type=int, help="most solver iterations in a step; 0: left to the solver")
-    return parser
 
 
 _command = None

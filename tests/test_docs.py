@@ -101,8 +101,11 @@ def test_every_file_named_in_the_architecture_exists():
 
 def test_the_manual_names_every_setting_and_every_option_of_the_command():
     manual = (ROOT / "docs/manual.md").read_text(encoding="utf-8")
-    settings = re.findall(r'\bname="([^"]+)"', (ROOT / "addon/settings.py").read_text(encoding="utf-8"))
-    command = (ROOT / "addon/batch.py").read_text(encoding="utf-8")
+    sources = [path.read_text(encoding="utf-8") for path in sorted((ROOT / "addon").glob("*settings.py"))]
+    settings = re.findall(r'\bname="([^"]+)"', "\n".join(sources))
+    command = "".join(
+        (ROOT / f"addon/{name}.py").read_text(encoding="utf-8") for name in ("batch", "batch_options")
+    )
     options = re.findall(r'"(--[a-z][a-z-]*)"', command)
     fields = re.findall(r'^        "(\w+)": (?:None|\[\]|str)', command, re.MULTILINE)
     assert len(settings) > 15

@@ -4,7 +4,6 @@
 import bpy
 
 from ..attribute_settings import DenoiseSettings, InterpolateSettings
-from ..selection import Needs
 from ..tools.denoise import Denoising
 from ..tools.interpolate import Interpolation
 from ..ui.attribute_settings import draw_denoise, draw_interpolate
@@ -20,7 +19,6 @@ class RIDGEFORM_OT_denoise_attribute(DenoiseSettings, ToolOperator, bpy.types.Op
     tool = Denoising
     settings = DenoiseSettings
     panel = "ridgeform_denoise"
-    needs = Needs(coordinates=False)
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the redo panel."""
@@ -36,7 +34,6 @@ class RIDGEFORM_OT_interpolate_attribute(InterpolateSettings, ToolOperator, bpy.
     tool = Interpolation
     settings = InterpolateSettings
     panel = "ridgeform_interpolate"
-    needs = Needs(coordinates=False, selection=False)
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the redo panel."""

@@ -23,8 +23,6 @@ class ToolOperator(ModalRun):
     """The class of the tool's settings."""
     panel: ClassVar[str]
     """The name of the scene's property with the settings of the sidebar panel."""
-    needs = selection.MOVES
-    """What the tool needs of a mesh."""
 
     from_panel: BoolProperty(
         name="From Panel",
@@ -36,7 +34,7 @@ class ToolOperator(ModalRun):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether there is a mesh to work on; the tooltip says why not."""
-        reason = selection.reason_disabled(context, cls.needs)
+        reason = selection.reason_disabled(context, cls.tool.needs)
         if reason is not None:
             cls.poll_message_set(reason)
         return reason is None
@@ -60,7 +58,7 @@ class ToolOperator(ModalRun):
                 setattr(self, name, getattr(getattr(context.scene, self.panel), name))
             # From now on these are the operator's own, for the redo panel to change.
             self.from_panel = False
-        chosen = selection.usable(selection.mesh_objects(context), self.needs)
+        chosen = selection.usable(selection.mesh_objects(context), self.tool.needs)
         try:
             return self.tool(chosen.objects, self, chosen.skipped)
         except RefusedError as refusal:

@@ -10,6 +10,7 @@ import ridgeform
 from ..attribute_io import PointValues
 from ..attribute_settings import denoise_fidelity_of
 from ..job import Task
+from ..selection import Needs
 from .attribute_run import (
     AttributePart,
     AttributeRun,
@@ -29,6 +30,7 @@ class Denoising(AttributeRun):
     name = "denoise_attribute"
     suffix = "_denoised"
     done_word = "Denoised"
+    needs = Needs(coordinates=False)
 
     def pose(self, obj: bpy.types.Object, source: PointValues, surface: Surface) -> AttributePart:
         """Denoise all values, or those of the selection with the others held."""
@@ -70,7 +72,8 @@ def _denoised(
     options: dict[str, object],
     progress: ridgeform.Progress,
 ) -> Solved:
-    before = ridgeform.energy(surface.mesh, as_argument(values))
+    kind, dual = options["energy"], options["dual"]
+    before = ridgeform.energy(surface.mesh, as_argument(values), kind=kind, dual=dual)
     solution = ridgeform.denoise(
         surface.mesh,
         as_argument(values),
@@ -79,7 +82,7 @@ def _denoised(
         progress=progress,
         **options,
     )
-    after = ridgeform.energy(surface.mesh, solution.values)
+    after = ridgeform.energy(surface.mesh, solution.values, kind=kind, dual=dual)
     return Solved(solution.values.reshape(values.shape), before, after, solution)
 
 

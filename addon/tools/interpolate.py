@@ -10,6 +10,7 @@ import ridgeform
 from ..attribute_io import PointValues, read_values
 from ..attribute_names import GROUP
 from ..job import Task
+from ..selection import Needs
 from ..welding import connected_parts
 from .attribute_run import (
     AttributePart,
@@ -30,6 +31,7 @@ class Interpolation(AttributeRun):
     name = "interpolate_attribute"
     suffix = "_interpolated"
     done_word = "Interpolated"
+    needs = Needs(coordinates=False, selection=False)
 
     def pose(self, obj: bpy.types.Object, source: PointValues, surface: Surface) -> AttributePart:
         """Compute all values that are not known; connected parts without a known one stay as they are."""
@@ -111,5 +113,5 @@ def _interpolated(
         progress=progress,
         **options,
     )
-    after = ridgeform.energy(surface.mesh, solution.values)
+    after = ridgeform.energy(surface.mesh, solution.values, kind=options["energy"], dual=options["dual"])
     return Solved(solution.values.reshape(-1, values.shape[1]), None, after, solution)

@@ -12,6 +12,7 @@ import ridgeform
 
 from .. import mesh_io
 from ..job import Job, Task, store_summary
+from ..selection import MOVES
 from ..welding import Weld, weld_seams
 
 NOT_BEGUN = "not begun"
@@ -40,6 +41,8 @@ class Run(ABC):
 
     name: ClassVar[str]
     """The tool's name in the summary."""
+    needs = MOVES
+    """What it needs of a mesh."""
 
     def __init__(
         self, objects: Sequence[bpy.types.Object], settings: object, skipped: Sequence[str] = ()

@@ -34,7 +34,7 @@ def draw_denoise_sliders(layout: bpy.types.UILayout, settings: object) -> None:
     row = column.row()
     row.active = not settings.use_fidelity
     row.prop(settings, "strength", slider=True)
-    column.prop(settings, "sharpness", slider=True)
+    _draw_energy(column, settings)
 
 
 def draw_interpolate_sliders(
@@ -46,7 +46,14 @@ def draw_interpolate_sliders(
     column.prop(settings, "known")
     if settings.known == "GROUP" and obj is not None and obj.type == "MESH":
         column.prop_search(settings, "known_group", obj, "vertex_groups")
-    column.prop(settings, "sharpness", slider=True)
+    _draw_energy(column, settings)
+
+
+def _draw_energy(layout: bpy.types.UILayout, settings: object) -> None:
+    layout.prop(settings, "energy")
+    row = layout.row()
+    row.active = settings.energy == "l1_hessian"
+    row.prop(settings, "sharpness", slider=True)
 
 
 def draw_ridges(layout: bpy.types.UILayout, settings: object, obj: bpy.types.Object | None) -> None:

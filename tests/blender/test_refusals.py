@@ -5,10 +5,8 @@ import bpy
 import numpy as np
 import pytest
 from bl_ext.user_default.ridgeform import selection
-from bl_ext.user_default.ridgeform.operators.attributes import (
-    RIDGEFORM_OT_denoise_attribute,
-    RIDGEFORM_OT_interpolate_attribute,
-)
+from bl_ext.user_default.ridgeform.tools.denoise import Denoising
+from bl_ext.user_default.ridgeform.tools.interpolate import Interpolation
 
 
 def heated_box(**kind):
@@ -151,14 +149,13 @@ def test_objects_without_the_attribute_are_skipped_and_named():
 
 def test_what_each_tool_needs():
     obj = heated_box()
-    denoise, interpolate = RIDGEFORM_OT_denoise_attribute, RIDGEFORM_OT_interpolate_attribute
     obj.modifiers.new("Multires", "MULTIRES")
     assert selection.reason_disabled(bpy.context) is not None
     assert bpy.ops.ridgeform.denoise_attribute.poll()
     kit.select_only(obj, np.zeros(len(obj.data.vertices), bool))
-    assert selection.reason_disabled(bpy.context, denoise.needs).startswith("Nothing is selected")
+    assert selection.reason_disabled(bpy.context, Denoising.needs).startswith("Nothing is selected")
     assert not bpy.ops.ridgeform.denoise_attribute.poll()
-    assert selection.reason_disabled(bpy.context, interpolate.needs) is None
+    assert selection.reason_disabled(bpy.context, Interpolation.needs) is None
     assert bpy.ops.ridgeform.interpolate_attribute.poll()
 
 

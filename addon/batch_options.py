@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The command line of the batch command: its tools, their options, and the settings that these stand for."""
+
+import argparse
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from . import files
+from .attribute_settings import ENERGIES, DenoiseSettings, InterpolateSettings
+from .settings import StylizeSettings
+from .shared_settings import defaults_of, setting_names
+from .tools.denoise import Denoising
+from .tools.interpolate import Interpolation
+from .tools.run import Run
+from .tools.stylize import Stylization
+
+
+@dataclass
+class BatchTool:
+    """A tool of the batch command."""
+
+    run: type[Run]
+    settings: type
+    help: str
+    add_options: Callable[[argparse.ArgumentParser, object], None]
+
+
+def settings_from(options: argparse.Namespace) -> object:
+    """The settings of the tool that the options stand for."""
+    settings = TOOLS[options.tool].settings
+    given = {
+        name: value
+        for name, value in vars(options).items()
+        if value is not None and name in setting_names(settings) and name != "output"
+    }
+    if options.fidelity is not None:
+        given["use_fidelity"] = True
+    return defaults_of(settings, **(given | _translated(options)))
+
+
+def _translated(options: argparse.Namespace) -> dict[str, object]:
+    """The settings of those options that are not a setting by themselves."""
+    words = vars(options)
+    given: dict[str, object] = {}
+    if words.get("reduce") is not None:
+        given |= {"reduce": True, "reduce_ratio": options.reduce}
+    if words.get("shape_key"):
+        given["output"] = "SHAPE_KEY"
+    if words.get("in_place"):
+        given["output"] = "IN_PLACE"
+    if words.get("mark"):
+        given["marks"] = {kind.upper() for kind in options.mark}
+    if words.get("mark_angle") is not None:
+        given["mark_angle"] = math.radians(options.mark_angle)
+    if words.get("known") is not None:
+        given["known"] = options.known.upper()
+    if words.get("material"):
+        given["display"] = "MATERIAL"
+    return given
+
+
+def _suffix(text: str) -> str:
+    return "." + text.lower().lstrip(".")
+
+
+def parser() -> argparse.ArgumentParser:
+    """The parser of the whole command line."""
+    made = argparse.ArgumentParser(prog="ridgeform", description="Ridgeform without a window.")
+    tools = made.add_subparsers(dest="tool", required=True, metavar="TOOL")
+    for name, tool in TOOLS.items():
+        child = tools.add_parser(name, help=tool.help, description=tool.help)
+        _add_files(child)
+        tool.add_options(child, defaults_of(tool.settings))
+    return made
+
+
+def _add_files(child: argparse.ArgumentParser) -> None:
+    add = child.add_argument
+    add("files", nargs="+", type=Path, metavar="FILE", help=f"what to read: {' '.join(files.FORMATS)}")
+    add(
+        "-o", "--output", type=Path, required=True, metavar="OUT", help="the file, or the folder, to write to"
+    )
+    add(
+        "--format", type=_suffix, choices=list(files.FORMATS), help="write into the folder OUT in this format"
+    )
+    add("--json", action="store_true", help="print one JSON record per file on standard output")
+
+
+def _add_shared(child: argparse.ArgumentParser, defaults: object) -> None:
+    add = child.add_argument
+    add("--sharpness", type=float, help=f"0 to 1 ({defaults.sharpness})")
+    add("--ridge-group", metavar="NAME", help="vertex group painted where ridges should form")
+    add("--avoid-ridges", action="store_true", default=None, help="keep ridges away from what is painted")
+    add("--coupling", choices=("joint", "separate"), help="norm over the components (joint)")
+    add("--dual", choices=("barycentric", "circumcentric"), help="dual edges (barycentric)")
+    add("--solver", choices=("auto", "fast", "clarabel"), help="solver (auto)")
+    add("--tolerance", type=float, help=f"certified relative gap to be reached ({defaults.tolerance:g})")
+    add("--max-iterations", type=int, help="most solver iterations; 0: left to the solver")
+
+
+def _add_stylize(child: argparse.ArgumentParser, defaults: object) -> None:
+    add = child.add_argument
+    add("--steps", type=int, help=f"flow steps ({defaults.steps})")
+    add("--strength", type=float, help=f"0 to 1 ({defaults.strength})")
+    add("--strength-group", metavar="NAME", help="vertex group that masks the strength")
+    add("--shape-key", action="store_true", help="put the result into a new shape key")
+    add("--keep-volume", action="store_true", default=None, help="scale closed meshes to their old volume")
+    add("--mark", action="append", choices=("sharp", "crease", "bevel"), help="mark ridges; may be repeated")
+    add("--mark-angle", type=float, metavar="DEGREES", help="least angle between the faces at a ridge (20)")
+    add("--reduce", type=float, metavar="RATIO", help="keep this share of the triangles")
+    add("--fidelity", type=float, help="fidelity weight of the paper instead of --strength")
+    add("--scale", choices=("max_edge", "bounding_box", "area"), help="unit of --fidelity (max_edge)")
+    add(
+        "--delaunay",
+        action="store_true",
+        default=None,
+        help="compute on the intrinsic Delaunay triangulation",
+    )
+    _add_shared(child, defaults)
+
+
+def _add_attribute(child: argparse.ArgumentParser, defaults: object) -> None:
+    add = child.add_argument
+    add("--attribute", metavar="NAME", help="attribute or vertex group (the active one)")
+    add("--in-place", action="store_true", help="write over the values instead of making a new attribute")
+    add("--energy", choices=[name for name, *_ in ENERGIES], help=f"what to minimise ({defaults.energy})")
+    add("--material", action="store_true", help="show the result by a material")
+    add("--bands", type=int, help="bands of one colour each in the material (0: smooth)")
+    _add_shared(child, defaults)
+
+
+def _add_denoise(child: argparse.ArgumentParser, defaults: object) -> None:
+    child.add_argument("--strength", type=float, help=f"0 to 1 ({defaults.strength})")
+    child.add_argument("--fidelity", type=float, help="fidelity weight of the paper instead of --strength")
+    _add_attribute(child, defaults)
+
+
+def _add_interpolate(child: argparse.ArgumentParser, defaults: object) -> None:
+    words = ("selected", "unselected", "group")
+    child.add_argument("--known", choices=words, help=f"whose values are known ({defaults.known.lower()})")
+    child.add_argument("--known-group", metavar="NAME", help="vertex group of the known vertices")
+    child.set_defaults(fidelity=None)
+    _add_attribute(child, defaults)
+
+
+TOOLS = {
+    "stylize": BatchTool(
+        Stylization, StylizeSettings, "make meshes piecewise flat, with crisp ridges", _add_stylize
+    ),
+    "denoise-attribute": BatchTool(
+        Denoising,
+        DenoiseSettings,
+        "smooth an attribute, colour or vertex group, and keep creases",
+        _add_denoise,
+    ),
+    "interpolate-attribute": BatchTool(
+        Interpolation,
+        InterpolateSettings,
+        "spread the known values of an attribute, colour or vertex group over the mesh",
+        _add_interpolate,
+    ),
+}
+"""The tools by the word on the command line."""
