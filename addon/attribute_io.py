@@ -103,6 +103,17 @@ def write_values(obj: bpy.types.Object, like: PointValues, values: np.ndarray, n
     return name
 
 
+def write_floats(mesh: bpy.types.Mesh, name: str, values: np.ndarray) -> None:
+    """Store numbers (n,) in an attribute of this name; one of another type or domain is replaced."""
+    attribute = mesh.attributes.get(name)
+    if attribute is not None and (attribute.data_type, attribute.domain) != ("FLOAT", "POINT"):
+        mesh.attributes.remove(attribute)
+        attribute = None
+    attribute = attribute or mesh.attributes.new(name, "FLOAT", "POINT")
+    attribute.data.foreach_set("value", np.ascontiguousarray(values, np.float32))
+    mesh.update()
+
+
 def _write_group(obj: bpy.types.Object, like: PointValues, weights: np.ndarray, name: str) -> str:
     group = obj.vertex_groups.get(name)
     if group is None:

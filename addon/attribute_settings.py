@@ -7,17 +7,6 @@ from .attribute_names import search_names
 from .shared_settings import RidgeSettings, SolverSettings
 
 
-def denoise_fidelity_of(strength: float, spread: float, area: float) -> float:
-    """The fidelity weight of eq. (23) that a strength from 0 to 1 stands for.
-
-    E_H has the unit of the values, the fidelity term that of values² times area: so the weight is measured
-    against the spread of the values (their standard deviation) and the area of the surface. Then a strength
-    means the same for every size and density of the mesh and every unit of the values. Least error on five
-    meshes of 642 to 11 533 vertices: at 0.4 for noise of 5 % of the spread, at 0.5 for 20 %, at 0.6 for 50 %.
-    """
-    return 10.0 ** (6.0 - 4.0 * strength) / (spread * area)
-
-
 class DisplaySettings:
     """How a result is shown."""
 
@@ -69,11 +58,62 @@ ENERGIES = (
     ),
 )
 """The energies of the package, for a modeler."""
+OURS = "l1_hessian"
+"""The one that has dual edges and sharpness."""
 QUADRATIC = {"l2_hessian", "l2_curved_hessian", "l2_laplacian"}
 """Those that are sums of squares."""
+EXTRINSIC = {"l2_hessian", "l1_hessian_stein2018"}
+"""Those that see the mesh in space, and so no flipped edges."""
 
 
-class AttributeSettings(DisplaySettings, RidgeSettings, SolverSettings):
+STRENGTHS = {
+    "l1_hessian": (6.0, 4.0),
+    "l1_hessian_stein2018": (6.0, 4.0),
+    "l1_edge_laplacian": (5.5, 4.0),
+    "l2_hessian": (9.25, 6.0),
+    "l2_curved_hessian": (9.25, 6.0),
+    "l2_laplacian": (9.25, 6.0),
+}
+"""The power of ten of the fidelity weight at strength 0, and by how much it falls up to strength 1.
+
+Chosen so that each energy has its least error at about the same strength: 0.35 for noise of 5 % of the
+spread, 0.5 for 20 %, 0.6 for 50 % (five meshes of 642 to 11 533 vertices, a creased and a smooth function).
+"""
+
+
+def denoise_fidelity_of(strength: float, spread: float, area: float, energy: str = OURS) -> float:
+    """The fidelity weight of eq. (23) that a strength from 0 to 1 stands for.
+
+    An L1 energy has the unit of the values, a sum of squares that of values² by area, the fidelity term that
+    of values² times area. So the weight is measured against the spread of the values (their standard
+    deviation) and the area of the surface. Then a strength means the same for every size and density of the
+    mesh and every unit of the values.
+    """
+    start, fall = STRENGTHS[energy]
+    unit = area**2 if energy in QUADRATIC else spread * area
+    return 10.0 ** (start - fall * strength) / unit
+
+
+class EnergySettings:
+    """What is minimised, and how exactly."""
+
+    energy: EnumProperty(
+        name="Energy",
+        description="What kind of values is looked for",
+        items=ENERGIES,
+        default=OURS,
+    )
+    tolerance: FloatProperty(
+        name="Tolerance",
+        description="Certified relative duality gap that the result must reach",
+        default=0.001,
+        min=1e-8,
+        max=1.0,
+        precision=6,
+    )
+
+
+class AttributeSettings(DisplaySettings, RidgeSettings, EnergySettings, SolverSettings):
     """The settings that denoising and interpolating share."""
 
     attribute: StringProperty(
@@ -90,12 +130,6 @@ class AttributeSettings(DisplaySettings, RidgeSettings, SolverSettings):
         ),
         default="NEW",
     )
-    energy: EnumProperty(
-        name="Energy",
-        description="What kind of values is looked for",
-        items=ENERGIES,
-        default="l1_hessian",
-    )
     sharpness: FloatProperty(
         name="Sharpness",
         description="How much further ridges are sharpened: 0 is the energy of the paper, 1 prefers few and "
@@ -104,14 +138,6 @@ class AttributeSettings(DisplaySettings, RidgeSettings, SolverSettings):
         min=0.0,
         max=1.0,
         subtype="FACTOR",
-    )
-    tolerance: FloatProperty(
-        name="Tolerance",
-        description="Certified relative duality gap that the result must reach",
-        default=0.001,
-        min=1e-8,
-        max=1.0,
-        precision=6,
     )
 
 
@@ -165,15 +191,44 @@ class InterpolateSettings(AttributeSettings):
     )
 
 
+class ModesSettings(DisplaySettings, EnergySettings, SolverSettings):
+    """The settings of vibration modes, shared by the operator and the panel."""
+
+    count: IntProperty(
+        name="Modes",
+        description="How many modes are computed, those of least energy first",
+        default=8,
+        min=1,
+        max=1000,
+        soft_max=32,
+    )
+    shown: IntProperty(
+        name="Shown Mode",
+        description="The mode that is shown. On a closed surface mode 0 is the same everywhere",
+        default=1,
+        min=0,
+        max=999,
+    )
+
+
 def solve_options(settings: object) -> dict[str, object]:
     """The keyword arguments of `ridgeform.denoise` and `ridgeform.interpolate`, the same for every mesh."""
-    ours = settings.energy == "l1_hessian"
+    return energy_options(settings) | {
+        "sharpness": settings.sharpness if settings.energy == OURS else 0.0,
+        "coupling": settings.coupling,
+    }
+
+
+def energy_options(settings: object) -> dict[str, object]:
+    """The keyword arguments for the energy and the solver, those of `ridgeform.vibration_modes` too.
+
+    Only the L1 Hessian has dual edges to choose, quadratic energies have no choice of a solver, and those in
+    space no intrinsic edges.
+    """
     return {
         "energy": settings.energy,
-        # The other energies have no sharpness and no dual edges, and quadratic ones need no choice of a solver.
-        "sharpness": settings.sharpness if ours else 0.0,
-        "coupling": settings.coupling,
-        "dual": settings.dual if ours else "barycentric",
+        "dual": settings.dual if settings.energy == OURS else "barycentric",
+        "delaunay": settings.delaunay and settings.energy not in EXTRINSIC,
         "solver": "auto" if settings.energy in QUADRATIC else settings.solver,
         "tolerance": settings.tolerance,
         "max_iterations": settings.max_iterations or None,

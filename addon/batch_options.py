@@ -94,6 +94,12 @@ def _add_shared(child: argparse.ArgumentParser, defaults: object) -> None:
     add("--ridge-group", metavar="NAME", help="vertex group painted where ridges should form")
     add("--avoid-ridges", action="store_true", default=None, help="keep ridges away from what is painted")
     add("--coupling", choices=("joint", "separate"), help="norm over the components (joint)")
+    add(
+        "--delaunay",
+        action="store_true",
+        default=None,
+        help="compute on the intrinsic Delaunay triangulation",
+    )
     add("--dual", choices=("barycentric", "circumcentric"), help="dual edges (barycentric)")
     add("--solver", choices=("auto", "fast", "clarabel"), help="solver (auto)")
     add("--tolerance", type=float, help=f"certified relative gap to be reached ({defaults.tolerance:g})")
@@ -112,12 +118,6 @@ def _add_stylize(child: argparse.ArgumentParser, defaults: object) -> None:
     add("--reduce", type=float, metavar="RATIO", help="keep this share of the triangles")
     add("--fidelity", type=float, help="fidelity weight of the paper instead of --strength")
     add("--scale", choices=("max_edge", "bounding_box", "area"), help="unit of --fidelity (max_edge)")
-    add(
-        "--delaunay",
-        action="store_true",
-        default=None,
-        help="compute on the intrinsic Delaunay triangulation",
-    )
     _add_shared(child, defaults)
 
 

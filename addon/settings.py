@@ -135,12 +135,6 @@ class StylizeSettings(RidgeSettings, SolverSettings):
         ),
         default="max_edge",
     )
-    delaunay: BoolProperty(
-        name="Intrinsic Delaunay",
-        description="Compute each step on the intrinsic Delaunay triangulation. Helps with long, thin "
-        "triangles",
-        default=False,
-    )
     tolerance: FloatProperty(
         name="Tolerance",
         description="Certified relative duality gap that each step must reach. 0 stops as soon as nothing "

@@ -60,6 +60,11 @@ class SolverSettings:
         ),
         default="barycentric",
     )
+    delaunay: BoolProperty(
+        name="Intrinsic Delaunay",
+        description="Compute on the intrinsic Delaunay triangulation. Helps with long, thin triangles",
+        default=False,
+    )
     solver: EnumProperty(
         name="Solver",
         description="What solves the problem",

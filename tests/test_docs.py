@@ -100,7 +100,7 @@ def test_every_file_named_in_the_architecture_exists():
 
 
 def test_the_manual_names_every_setting_and_every_option_of_the_command():
-    manual = (ROOT / "docs/manual.md").read_text(encoding="utf-8")
+    manual = "".join(path.read_text(encoding="utf-8") for path in sorted((ROOT / "docs").glob("manual*.md")))
     sources = [path.read_text(encoding="utf-8") for path in sorted((ROOT / "addon").glob("*settings.py"))]
     settings = re.findall(r'\bname="([^"]+)"', "\n".join(sources))
     command = "".join(

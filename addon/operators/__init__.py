@@ -9,6 +9,8 @@ _CLASSES = (
     stylize.RIDGEFORM_OT_stylize,
     attributes.RIDGEFORM_OT_denoise_attribute,
     attributes.RIDGEFORM_OT_interpolate_attribute,
+    attributes.RIDGEFORM_OT_vibration_modes,
+    attributes.RIDGEFORM_OT_show_attribute,
 )
 
 

@@ -2,8 +2,9 @@
 """What denoising and interpolating an attribute share: reading it, writing the result, the report."""
 
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import ClassVar
 
 import bpy
@@ -29,7 +30,17 @@ class Surface:
 
     weld: Weld
     mesh: ridgeform.Mesh
-    face_weights: np.ndarray | None
+    face_weights: np.ndarray | None = None
+
+
+def surface_of(obj: bpy.types.Object) -> Surface:
+    """The surface of an object in Object Mode; `RefusedError` if the wheel cannot use it."""
+    coordinates = mesh_io.open_coordinates(obj).original
+    weld, _ = welded(obj, coordinates)
+    try:
+        return Surface(weld, ridgeform.Mesh(coordinates[weld.first].astype(np.float64), weld.triangles))
+    except ridgeform.RidgeformError as error:
+        raise RefusedError(f'"{obj.name}": {error}') from error
 
 
 @dataclass
@@ -98,17 +109,12 @@ class AttributeRun(Run):
             reason = attribute_io.reason_locked(obj, source)
             if reason is not None:
                 raise RefusedError(reason)
-        coordinates = mesh_io.open_coordinates(obj).original
-        weld, triangles = welded(obj, coordinates)
-        weights = None
+        surface = surface_of(obj)
         if self.settings.ridge_group:
             painted = group_weights(obj, self.settings.ridge_group)
-            weights = ridge_weights_of(painted, triangles[weld.kept], self.settings.avoid_ridges)
-        try:
-            mesh = ridgeform.Mesh(coordinates[weld.first].astype(np.float64), weld.triangles)
-        except ridgeform.RidgeformError as error:
-            raise RefusedError(f'"{obj.name}": {error}') from error
-        return self.pose(obj, source, Surface(weld, mesh, weights))
+            triangles = mesh_io.triangles(obj.data)[surface.weld.kept]
+            surface.face_weights = ridge_weights_of(painted, triangles, self.settings.avoid_ridges)
+        return self.pose(obj, source, surface)
 
     @abstractmethod
     def pose(self, obj: bpy.types.Object, source: PointValues, surface: Surface) -> AttributePart:
@@ -162,6 +168,12 @@ class AttributeRun(Run):
         seconds = sum(entry["seconds"] for entry in done)
         where = meshes_phrase(done)
         return f"{self.done_word} {what} of {where}{into}: energy {energy}, gap {gap:.1g}, {seconds:.1f} s"
+
+
+def energy_on(mesh: ridgeform.Mesh, options: dict[str, object]) -> Callable[[np.ndarray], float]:
+    """The energy of values (k,) or (k, c) that the options stand for, on the edges it is solved on."""
+    edges = ridgeform.intrinsic_delaunay(mesh) if options["delaunay"] else mesh
+    return partial(ridgeform.energy, edges, kind=options["energy"], dual=options["dual"])
 
 
 def refuse_non_finite(obj: bpy.types.Object, source: PointValues, needed: np.ndarray) -> None:

@@ -17,6 +17,7 @@ from .attribute_run import (
     Solved,
     Surface,
     as_argument,
+    energy_on,
     refuse_mixed,
     refuse_non_finite,
     varying,
@@ -50,7 +51,7 @@ class Denoising(AttributeRun):
             options["fixed"] = ~free
         fidelity = self.settings.fidelity
         if not self.settings.use_fidelity:
-            fidelity = fidelity_for(surface.mesh, values, self.settings.strength)
+            fidelity = fidelity_for(surface.mesh, values, self.settings.strength, self.settings.energy)
             if fidelity is None:
                 raise RefusedError(f'"{source.name}" is the same on all of "{obj.name}" that has an area')
         return AttributePart(
@@ -72,8 +73,8 @@ def _denoised(
     options: dict[str, object],
     progress: ridgeform.Progress,
 ) -> Solved:
-    kind, dual = options["energy"], options["dual"]
-    before = ridgeform.energy(surface.mesh, as_argument(values), kind=kind, dual=dual)
+    energy = energy_on(surface.mesh, options)
+    before = energy(as_argument(values))
     solution = ridgeform.denoise(
         surface.mesh,
         as_argument(values),
@@ -82,11 +83,10 @@ def _denoised(
         progress=progress,
         **options,
     )
-    after = ridgeform.energy(surface.mesh, solution.values, kind=kind, dual=dual)
-    return Solved(solution.values.reshape(values.shape), before, after, solution)
+    return Solved(solution.values.reshape(values.shape), before, energy(solution.values), solution)
 
 
-def fidelity_for(mesh: ridgeform.Mesh, values: np.ndarray, strength: float) -> float | None:
+def fidelity_for(mesh: ridgeform.Mesh, values: np.ndarray, strength: float, energy: str) -> float | None:
     """The fidelity weight of values (k, c) on a mesh that a strength stands for; `None` if nothing varies."""
     mass = ridgeform.voronoi_mass(mesh)
     area = mass.sum()
@@ -94,4 +94,4 @@ def fidelity_for(mesh: ridgeform.Mesh, values: np.ndarray, strength: float) -> f
         return None
     deviation = values - mass @ values / area
     spread = np.sqrt(mass @ (deviation**2).sum(axis=1) / area)
-    return denoise_fidelity_of(strength, float(spread), float(area)) if spread > 0 else None
+    return denoise_fidelity_of(strength, float(spread), float(area), energy) if spread > 0 else None

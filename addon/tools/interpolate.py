@@ -18,6 +18,7 @@ from .attribute_run import (
     Solved,
     Surface,
     as_argument,
+    energy_on,
     refuse_mixed,
     refuse_non_finite,
     varying,
@@ -113,5 +114,5 @@ def _interpolated(
         progress=progress,
         **options,
     )
-    after = ridgeform.energy(surface.mesh, solution.values, kind=options["energy"], dual=options["dual"])
+    after = energy_on(surface.mesh, options)(solution.values)
     return Solved(solution.values.reshape(-1, values.shape[1]), None, after, solution)

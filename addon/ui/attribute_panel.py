@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..attribute_settings import DenoiseSettings, InterpolateSettings
+from ..attribute_settings import DenoiseSettings, InterpolateSettings, ModesSettings
 from . import attribute_settings
 from .sidebar import Sidebar, draw_last_run
 
@@ -48,6 +48,24 @@ class RIDGEFORM_PT_interpolate(Sidebar, bpy.types.Panel):  # noqa: N801
         draw_last_run(layout, "interpolate_attribute", "iterations")
 
 
+class RidgeformModesSettings(ModesSettings, bpy.types.PropertyGroup):
+    """The settings of the panel, saved with the scene as `scene.ridgeform_modes`."""
+
+
+class RIDGEFORM_PT_modes(Sidebar, bpy.types.Panel):  # noqa: N801
+    """Vibration modes."""
+
+    bl_label = "Vibration Modes"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the settings, the button and what the last run did."""
+        settings, layout = context.scene.ridgeform_modes, self.split_layout
+        attribute_settings.draw_modes_sliders(layout, settings)
+        layout.operator("ridgeform.vibration_modes", icon="MOD_WAVE").from_panel = True
+        draw_last_run(layout, "vibration_modes", "modes")
+
+
 class _ExpertPanel(Sidebar):
     bl_label = "Expert"
     bl_options = {"DEFAULT_CLOSED"}
@@ -73,17 +91,31 @@ class RIDGEFORM_PT_interpolate_expert(_ExpertPanel, bpy.types.Panel):  # noqa: N
         attribute_settings.draw_expert(self.split_layout, context.scene.ridgeform_interpolate)
 
 
+class RIDGEFORM_PT_modes_expert(_ExpertPanel, bpy.types.Panel):  # noqa: N801
+    """The paper's numbers for vibration modes."""
+
+    bl_parent_id = "RIDGEFORM_PT_modes"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the choices of the paper and of the solver."""
+        attribute_settings.draw_expert(self.split_layout, context.scene.ridgeform_modes)
+
+
 _CLASSES = (
     RidgeformDenoiseSettings,
     RidgeformInterpolateSettings,
+    RidgeformModesSettings,
     RIDGEFORM_PT_denoise,
     RIDGEFORM_PT_interpolate,
+    RIDGEFORM_PT_modes,
     RIDGEFORM_PT_denoise_expert,
     RIDGEFORM_PT_interpolate_expert,
+    RIDGEFORM_PT_modes_expert,
 )
 _SETTINGS = {
     "ridgeform_denoise": RidgeformDenoiseSettings,
     "ridgeform_interpolate": RidgeformInterpolateSettings,
+    "ridgeform_modes": RidgeformModesSettings,
 }
 
 

@@ -3,6 +3,8 @@
 
 import bpy
 
+from ..attribute_settings import EXTRINSIC, OURS, QUADRATIC
+
 
 def draw_denoise(layout: bpy.types.UILayout, settings: object, obj: bpy.types.Object | None) -> None:
     """Draw all settings of denoising."""
@@ -52,7 +54,7 @@ def draw_interpolate_sliders(
 def _draw_energy(layout: bpy.types.UILayout, settings: object) -> None:
     layout.prop(settings, "energy")
     row = layout.row()
-    row.active = settings.energy == "l1_hessian"
+    row.active = settings.energy == OURS
     row.prop(settings, "sharpness", slider=True)
 
 
@@ -89,5 +91,32 @@ def draw_expert(layout: bpy.types.UILayout, settings: object) -> None:
         row = column.row()
         row.active = settings.use_fidelity
         row.prop(settings, "fidelity")
-    for name in ("coupling", "dual", "solver", "tolerance", "max_iterations"):
-        column.prop(settings, name)
+    if hasattr(settings, "sharpness"):
+        column.prop(settings, "coupling")
+    row = column.row()
+    row.active = settings.energy == OURS
+    row.prop(settings, "dual")
+    row = column.row()
+    row.active = settings.energy not in EXTRINSIC
+    row.prop(settings, "delaunay")
+    row = column.row()
+    row.active = settings.energy not in QUADRATIC
+    row.prop(settings, "solver")
+    column.prop(settings, "tolerance")
+    column.prop(settings, "max_iterations")
+
+
+def draw_modes(layout: bpy.types.UILayout, settings: object) -> None:
+    """Draw all settings of vibration modes."""
+    _split(layout)
+    draw_modes_sliders(layout, settings)
+    draw_expert(layout, settings)
+
+
+def draw_modes_sliders(layout: bpy.types.UILayout, settings: object) -> None:
+    """Draw how many modes there are, their energy, and how they are shown."""
+    column = layout.column()
+    column.prop(settings, "count")
+    column.prop(settings, "energy")
+    column.prop(settings, "shown")
+    draw_display(column, settings)

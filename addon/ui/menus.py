@@ -9,6 +9,8 @@ def _draw(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
     self.layout.operator("ridgeform.stylize", icon="MOD_DECIM")
     self.layout.operator("ridgeform.denoise_attribute", icon="MOD_SMOOTH")
     self.layout.operator("ridgeform.interpolate_attribute", icon="MOD_DATA_TRANSFER")
+    self.layout.operator("ridgeform.vibration_modes", icon="MOD_WAVE")
+    self.layout.operator("ridgeform.show_attribute", icon="COLOR")
 
 
 def _menus() -> tuple[type, type]:

@@ -7,6 +7,7 @@ import pytest
 import ridgeform
 from bl_ext.user_default.ridgeform import attribute_io, job, mesh_io
 from bl_ext.user_default.ridgeform.attribute_settings import (
+    ENERGIES,
     DenoiseSettings,
     InterpolateSettings,
     solve_options,
@@ -25,6 +26,7 @@ KINDS = [
     ("GROUP", "POINT"),
 ]
 BYTE = 1.0 / 255.0
+ENERGY_NAMES = [name for name, *_ in ENERGIES]
 
 
 def add_values(obj, data_type, domain, name="heat", seed=0):
@@ -75,7 +77,11 @@ def denoised(mesh, values, **changes):
     settings = float32_settings(DenoiseSettings, **changes)
     columns = (values != values[0]).any(axis=0)
     given = values[:, columns].astype(np.float64)
-    fidelity = settings.fidelity if settings.use_fidelity else fidelity_for(mesh, given, settings.strength)
+    fidelity = (
+        settings.fidelity
+        if settings.use_fidelity
+        else fidelity_for(mesh, given, settings.strength, settings.energy)
+    )
     solution = ridgeform.denoise(
         mesh,
         given if given.shape[1] > 1 else given[:, 0],
@@ -176,6 +182,22 @@ def test_denoising_the_selection_in_edit_mode(data_type, domain):
     assert (found[chosen] != before[chosen]).any()
 
 
+@pytest.mark.parametrize("energy", ENERGY_NAMES)
+def test_every_energy_reaches_the_wheel(energy):
+    obj = kit.bumpy_box()
+    before = add_values(obj, "FLOAT_VECTOR", "POINT")
+    known = np.random.default_rng(5).random(len(before)) < 0.2
+    select_in_object_mode(obj, known)
+    # What an energy does not have is left out for it, not refused.
+    chosen = {"energy": energy, "sharpness": 0.5, "dual": "circumcentric", "solver": "fast", "delaunay": True}
+    for operator in (bpy.ops.ridgeform.denoise_attribute, bpy.ops.ridgeform.interpolate_attribute):
+        assert operator(attribute="heat", **chosen) == {"FINISHED"}
+    expected = denoised(mesh_of(obj), before, **chosen)
+    assert kit.same_bits(values_of(obj, "heat_denoised"), expected.astype(np.float32))
+    expected = np.where(known[:, None], before, interpolated(mesh_of(obj), before, known, **chosen))
+    assert kit.same_bits(values_of(obj, "heat_interpolated"), expected.astype(np.float32))
+
+
 def test_known_points_are_the_members_of_a_group():
     obj = kit.bumpy_box()
     before = add_values(obj, "FLOAT", "POINT")
@@ -217,23 +239,25 @@ def test_settings_and_ridge_paint_reach_the_wheel():
     assert kit.same_bits(values_of(obj, "heat_denoised"), expected.astype(np.float32))
 
 
-def test_strength_means_the_same_for_every_size_and_unit():
+@pytest.mark.parametrize("energy", ENERGY_NAMES)
+def test_strength_means_the_same_for_every_size_and_unit(energy):
     obj = kit.bumpy_box()
     before = add_values(obj, "FLOAT", "POINT")
-    bpy.ops.ridgeform.denoise_attribute(attribute="heat")
+    bpy.ops.ridgeform.denoise_attribute(attribute="heat", energy=energy)
     small = values_of(obj, "heat_denoised")
     kit.set_coordinates(obj, 100 * kit.coordinates(obj))
     obj.data.attributes["heat"].data.foreach_set("value", (1000 * before).ravel())
-    bpy.ops.ridgeform.denoise_attribute(attribute="heat")
+    bpy.ops.ridgeform.denoise_attribute(attribute="heat", energy=energy)
     assert np.allclose(values_of(obj, "heat_denoised"), 1000 * small, rtol=1e-3)
 
 
-def test_more_strength_smooths_more():
+@pytest.mark.parametrize("energy", ENERGY_NAMES)
+def test_more_strength_smooths_more(energy):
     obj = kit.bumpy_box()
     before = add_values(obj, "FLOAT", "POINT")
     moved = []
     for strength in (0.0, 0.3, 0.5, 0.7, 1.0):
-        bpy.ops.ridgeform.denoise_attribute(attribute="heat", strength=strength)
+        bpy.ops.ridgeform.denoise_attribute(attribute="heat", strength=strength, energy=energy)
         moved.append(float(np.abs(values_of(obj, "heat_denoised") - before).mean()))
     assert moved == sorted(moved)
     assert moved[0] < 1e-3

@@ -7,7 +7,11 @@ import bpy
 import pytest
 from bl_ext.user_default import ridgeform as addon
 from bl_ext.user_default.ridgeform import job
-from bl_ext.user_default.ridgeform.attribute_settings import DenoiseSettings, InterpolateSettings
+from bl_ext.user_default.ridgeform.attribute_settings import (
+    DenoiseSettings,
+    InterpolateSettings,
+    ModesSettings,
+)
 from bl_ext.user_default.ridgeform.settings import StylizeSettings, default_settings, fidelity_of
 from bl_ext.user_default.ridgeform.shared_settings import defaults_of, setting_names
 
@@ -15,6 +19,8 @@ CLASSES = (
     "RIDGEFORM_OT_stylize",
     "RIDGEFORM_OT_denoise_attribute",
     "RIDGEFORM_OT_interpolate_attribute",
+    "RIDGEFORM_OT_vibration_modes",
+    "RIDGEFORM_OT_show_attribute",
     "RIDGEFORM_OT_stylize_preset_add",
     "RIDGEFORM_MT_stylize_presets",
     "RIDGEFORM_PT_stylize",
@@ -26,11 +32,14 @@ CLASSES = (
     "RIDGEFORM_PT_denoise_expert",
     "RIDGEFORM_PT_interpolate",
     "RIDGEFORM_PT_interpolate_expert",
+    "RIDGEFORM_PT_modes",
+    "RIDGEFORM_PT_modes_expert",
 )
 TOOLS = {
     "stylize": ("ridgeform_stylize", StylizeSettings),
     "denoise_attribute": ("ridgeform_denoise", DenoiseSettings),
     "interpolate_attribute": ("ridgeform_interpolate", InterpolateSettings),
+    "vibration_modes": ("ridgeform_modes", ModesSettings),
 }
 MENUS = ("VIEW3D_MT_object", "VIEW3D_MT_edit_mesh")
 HANDLERS = ("load_pre", "undo_pre", "redo_pre")
