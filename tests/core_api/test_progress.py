@@ -190,6 +190,15 @@ def test_two_calls_run_at_once():
         assert isinstance(running.error, ridgeform.Cancelled)
 
 
+@pytest.fixture
+def hears_ctrl_c():
+    """Python's own handler, also where the tests run in the background of a shell that ignores Ctrl-C for them."""
+    previous = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, previous)
+
+
+@pytest.mark.usefixtures("hears_ctrl_c")
 @pytest.mark.parametrize("call", CALLS.values(), ids=CALLS)
 def test_ctrl_c_interrupts(call):
     sent = []
