@@ -8,6 +8,7 @@ import json
 
 import addon_kit as kit
 import bpy
+import numpy as np
 import pytest
 from bl_ext.user_default.ridgeform import batch, files
 
@@ -119,3 +120,60 @@ def test_plain_output_and_wrong_command_line(tmp_path, capfd):
     assert batch.main(["stylize", str(source)]) == 2
     assert batch.main(["melt", str(source)]) == 2
     assert batch.main(["--help"]) == 0
+
+
+def warmed(folder):
+    """A box with an attribute whose selected vertices are known, saved."""
+    kit.empty_scene()
+    obj = kit.bumpy_box()
+    n = len(obj.data.vertices)
+    values = np.random.default_rng(0).random(n).astype(np.float32)
+    obj.data.attributes.new("heat", "FLOAT", "POINT").data.foreach_set("value", values)
+    kit.select_only(obj, np.arange(n) % 3 == 0)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    path = folder / "warm.blend"
+    files.write_file(path)
+    return path
+
+
+def run_tool(capfd, *arguments):
+    """Exit code and records of any command with JSON."""
+    batch.flush_output()
+    capfd.readouterr()
+    code = batch.main([*map(str, arguments), "--json"])
+    return code, [json.loads(line) for line in capfd.readouterr().out.splitlines()]
+
+
+@pytest.mark.parametrize(
+    ("command", "options", "name"),
+    [
+        ("denoise-attribute", ("--strength", "0.7", "--energy", "l2_curved_hessian"), "heat_denoised"),
+        ("denoise-attribute", ("--fidelity", "20", "--in-place"), "heat"),
+        (
+            "interpolate-attribute",
+            ("--known", "unselected", "--material", "--bands", "5"),
+            "heat_interpolated",
+        ),
+    ],
+)
+def test_attributes_of_files(tmp_path, capfd, command, options, name):
+    source, target = warmed(tmp_path), tmp_path / "out.blend"
+    code, (record,) = run_tool(capfd, command, source, "-o", target, "--attribute", "heat", *options)
+    assert code == 0, record
+    (entry,) = record["meshes"]
+    assert (entry["attribute"], entry["result"]) == ("heat", name)
+    assert record["gap"] <= 1e-3
+    assert (record["energy_before"] is None) == (command == "interpolate-attribute")
+    (obj,) = files.read_file(target)
+    assert name in obj.data.attributes
+    assert len(obj.data.materials) == ("--material" in options)
+
+
+def test_an_attribute_that_is_not_there_is_an_error_of_its_file(tmp_path, capfd):
+    source = warmed(tmp_path)
+    code, (record,) = run_tool(
+        capfd, "denoise-attribute", source, "-o", tmp_path / "out.blend", "--attribute", "cold"
+    )
+    assert code == 1
+    assert record["error"] == '"Box" has no attribute or vertex group "cold"'
+    assert not (tmp_path / "out.blend").exists()
