@@ -1,6 +1,7 @@
 //! The comparison energies: kernels, known values on the plane and the sphere, invariances.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+use proptest::prelude::*;
 use ridgeform_core::error::MeshError;
 use ridgeform_core::mesh::Mesh;
 use ridgeform_core::operators::{voronoi_mass, Dual, Energy, EnergyForm};
@@ -153,4 +154,33 @@ fn poor_meshes_give_finite_energies() {
     }
     let mass = voronoi_mass(mesh.connectivity(), mesh.edge_lengths());
     assert!(mass.iter().all(|m| m.is_finite()));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, rng_seed: proptest::test_runner::RngSeed::Fixed(1), ..ProptestConfig::default() })]
+
+    /// L1 energies are seminorms; quadratic ones obey the parallelogram law.
+    #[test]
+    fn energies_are_seminorms_or_their_squares(seed in 0_u64..1 << 40, amplitude in 0.0_f64..0.15, factor in -3.0_f64..3.0) {
+        let mesh = shapes::torus(9, 7, 1.0, 0.4).noisy(amplitude, seed).mesh().unwrap();
+        let mut random = Random::new(seed);
+        let n = mesh.connectivity().n_vertices();
+        let [u, v]: [Vec<f64>; 2] = std::array::from_fn(|_| (0..n).map(|_| random.symmetric()).collect());
+        let weights: Vec<f64> = (0..mesh.connectivity().n_faces()).map(|_| random.uniform()).collect();
+        let plus = |s: f64| -> Vec<f64> { u.iter().zip(&v).map(|(x, y)| x + s * y).collect() };
+        for (name, energy) in Energy::ALL {
+            let form = EnergyForm::new(energy, &mesh, Some(&weights), Dual::Barycentric).unwrap();
+            let of = |x: &[f64]| form.evaluate(x).unwrap();
+            let scaled: Vec<f64> = u.iter().map(|x| factor * x).collect();
+            let size = of(&u).abs() + of(&v).abs();
+            if energy.is_quadratic() {
+                prop_assert!((of(&scaled) - factor * factor * of(&u)).abs() <= 1e-9 * size * (1.0 + factor * factor), "{}", name);
+                let parallelogram = of(&plus(1.0)) + of(&plus(-1.0)) - 2.0 * of(&u) - 2.0 * of(&v);
+                prop_assert!(parallelogram.abs() <= 1e-9 * size, "{}", name);
+            } else {
+                prop_assert!((of(&scaled) - factor.abs() * of(&u)).abs() <= 1e-9 * size * (1.0 + factor.abs()), "{}", name);
+                prop_assert!(of(&plus(1.0)) <= (1.0 + 1e-12) * size, "{}", name);
+            }
+        }
+    }
 }

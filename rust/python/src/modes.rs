@@ -30,8 +30,8 @@ use crate::{doorway, options};
 ///
 /// Returns
 /// -------
-/// (n,count) array, a mode a column, with ascending energies, orthonormal with respect to `voronoi_mass`; the entry of largest
-/// magnitude is positive. After `Progress.finish` there may be fewer columns.
+/// (n,count) array, a mode a column, with ascending energies, orthonormal with respect to `voronoi_mass` (of the flipped mesh
+/// with `delaunay`); the entry of largest magnitude is positive. After `Progress.finish` there may be fewer columns.
 ///
 /// Raises
 /// ------

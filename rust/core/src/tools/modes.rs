@@ -30,7 +30,7 @@ pub struct ModeOptions {
 /// Modes and how they were left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Modes {
-    /// One mode a column, orthonormal with respect to the Voronoi mass, with ascending energies. The entry of largest magnitude
+    /// One mode a column, orthonormal with respect to the Voronoi mass (of the flipped mesh, where edges were), with ascending energies. The entry of largest magnitude
     /// (the first of those that are equal to 1e-6) is positive. Vertices without mass have 0.
     pub values: Columns,
     /// The energy of each mode.
