@@ -52,6 +52,20 @@ impl BlockRows {
         (&self.columns[range.clone()], &self.values[range])
     }
 
+    /// `Hᵀ W H u` for this matrix `H` and a weight for each block.
+    #[must_use]
+    pub fn normal_times(&self, weights: &[f64], u: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; u.len()];
+        for (b, w) in weights.iter().enumerate() {
+            let h = self.block_times(b, u);
+            let (columns, values) = self.block(b);
+            for (&column, v) in columns.iter().zip(values) {
+                out[column as usize] += w * (v[0] * h[0] + v[1] * h[1] + v[2] * h[2]);
+            }
+        }
+        out
+    }
+
     /// Block `b` times the vector `u`.
     #[must_use]
     pub fn block_times(&self, b: usize, u: &[f64]) -> [f64; BLOCK] {

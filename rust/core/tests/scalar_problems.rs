@@ -289,3 +289,18 @@ fn face_weights_follow_the_flips() {
     assert!(flips > 0 && (integral(&lengths, &weights) / before - 1.0).abs() < 1e-12);
     assert!(weights.iter().all(|w| (1.0..=7.0).contains(w)));
 }
+
+#[test]
+fn the_curved_energy_of_an_open_saddle_is_not_convex_and_says_so() {
+    let saddle = |p: [f64; 3]| [p[0] - 6.0, p[1] - 6.0, 0.2 * ((p[0] - 6.0).powi(2) - (p[1] - 6.0).powi(2))];
+    let mesh = shapes::grid(12, 12).map(saddle).mesh().unwrap();
+    let scalar = options(Energy::L2CurvedHessian, Solver::Auto, 1e-6);
+    for indices in [vec![84], vec![3, 60, 150]] {
+        let values = Columns::from_column((0..indices.len()).map(|i| i as f64).collect());
+        let error = interpolate(&mesh, &indices, &values, &scalar, &Progress::new()).unwrap_err();
+        assert!(error.to_string().contains("not convex"), "{error}");
+    }
+    // Enough values, or data to stay close to, make it convex.
+    assert_eq!(interpolated(&mesh, 5, &scalar).unwrap().status, Status::Solved);
+    assert_eq!(denoised(&mesh, 1.0, scalar).status, Status::Solved);
+}

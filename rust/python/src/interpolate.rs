@@ -39,7 +39,8 @@ use crate::{arrays, columns, doorway, matrix, options};
 ///
 /// Raises
 /// ------
-/// ArgumentError, MeshError, SolveError (contradictory constraints), Cancelled
+/// ArgumentError, MeshError, SolveError (contradictory constraints; "l2_curved_hessian" on open saddles with
+/// few given values, where it is not convex), Cancelled
 ///
 /// References
 /// ----------

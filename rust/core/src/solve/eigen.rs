@@ -134,14 +134,7 @@ impl Pencil<'_> {
 
     /// `Q u`, zero where there is no mass.
     fn times(&self, u: &[f64]) -> Vec<f64> {
-        let mut out = vec![0.0; u.len()];
-        for (b, w) in self.weights.iter().enumerate() {
-            let h = self.operator.block_times(b, u);
-            let (columns, values) = self.operator.block(b);
-            for (&column, v) in columns.iter().zip(values) {
-                out[column as usize] += w * (v[0] * h[0] + v[1] * h[1] + v[2] * h[2]);
-            }
-        }
+        let mut out = self.operator.normal_times(self.weights, u);
         out.iter_mut().zip(self.mass).filter(|(_, m)| **m == 0.0).for_each(|(x, _)| *x = 0.0);
         out
     }

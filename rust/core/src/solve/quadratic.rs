@@ -105,6 +105,10 @@ impl<'a> Newton<'a> {
             None => SHIFT,
             Some(_) => SHIFT_UNDER_CONSTRAINTS,
         };
+        // With negative weights a matrix that is far from definite tells of a problem that is not convex.
+        let negative = problem.weights.iter().any(|w| *w < 0.0);
+        let largest =
+            if negative && problem.linear_constraints.is_none() { SHIFT_GROWTH * SHIFT } else { LARGEST_SHIFT };
         loop {
             for (&s, d) in normal.pattern().starts.iter().zip(&diagonal) {
                 // A row without an entry would make the matrix singular; nothing pulls at it, so it stays where it is.
@@ -112,8 +116,8 @@ impl<'a> Newton<'a> {
             }
             match cholesky.factorise(&values) {
                 Ok(()) => return Ok(Self { problem, free, cholesky }),
-                Err(_) if shift < LARGEST_SHIFT => shift = (SHIFT_GROWTH * shift).max(SHIFT),
-                Err(_) if problem.weights.iter().any(|w| *w < 0.0) => return Err(not_convex()),
+                Err(_) if shift < largest => shift = (SHIFT_GROWTH * shift).max(SHIFT),
+                Err(_) if negative => return Err(not_convex()),
                 Err(error) => return Err(error.into()),
             }
         }
@@ -210,7 +214,7 @@ impl<'a> Newton<'a> {
 
     /// The gradient on the free rows.
     fn gradient(&self, u: &[f64], target: &[f64]) -> Vec<f64> {
-        let mut all = transposed_times(self.problem, u);
+        let mut all = self.problem.operator.normal_times(&self.problem.weights, u);
         for (i, g) in all.iter_mut().enumerate() {
             *g += 2.0 * self.problem.fidelity[i] * (u[i] - target[i]);
         }
@@ -221,7 +225,7 @@ impl<'a> Newton<'a> {
     fn hessian_times(&self, direction: &[f64], n: usize) -> Vec<f64> {
         let mut whole = vec![0.0; n];
         direction.iter().zip(&self.free.free).for_each(|(d, &i)| whole[i as usize] = *d);
-        let product = transposed_times(self.problem, &whole);
+        let product = self.problem.operator.normal_times(&self.problem.weights, &whole);
         let entry = |&i: &u32| product[i as usize] + 2.0 * self.problem.fidelity[i as usize] * whole[i as usize];
         self.free.free.iter().map(entry).collect()
     }
@@ -243,19 +247,6 @@ impl<'a> Newton<'a> {
         let weights = self.problem.weights.iter().enumerate();
         weights.map(|(b, w)| 0.5 * w.abs() * size(self.problem.operator, b)).sum()
     }
-}
-
-/// `Hᵀ W H u`.
-fn transposed_times(problem: &Problem<'_>, u: &[f64]) -> Vec<f64> {
-    let mut out = vec![0.0; u.len()];
-    for (b, w) in problem.weights.iter().enumerate() {
-        let h = problem.operator.block_times(b, u);
-        let (columns, values) = problem.operator.block(b);
-        for (&column, v) in columns.iter().zip(values) {
-            out[column as usize] += w * (v[0] * h[0] + v[1] * h[1] + v[2] * h[2]);
-        }
-    }
-    out
 }
 
 fn squared(x: [f64; 3]) -> f64 {
