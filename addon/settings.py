@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from .shared_settings import RidgeSettings, SolverSettings, defaults_of, setting_names
+from .shared_settings import RidgeSettings, SolverSettings, defaults_of
 
 
 def fidelity_of(strength: float) -> float:
@@ -144,10 +144,6 @@ class StylizeSettings(RidgeSettings, SolverSettings):
         max=1.0,
         precision=6,
     )
-
-
-SETTING_NAMES = setting_names(StylizeSettings)
-"""The names of all settings of stylize."""
 
 
 def default_settings(**changes: object) -> SimpleNamespace:

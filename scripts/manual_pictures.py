@@ -19,6 +19,9 @@ SPOT_VIEW = (-0.9, -1.0, 0.35)
 CUBE_VIEW = (0.6, -1.0, 0.6)
 STRENGTHS = {"bust": (0.35, 0.5, 0.65), "spot": (0.5, 0.65, 0.8)}
 SHARPNESSES = (0.0, 0.5, 1.0)
+NOISE = 0.5
+NOISE_STRENGTH = 0.6
+BANDS = 10
 
 
 def stylized(vertices: np.ndarray, faces: np.ndarray, **changes: object) -> np.ndarray:
@@ -107,12 +110,50 @@ def noisy_cube() -> None:
     pictures.sheet(PICTURES / "noisy_cube.png", [row], captions=[captions], text_pixels=15)
 
 
+def creased(vertices: np.ndarray) -> np.ndarray:
+    """A function (n,) on Spot that goes up and down, with straight slopes between sharp turns."""
+    x = vertices - vertices.mean(axis=0)
+    x /= np.abs(x).max()
+    return np.abs((2.0 * x[:, 2] + 0.8 * x[:, 1]) % 2.0 - 1.0)
+
+
+def attributes() -> None:
+    """Noise on a creased function on Spot, taken away with two energies, in bands."""
+    import pictures  # noqa: PLC0415
+    import ridgeform  # noqa: PLC0415
+
+    from addon import ramp  # noqa: PLC0415
+    from addon.attribute_settings import DenoiseSettings, solve_options  # noqa: PLC0415
+    from addon.shared_settings import defaults_of  # noqa: PLC0415
+    from addon.tools.denoise import fidelity_for  # noqa: PLC0415
+
+    vertices, faces = source("spot")
+    mesh, truth = ridgeform.Mesh(vertices, faces), creased(vertices)
+    noisy = truth + np.random.default_rng(0).normal(scale=NOISE * truth.std(), size=len(truth))
+    shown, captions = [noisy], [f"noise of {NOISE:.0%} of the spread"]
+    for energy, name in (("l1_hessian", "Sharp"), ("l2_curved_hessian", "Smooth, Curved")):
+        settings = defaults_of(DenoiseSettings, energy=energy, strength=NOISE_STRENGTH)
+        fidelity = fidelity_for(mesh, noisy[:, None], settings.strength, energy)
+        shown.append(ridgeform.denoise(mesh, noisy, fidelity=fidelity, **solve_options(settings)).values)
+        error = np.sqrt(np.mean((shown[-1] - truth) ** 2)) / np.sqrt(np.mean((noisy - truth) ** 2))
+        captions.append(f"{name}: {error:.0%} of the noise left")
+        print(captions[-1], flush=True)
+    low, high = truth.min(), truth.max()
+    row = []
+    for values in shown:
+        place = np.clip((values[faces].mean(axis=1) - low) / (high - low), 0, 1 - 1e-9)
+        colors = ramp.colors_at(ramp.SEQUENTIAL, (np.floor(place * BANDS) + 0.5) / BANDS)[:, :3]
+        row.append(pictures.render(vertices, faces, view=SPOT_VIEW, size=300, color=colors))
+    pictures.sheet(PICTURES / "attributes.png", [row], captions=[captions], text_pixels=15)
+
+
 DRAWN = {
     "hero": hero,
     "sliders_bust": lambda: sliders("bust", BUST_VIEW, (172, 236)),
     "sliders_spot": lambda: sliders("spot", SPOT_VIEW, (205, 205)),
     "density": density,
     "noisy_cube": noisy_cube,
+    "attributes": attributes,
 }
 
 

@@ -49,7 +49,7 @@ class VibrationModes(Run):
         """Read one mesh."""
         surface = surface_of(obj)
         call = partial(_modes, surface, self.settings.count, energy_options(self.settings))
-        task = Task(obj.name, call, counted="iteration")
+        task = Task(obj.name, call, counted="mode")
         return ModesPart(obj, task, len(obj.data.vertices), weld=surface.weld)
 
     def write(self, parts: Sequence[ModesPart]) -> None:

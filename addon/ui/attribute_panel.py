@@ -5,6 +5,7 @@ import bpy
 
 from ..attribute_settings import DenoiseSettings, InterpolateSettings, ModesSettings
 from . import attribute_settings
+from .presets import RIDGEFORM_PT_denoise_presets, RIDGEFORM_PT_interpolate_presets
 from .sidebar import Sidebar, draw_last_run
 
 
@@ -22,6 +23,10 @@ class RIDGEFORM_PT_denoise(Sidebar, bpy.types.Panel):  # noqa: N801
     bl_label = "Denoise Attribute"
     bl_options = {"DEFAULT_CLOSED"}
 
+    def draw_header_preset(self, _context: bpy.types.Context) -> None:
+        """Draw the presets button."""
+        RIDGEFORM_PT_denoise_presets.draw_panel_header(self.layout)
+
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the sliders, the button and what the last run did."""
         settings, layout = context.scene.ridgeform_denoise, self.split_layout
@@ -37,6 +42,10 @@ class RIDGEFORM_PT_interpolate(Sidebar, bpy.types.Panel):  # noqa: N801
 
     bl_label = "Interpolate Attribute"
     bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header_preset(self, _context: bpy.types.Context) -> None:
+        """Draw the presets button."""
+        RIDGEFORM_PT_interpolate_presets.draw_panel_header(self.layout)
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the settings, the button and what the last run did."""

@@ -22,12 +22,18 @@ CLASSES = (
     "RIDGEFORM_OT_vibration_modes",
     "RIDGEFORM_OT_show_attribute",
     "RIDGEFORM_OT_stylize_preset_add",
+    "RIDGEFORM_OT_denoise_preset_add",
+    "RIDGEFORM_OT_interpolate_preset_add",
     "RIDGEFORM_MT_stylize_presets",
+    "RIDGEFORM_MT_denoise_presets",
+    "RIDGEFORM_MT_interpolate_presets",
     "RIDGEFORM_PT_stylize",
     "RIDGEFORM_PT_stylize_where",
     "RIDGEFORM_PT_stylize_last_steps",
     "RIDGEFORM_PT_stylize_expert",
     "RIDGEFORM_PT_stylize_presets",
+    "RIDGEFORM_PT_denoise_presets",
+    "RIDGEFORM_PT_interpolate_presets",
     "RIDGEFORM_PT_denoise",
     "RIDGEFORM_PT_denoise_expert",
     "RIDGEFORM_PT_interpolate",
@@ -94,6 +100,22 @@ def test_shipped_presets_set_the_panel(name):
     bpy.ops.script.execute_preset(filepath=str(path), menu_idname="RIDGEFORM_MT_stylize_presets")
     assert settings.steps != 999
     assert settings.coupling == ("separate" if name == "Paper_2024" else "joint")
+
+
+@pytest.mark.parametrize("tool", ["denoise", "interpolate"])
+def test_shipped_presets_of_the_attribute_panels(tool):
+    (folder,) = bpy.utils.preset_paths(f"ridgeform/{tool}")
+    settings = getattr(bpy.context.scene, f"ridgeform_{tool}")
+    seen = set()
+    for path in sorted(Path(folder).glob("*.py")):
+        settings.energy, settings.sharpness, settings.attribute = "l1_edge_laplacian", 0.125, "mine"
+        menu = f"RIDGEFORM_MT_{tool}_presets"
+        assert bpy.ops.script.execute_preset(filepath=str(path), menu_idname=menu) == {"FINISHED"}
+        assert settings.attribute == "mine"
+        kinds = ("energy", "sharpness", "strength", "known")
+        seen.add(tuple(getattr(settings, name) for name in kinds if hasattr(settings, name)))
+    assert len(seen) == len(list(Path(folder).glob("*.py"))) >= 3
+    assert {entry[0] for entry in seen} == {"l1_hessian", "l2_curved_hessian"}
 
 
 def test_button_takes_the_settings_of_the_panel():
