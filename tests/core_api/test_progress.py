@@ -192,7 +192,7 @@ def test_two_calls_run_at_once():
 
 @pytest.fixture
 def hears_ctrl_c():
-    """Python's own handler, also where the tests run in the background of a shell that ignores Ctrl-C for them."""
+    """Python's own handler, also where a shell runs the tests in the background and ignores Ctrl-C for them."""
     previous = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, previous)
