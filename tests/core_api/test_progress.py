@@ -192,7 +192,7 @@ def test_two_calls_run_at_once():
 
 @pytest.fixture
 def hears_ctrl_c():
-    """Python's own handler, also where a shell runs the tests in the background and ignores Ctrl-C for them."""
+    """Hand Ctrl-C to Python, also where a shell runs the tests in the background and ignores it for them."""
     previous = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, previous)
