@@ -8,7 +8,7 @@ use crate::block_rows::BLOCK;
 use crate::progress::{Progress, Report};
 use crate::solve::certificate::{bound_along_ray, DualPoint};
 use crate::solve::cones::{norm, scaled, Block};
-use crate::solve::penalty::{reweighted, uniform_scale};
+use crate::solve::penalty::{reweighted, uniform};
 use crate::solve::problem::{Problem, Settings, Status};
 use crate::solve::reduced::Reduced;
 use crate::solve::sweep::{Sums, Sweep};
@@ -35,7 +35,7 @@ const GAP_ENOUGH: f64 = 1e-3;
 
 /// The first new penalties come after this many iterations from nothing, when the ridges begin to show, and then each
 /// time the iterations have tripled.
-const REWEIGHT_COLD: usize = 8;
+const REWEIGHT_COLD: usize = 10;
 
 /// A warm start brings good penalties along.
 const REWEIGHT_WARM: usize = 30;
@@ -131,12 +131,11 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
     ) -> Result<Self> {
         let (r, next_reweighting) = match &warm {
             Some(warm) => (reweighted(&warm.length, reduced.weights), REWEIGHT_WARM),
-            None => {
-                let scale = uniform_scale(&mut reduced, system, &h, progress)?;
-                (reduced.weights.iter().map(|w| scale * w).collect(), REWEIGHT_COLD)
-            }
+            None => (uniform(&mut reduced, system, &h, progress)?, REWEIGHT_COLD),
         };
-        system.factorise(&mut reduced, &r)?;
+        if warm.is_some() {
+            system.factorise(&mut reduced, &r)?;
+        }
         let sweep = Sweep::new(&reduced, &r, |b| match &warm {
             Some(warm) => (warm.z[b], scaled(reduced.weights[b], &warm.p[b])),
             None => ([[0.0; K]; BLOCK], [[0.0; K]; BLOCK]),

@@ -20,6 +20,8 @@ pub struct System {
     cholesky: Cholesky,
     values: Vec<f64>,
     proximal: Vec<f64>,
+    /// The matrix is this times the one that was factored.
+    scale: f64,
 }
 
 impl System {
@@ -30,7 +32,7 @@ impl System {
     pub fn new(free: &FreeOperator) -> Result<Self, SolveError> {
         let normal = NormalMatrix::new(&free.operator);
         let cholesky = Cholesky::analyse(normal.pattern().clone())?;
-        Ok(Self { normal, cholesky, values: Vec::new(), proximal: Vec::new() })
+        Ok(Self { normal, cholesky, values: Vec::new(), proximal: Vec::new(), scale: 1.0 })
     }
 
     /// Numeric factorisations made so far.
@@ -62,10 +64,17 @@ impl System {
                 Ok(()) => break,
             }
         }
+        self.scale = 1.0;
         if let Some(constraints) = &mut reduced.constraints {
             constraints.prepare(&mut self.cholesky)?;
         }
         Ok(())
+    }
+
+    /// Turns the factored matrix into `factor` times itself: all penalties scaled alike, where there is no fidelity.
+    pub fn rescale(&mut self, factor: f64) {
+        self.scale *= factor;
+        self.proximal.iter_mut().for_each(|p| *p *= factor);
     }
 
     /// The proximal weight of each row: [`System::solve`] adds `proximal · (u − u before)` to the left side.
@@ -85,12 +94,14 @@ impl System {
         for (i, (x, row)) in u.iter_mut().zip(right).enumerate() {
             let (a, p) = (2.0 * reduced.fidelity[i], self.proximal[i]);
             let target = &reduced.target[i];
-            *x = std::array::from_fn(|c| row[c] + a * target[c] + p * x[c]);
+            *x = std::array::from_fn(|c| (row[c] + a * target[c] + p * x[c]) / self.scale);
         }
         match reduced.n_columns {
             3 => self.cholesky.solve_columns::<3, K>(u),
             _ => self.cholesky.solve_columns::<K, K>(u),
         }
-        reduced.constraints.as_ref().map_or_else(Vec::new, |constraints| constraints.correct(u))
+        let mut y = reduced.constraints.as_ref().map_or_else(Vec::new, |constraints| constraints.correct(u));
+        y.iter_mut().flatten().for_each(|y| *y *= self.scale);
+        y
     }
 }
