@@ -21,9 +21,13 @@ def main(arguments: list[str]) -> None:
             [*pytest, *without_blender],
             {"PYTHONPATH": str(WHEEL_SITE)},
         )
+        in_blender = {"RIDGEFORM_EXTENSION": str(extension), "PYTHONPATH": ""}
+        # In a process of its own: the glTF exporter of Blender 4.2 crashes now and then in one that has had an undo.
+        batch = "tests/blender/test_batch.py"
+        parts[f"batch command in Blender {PYTHONS[version]}"] = ([*pytest, batch], in_blender)
         parts[f"extension in Blender {PYTHONS[version]}"] = (
-            [*pytest, "tests/blender"],
-            {"RIDGEFORM_EXTENSION": str(extension), "PYTHONPATH": ""},
+            [*pytest, "tests/blender", f"--ignore={batch}"],
+            in_blender,
         )
     parts["Rust tests"] = (
         ["cargo", "test", "--release", "--locked", "--quiet"],

@@ -1,7 +1,7 @@
 """The batch command: many formats, one record each, bad files among good ones.
 
-Among the first by its name: Blender 4.2's glTF exporter sets the scene of the window, which after many other
-tests, and after every undo, crashes now and then.
+In a process of its own: Blender 4.2's glTF exporter sets the scene of the window, which after an undo crashes now and
+then.
 """
 
 import json
