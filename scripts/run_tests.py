@@ -22,7 +22,7 @@ def main(arguments: list[str]) -> None:
             {"PYTHONPATH": str(WHEEL_SITE)},
         )
         in_blender = {"RIDGEFORM_EXTENSION": str(extension), "PYTHONPATH": ""}
-        # In a process of its own: the glTF exporter of Blender 4.2 crashes now and then in one that has had an undo.
+        # In a process of its own: after an undo the glTF exporter of Blender 4.2 crashes now and then.
         batch = "tests/blender/test_batch.py"
         parts[f"batch command in Blender {PYTHONS[version]}"] = ([*pytest, batch], in_blender)
         parts[f"extension in Blender {PYTHONS[version]}"] = (

@@ -1,7 +1,7 @@
 """The batch command: many formats, one record each, bad files among good ones.
 
-In a process of its own: Blender 4.2's glTF exporter sets the scene of the window, which after an undo crashes now and
-then.
+In a process of its own: Blender 4.2's glTF exporter sets the scene of the window, and after an undo that
+crashes now and then.
 """
 
 import json
