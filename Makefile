@@ -2,7 +2,7 @@
 PYTHON ?= python3
 RUN = @$(PYTHON) scripts/setup_env.py
 
-.PHONY: help demo test lint bench extension wheel fixtures pictures
+.PHONY: help demo test lint bench extension wheel fixtures pictures gallery
 
 help:
 	@echo "make demo        stylize a real scan in Blender, without a window: out/demo.png, out/demo.blend"
@@ -13,6 +13,7 @@ help:
 	@echo "make extension   build and check the Blender extension: .ridgeform/extension/"
 	@echo "make fixtures    make the .blend files of blend_fixtures/ again"
 	@echo "make pictures    draw the results in docs/pictures/ again"
+	@echo "make gallery     compute and draw docs/pictures/gallery/ and the tables of docs/gallery.md again"
 
 demo:
 	$(RUN) scripts/demo.py
@@ -39,3 +40,6 @@ fixtures:
 
 pictures:
 	$(RUN) scripts/manual_pictures.py
+
+gallery:
+	$(RUN) scripts/draw_gallery.py

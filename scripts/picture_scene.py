@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import ctypes.util
 import os
+import struct
 import sys
 import tempfile
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -169,6 +171,26 @@ def save_png(path: str | Path, pixels: Pixels) -> None:
         image.save()
     finally:
         bpy.data.images.remove(image)
+
+
+def save_small_png(path: str | Path, pixels: Pixels, shades: int) -> None:
+    """Save opaque sRGB bytes `(height, width, 4)`, top row first, as PNG with so many shades a channel."""
+    height, width = pixels.shape[:2]
+    step = 255 / (shades - 1)
+    values = np.rint(np.rint(pixels[..., :3] / step) * step).astype(np.uint8)
+    # Every row without a filter: differences of few shades repeat less than the shades themselves.
+    rows = np.concatenate([np.zeros((height, 1), np.uint8), values.reshape(height, -1)], axis=1)
+    chunks = {
+        b"IHDR": struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0),
+        b"IDAT": zlib.compress(rows.tobytes(), 9),
+        b"IEND": b"",
+    }
+    with Path(path).open("wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n")
+        for name, data in chunks.items():
+            file.write(
+                struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+            )
 
 
 def load_png(path: str | Path) -> Pixels:

@@ -19,7 +19,15 @@ from pathlib import Path
 import bpy
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from picture_geometry import CLAY, camera_axes, face_normals, facet_colors, ribbons, ridge_edges
+from picture_geometry import (
+    CLAY,
+    Dots,
+    Lines,
+    camera_axes,
+    face_normals,
+    facet_colors,
+    ridge_edges,
+)
 from picture_scene import (
     Pixels,
     add_camera,
@@ -30,14 +38,14 @@ from picture_scene import (
     pick_engine,
     picture_scene,
     save_png,
+    save_small_png,
 )
 
 Vector = tuple[float, float, float]
 
 VIEW: Vector = (0.6, -1.0, 0.4)
 UP: Vector = (0.0, 0.0, 1.0)
-RIDGE_COLOR = (0.015, 0.017, 0.022)
-RIDGE_PIXELS = 1.6
+TEXT_COLOR = (0.015, 0.017, 0.022)
 OCCLUSION_DISTANCE = 0.08
 """Reach of the cavity shading, as a share of the picture's longer side."""
 
@@ -54,7 +62,9 @@ def render(
     margin: float = 0.05,
     background: Vector | None = (1.0, 1.0, 1.0),
     color: ArrayLike = CLAY,
+    lit: bool = True,
     ridges: float | None = None,
+    marks: Sequence[Lines | Dots] = (),
     engine: str = "AUTO",
 ) -> Pixels:
     """Draw a triangle mesh flat-shaded: `(height, width, 4)` sRGB bytes, saved as PNG if `path` is given.
@@ -62,7 +72,8 @@ def render(
     `view` points from the object to the camera (orthographic, `up` upwards). The bounding box of `frame`
     (default: `vertices`) fills the picture up to `margin`; give the same `frame` to pictures to be compared.
     `background` is sRGB, None for transparent. `color` is linear RGB, one or one per face `(m, 3)`.
-    `ridges` draws dark lines along edges that bend by more than so many degrees (-1: all edges).
+    `lit` False draws the colours as they are, without light and shadow. `ridges` draws dark lines along edges
+    that bend by more than so many degrees (-1: all edges); `marks` are lines and dots over the surface.
     `engine` is "BLENDER_WORKBENCH", "CYCLES" or "AUTO".
     """
     vertices = np.asarray(vertices, dtype=float)
@@ -73,21 +84,26 @@ def render(
     low, high = seen.min(axis=0), seen.max(axis=0)
     extent = (high - low)[:2] / (1 - 2 * margin)
     units_per_pixel = max(extent[0] / width, extent[1] / height) or 1.0
-    colors = facet_colors(face_normals(vertices, faces), axes, color)
+    if lit:
+        colors = facet_colors(face_normals(vertices, faces), axes, color)
+    else:
+        colors = np.array(np.broadcast_to(np.asarray(color, dtype=float), (len(faces), 3)))
     if ridges is not None:
-        edges = ridge_edges(vertices, faces, ridges)
-        strips, strip_faces = ribbons(vertices, edges, axes, RIDGE_PIXELS * units_per_pixel)
+        marks = [Lines(vertices[ridge_edges(vertices, faces, ridges)]), *marks]
+    for mark in marks:
+        strips, strip_faces = mark.drawn(axes, units_per_pixel)
         faces = np.concatenate([faces, strip_faces + len(vertices)])
         vertices = np.concatenate([vertices, strips])
-        colors = np.concatenate([colors, np.tile(RIDGE_COLOR, (len(strip_faces), 1))])
+        colors = np.concatenate([colors, np.tile(mark.color, (len(strip_faces), 1))])
     depth = vertices @ axes[2]
     thickness = float(np.ptp(depth)) or 1.0
     eye = axes.T @ [*(0.5 * (low + high))[:2], depth.max() + thickness]
     with picture_scene(width, height, pick_engine(engine)) as scene:
+        scene.display.shading.show_cavity = lit
         scene.display.matcap_ssao_distance = OCCLUSION_DISTANCE * units_per_pixel * max(width, height)
         mesh = colored_mesh(vertices, faces, colors)
         if scene.render.engine == "CYCLES":
-            mesh.materials.append(emission_material(scene.display.matcap_ssao_distance))
+            mesh.materials.append(emission_material(scene.display.matcap_ssao_distance if lit else None))
         link(scene, mesh)
         add_camera(scene, axes, eye, max(width, height) * units_per_pixel, 3 * thickness)
         pixels = draw(scene)
@@ -127,10 +143,12 @@ def sheet(
     captions: Sequence[Sequence[str]] | None = None,
     title: str | None = None,
     text_pixels: int = 18,
+    shades: int | None = None,
 ) -> Pixels:
     """Put rows of pictures of one size on one white labelled page and save it as PNG to `path`.
 
     `columns` are written above, `rows` at the left, `captions` (one per picture) below; None leaves a gap.
+    With `shades`, the file has so many of each channel, and is a half or a third of its size.
     """
     height, width = next(p.shape[:2] for row in pictures for p in row if p is not None)
     line = round(1.6 * text_pixels)
@@ -152,7 +170,10 @@ def sheet(
         strips = _text_strips([text for _, _, text in texts], text_pixels, line)
         for (x, y, _), strip in zip(texts, strips, strict=True):
             _paste(page, strip, round(y - strip.shape[0] / 2), round(x - strip.shape[1] / 2))
-    save_png(path, page)
+    if shades is None:
+        save_png(path, page)
+    else:
+        save_small_png(path, page, shades)
     return page
 
 
@@ -177,7 +198,7 @@ def _text_strips(texts: list[str], pixels: int, line: int) -> list[Pixels]:
     height = line * len(texts)
     with picture_scene(width, height, pick_engine("AUTO")) as scene:
         scene.display.shading.color_type = "SINGLE"
-        scene.display.shading.single_color = RIDGE_COLOR
+        scene.display.shading.single_color = TEXT_COLOR
         scene.display.shading.show_cavity = False
         for k, text in enumerate(texts):
             curve = bpy.data.curves.new("picture", "FONT")

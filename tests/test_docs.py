@@ -73,7 +73,7 @@ def test_every_page_is_reached_from_the_readme(page):
 
 def test_every_picture_is_shown_and_small():
     shown = {(page.parent / link).resolve() for page in PAGES for link in relative_links(page)}
-    pictures = sorted((ROOT / "docs/pictures").iterdir())
+    pictures = sorted(path for path in (ROOT / "docs/pictures").rglob("*") if path.is_file())
     assert pictures
     for picture in pictures:
         assert picture in shown, f"{picture.name} is in no page"
@@ -123,3 +123,13 @@ def test_the_readme_is_short_and_has_its_benchmark_block():
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     assert len(text.splitlines()) < README_LINES
     assert re.search(r"<!-- bench:begin -->\n.+\n<!-- bench:end -->", text, re.DOTALL)
+
+
+def test_the_gallery_has_a_table_for_every_figure():
+    names = re.search(
+        r"^FIGURES = \((.+?)\)", (ROOT / "scripts/draw_gallery.py").read_text("utf-8"), re.M | re.S
+    )
+    assert names
+    text = (ROOT / "docs/gallery.md").read_text(encoding="utf-8")
+    for name in re.findall(r'"(\w+)"', names[1]):
+        assert re.search(rf"<!-- {name}:begin -->\n\|.+?<!-- {name}:end -->", text, re.DOTALL), name

@@ -5,7 +5,8 @@ import numpy as np
 import pictures
 import pytest
 import shapes
-from picture_scene import load_png
+from picture_geometry import Dots, Lines
+from picture_scene import load_png, save_png, save_small_png
 
 CUBE = shapes.cube(1)
 
@@ -44,6 +45,34 @@ def test_ridges_are_drawn_dark_where_the_mesh_bends():
     middle = slice(20, 108)
     assert (creases[middle, middle] > 60).all()
     assert (everything[middle, middle] < 60).any()
+
+
+def test_lines_and_dots_are_drawn_over_the_surface_in_their_colours():
+    vertices, faces = shapes.cube(4)
+    marks = [
+        Lines(np.array([[[-0.9, 0.5, 1.0], [0.9, 0.5, 1.0]]]), (0.0, 0.0, 1.0), 4.0),
+        Dots(np.array([[0.0, -0.5, 1.0]]), (1.0, 0.0, 0.0), 12.0),
+    ]
+    look = {"view": (0, 0, 1), "up": (0, 1, 0), "size": 128, "margin": 0.0, "lit": False}
+    pixels = pictures.render(vertices, faces, color=(1.0, 1.0, 1.0), marks=marks, **look)
+    red, blue = (
+        np.abs(pixels[..., :3].astype(int) - c).max(axis=-1) < 40 for c in ((255, 0, 0), (0, 0, 255))
+    )
+    assert red.sum() == pytest.approx(np.pi * 6**2, rel=0.3)  # without the soft rim
+    assert np.argwhere(red).mean(axis=0) == pytest.approx((96, 64), abs=2)
+    assert 2 * 0.9 * 128 <= blue.sum() <= 4 * 0.92 * 128  # 4 pixels wide, of which two may be soft rim
+    assert np.argwhere(blue).mean(axis=0) == pytest.approx((32, 64), abs=2)
+    assert (pixels[2, 2, :3] > 250).all()
+
+
+def test_a_small_file_has_fewer_shades_and_the_same_picture(tmp_path):
+    pixels = pictures.render(*CUBE, size=96)
+    save_png(tmp_path / "whole.png", pixels)
+    save_small_png(tmp_path / "small.png", pixels, 32)
+    again = load_png(tmp_path / "small.png")
+    assert again.shape == pixels.shape
+    assert np.abs(again.astype(int) - pixels).max() <= 5
+    assert (tmp_path / "small.png").stat().st_size < (tmp_path / "whole.png").stat().st_size
 
 
 def test_the_same_frame_gives_the_same_scale():
