@@ -9,6 +9,7 @@ help:
 	@echo "make test        all tests: Rust, the wheel, the extension in every Blender found"
 	@echo "make lint        formatting and lints of Rust and Python"
 	@echo "make bench       measure against peers: benchmarks/results.md, the table in the README"
+	@echo "                 ARGS=--quick: a minute, keeps nothing; ARGS=--large: a million vertices as well"
 	@echo "make wheel       build the Python wheel"
 	@echo "make extension   build and check the Blender extension: .ridgeform/extension/"
 	@echo "make fixtures    make the .blend files of blend_fixtures/ again"
@@ -25,7 +26,7 @@ lint:
 	$(RUN) scripts/lint.py
 
 bench:
-	$(RUN) benchmarks/run.py
+	$(RUN) benchmarks/run.py $(ARGS)
 
 extension:
 	$(RUN) scripts/build_extension.py

@@ -21,7 +21,15 @@ ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "RAYON_NUM_TH
 CLARABEL = ("qdldl", "faer")
 """The factorisations that Clarabel can use."""
 
+EFFORT = {"repeats": 5, "budget": 2.0}
+"""Samples of one measurement, and the seconds after which no further one is taken."""
+
 Record = dict[str, Any]
+
+
+def hurry() -> None:
+    """Take one sample of everything."""
+    EFFORT["repeats"] = 1
 
 
 def build() -> None:
@@ -75,12 +83,13 @@ def with_medians(record: Record) -> Record:
 
 def measure(kind: str, folder: Path, **settings: object) -> Record:
     """What the Rust program says of one problem; `settings` are its keys."""
-    return _answer([MEASURE, kind, folder, *(f"{key}={value}" for key, value in settings.items())])
+    words = {**EFFORT, **settings}
+    return _answer([MEASURE, kind, folder, *(f"{key}={value}" for key, value in words.items())])
 
 
 def peer(kind: str, folder: Path) -> Record:
     """What a Python peer says of one problem."""
-    return _answer([peer_python(), ROOT / "benchmarks/peer.py", kind, folder])
+    return _answer([peer_python(), ROOT / "benchmarks/peer.py", kind, folder, str(EFFORT["repeats"])])
 
 
 def gap_of(record: Record) -> float:
@@ -95,7 +104,7 @@ def iterations_of(record: Record) -> int:
 
 
 def clarabel(kind: str, folder: Path, gaps: Sequence[float], **settings: object) -> list[Record]:
-    """Clarabel with its faster factorisation, stopped at its first iterate with each certified gap (falling).
+    """Clarabel with its faster factorisation, stopped at the first iterate with each certified gap (falling).
 
     Its own stopping rule also asks for feasibility and would go on for some iterations more: that is not
     charged to it.
@@ -109,12 +118,22 @@ def clarabel(kind: str, folder: Path, gaps: Sequence[float], **settings: object)
     method = min(trials, key=lambda name: trials[name]["seconds"])
     settings |= {"solver": method, "tolerance": gaps[-1]}
     last = measure(kind, folder, repeats=1, **settings)
-    count, reached = iterations_of(last), gap_of(last)
-    records = []
-    for gap in reversed(gaps):
-        while count > 1 and reached <= gap:
-            count -= 1
-            reached = gap_of(measure(kind, folder, repeats=1, max_iterations=count, **settings))
-        found = measure(kind, folder, max_iterations=count + 1, **settings)
+
+    @functools.cache
+    def after(count: int) -> Record:
+        return measure(kind, folder, repeats=1, max_iterations=count, **settings)
+
+    records, missed = [], 0
+    for gap in gaps:
+        reached = iterations_of(last)
+        while reached - missed > 1:
+            middle = (missed + reached) // 2
+            if gap_of(after(middle)) <= gap:
+                reached = middle
+            else:
+                missed = middle
+        found = after(reached)
+        if found["seconds"] < EFFORT["budget"]:
+            found = measure(kind, folder, max_iterations=reached, **settings)
         records.append({**found, "solver": f"clarabel_{method}"})
-    return records[::-1]
+    return records

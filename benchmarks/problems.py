@@ -1,11 +1,11 @@
-"""The fixed problems of the benchmarks: meshes, data on them, and the folder form that `measure` reads.
+"""The meshes of the benchmarks and the folder form of a problem that `measure` reads.
 
 Everything is generated, or comes from the public-domain scans of `blend_fixtures/sources/`; seeds are fixed.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -14,50 +14,65 @@ from numpy.typing import NDArray
 from workspace import ROOT
 
 SEED = 2024
-KNOWN = 40
-"""Vertices with known values in the interpolation problems."""
 
 
 @dataclass(frozen=True)
 class Problem:
-    """A mesh, a function on its vertices, and which of its values are known."""
+    """A mesh, one or three functions on its vertices, and what is known or asked of them."""
 
     name: str
     vertices: NDArray[np.float64]
     faces: NDArray[np.int64]
     values: NDArray[np.float64]
-    indices: NDArray[np.int64]
+    indices: NDArray[np.int64] = field(default_factory=lambda: np.arange(0))
+    weights: NDArray[np.float64] | None = None
+    constraints: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
+    """A dense matrix `A` (p x n) and `b` (p) of `A u = b`."""
+    fidelity: float = 0.0
+    """Of denoising; zero: interpolation of the values at `indices`."""
 
     def write(self, folder: Path) -> Path:
         """Write the raw little-endian files that `measure` reads; returns the folder."""
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / "vertices.f64").write_bytes(self.vertices.astype("<f8").tobytes())
-        (folder / "faces.u32").write_bytes(self.faces.astype("<u4").tobytes())
-        (folder / "values.f64").write_bytes(self.values.astype("<f8").tobytes())
-        (folder / "indices.u32").write_bytes(self.indices.astype("<u4").tobytes())
+
+        def put(name: str, numbers: NDArray, kind: str) -> None:
+            (folder / name).write_bytes(np.asarray(numbers).astype(kind).tobytes())
+
+        put("vertices.f64", self.vertices, "<f8")
+        put("faces.u32", self.faces, "<u4")
+        put("values.f64", self.values.T, "<f8")
+        put("indices.u32", self.indices, "<u4")
+        if self.weights is not None:
+            put("weights.f64", self.weights, "<f8")
+        if self.constraints is not None:
+            matrix, right = self.constraints
+            rows, columns = np.nonzero(matrix)
+            put("constraint_rows.u32", rows, "<u4")
+            put("constraint_columns.u32", columns, "<u4")
+            put("constraint_values.f64", matrix[rows, columns], "<f8")
+            put("constraint_right.f64", right, "<f8")
         return folder
 
 
-def problem(name: str, vertices: NDArray, faces: NDArray, noise: float = 0.0) -> Problem:
-    """The problem on a mesh: a function with ridges that spans 1, normal noise of deviation `noise` on top.
+@dataclass(frozen=True)
+class Mesh:
+    """A mesh, moved and scaled so that its longest side is 1."""
 
-    The mesh is moved and scaled so that its longest side is 1.
-    """
-    used = np.zeros(len(vertices), dtype=bool)
-    used[faces] = True
-    low, high = vertices[used].min(axis=0), vertices[used].max(axis=0)
-    unit = (vertices - 0.5 * (low + high)) / (high - low).max()
-    random = np.random.default_rng(SEED)
-    values = ridged(unit)
-    values = (values - values[used].min()) / np.ptp(values[used]) + noise * random.standard_normal(len(unit))
-    indices = np.sort(random.choice(np.flatnonzero(used), min(KNOWN, used.sum()), replace=False))
-    return Problem(name, unit.astype(float), faces.astype(np.int64), values, indices)
+    name: str
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.int64]
 
+    @staticmethod
+    def of(name: str, vertices: NDArray, faces: NDArray) -> Mesh:
+        """The mesh in its unit."""
+        used = vertices[np.unique(faces)]
+        low, high = used.min(axis=0), used.max(axis=0)
+        unit = (vertices - 0.5 * (low + high)) / (high - low).max()
+        return Mesh(name, unit.astype(float), faces.astype(np.int64))
 
-def ridged(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """A continuous function of the position, piecewise linear with ridges across the whole mesh."""
-    x, y, z = points.T
-    return np.abs(x + 0.3 * z) + np.maximum(y, 0.5 * z) - 0.4 * np.abs(z - 0.1)
+    def used(self) -> NDArray[np.int64]:
+        """The vertices that have faces."""
+        return np.unique(self.faces)
 
 
 def source(name: str) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -73,11 +88,23 @@ def noisy_cube(n: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
 
 
 MESHES = {
-    "cube, noisy": lambda: noisy_cube(20),
-    "bust": lambda: source("bust"),
-    "bust, split": lambda: shapes.subdivide(*source("bust")),
-    "cube, noisy, large": lambda: noisy_cube(98),
+    "cube 1k": lambda: noisy_cube(13),
+    "cube 2k": lambda: noisy_cube(20),
+    "cube 8k": lambda: noisy_cube(37),
+    "bust 9k": lambda: source("bust"),
+    "cube 40k": lambda: noisy_cube(82),
+    "cube 200k": lambda: noisy_cube(183),
+    "cube 1M": lambda: noisy_cube(409),
 }
+"""Meshes by name: noisy cubes of growing size, and a scan."""
+
+SERIES = ("cube 8k", "cube 40k", "cube 200k", "cube 1M")
+"""Those that differ in size alone: growth is measured on them. Smaller ones fit into the caches."""
+
+
+def mesh(name: str) -> Mesh:
+    """One of `MESHES`."""
+    return Mesh.of(name, *MESHES[name]())
 
 
 def load_obj(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

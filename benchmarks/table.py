@@ -2,51 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
 
-from driver import Record, gap_of, iterations_of
-from suite import DENOISING, EXACT, GAP
+import scalar_table
+from cells import grid, kilobytes, ratio, seconds, solved
+from classes import HEAVY, HOLE, LEAST_WEIGHT, LIGHT
+from driver import Record
+from suite import EXACT, FINE, GAP
 from workspace import stop
 
 BEGIN, END = "<!-- bench:begin -->", "<!-- bench:end -->"
-
-
-def seconds(record: Record | None, name: str = "seconds") -> str:
-    """A time with its unit, three digits at most."""
-    if record is None or record.get(name) is None:
-        return "-"
-    value = record[name]
-    for unit, factor in [("s", 1.0), ("ms", 1e3)]:
-        if value * factor >= 1:
-            return f"{value * factor:.3g} {unit}"
-    return f"{value * 1e6:.3g} µs"
-
-
-def ratio(slow: Record | None, fast: Record | None, name: str = "seconds") -> str:
-    """How often `fast` goes into `slow`."""
-    if slow is None or fast is None:
-        return "-"
-    value = slow[name] / fast[name]
-    return f"{value:.0f} x" if value >= 20 else f"{value:.1f} x"
-
-
-def grid(head: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
-    """A Markdown table."""
-    head = list(head)
-    lines = [head, ["---"] * len(head), *rows]
-    return "".join("| " + " | ".join(str(cell) for cell in line) + " |\n" for line in lines)
-
-
-def solved(record: Record | None) -> str:
-    """Time, and in brackets iterations and runs."""
-    if record is None:
-        return "-"
-    note = f"{iterations_of(record)} it." + ("" if record["runs"] >= 5 else f", {record['runs']} runs")
-    missed = (
-        "" if record["complete"] or "clarabel" in str(record.get("solver")) else f", gap {gap_of(record):.0e}"
-    )
-    return f"{seconds(record)} ({note}{missed})"
 
 
 def flow_steps(records: list[Record]) -> str:
@@ -69,11 +34,6 @@ def _beside(r: Record) -> list[str]:
     ]
 
 
-def kilobytes(record: Record | None, of: Record) -> str:
-    """The peak of memory per vertex."""
-    return "-" if record is None else f"{record['peak_bytes'] / of['vertices'] / 1000:.1f} kB"
-
-
 def flows(records: list[Record]) -> str:
     """Whole flows in units of a factorisation."""
     head = ["mesh", "vertices", "one numeric factorisation"]
@@ -88,35 +48,6 @@ def flows(records: list[Record]) -> str:
         row = [r["problem"], r["vertices"], seconds(r["yardstick"], "numeric_cpu_s")]
         for name in ("default", "certified"):
             row += [solved(r[name]), f"{r[name]['in_factorisations']:.0f}"]
-        rows.append(row)
-    return grid(head, rows)
-
-
-def scalars(records: list[Record]) -> str:
-    """Scalar problems beside the quadratic one and Clarabel."""
-    head = [
-        "problem",
-        "mesh",
-        "vertices",
-        "L2",
-        f"ours, gap ≤ {GAP:g}",
-        "x L2",
-        f"Clarabel, gap ≤ {GAP:g}",
-        "faster",
-    ]
-    head += [
-        f"ours, gap ≤ {EXACT:g}",
-        "x L2",
-        f"Clarabel, gap ≤ {EXACT:g}",
-        "faster",
-        "memory per vertex (Clarabel)",
-    ]
-    rows = []
-    for r in records:
-        ours, peer, faster, exact, peer_exact, faster_exact, memory = _beside(r)
-        row = [r["kind"], r["problem"], r["vertices"], seconds(r["yardstick"])]
-        row += [ours, ratio(r["ours"], r["yardstick"]), peer, faster]
-        row += [exact, ratio(r["ours_exact"], r["yardstick"]), peer_exact, faster_exact, memory]
         rows.append(row)
     return grid(head, rows)
 
@@ -142,7 +73,7 @@ def gpytoolbox(records: list[Record]) -> str:
                 what = [
                     f"SCS {peer['precision']:g}",
                     f"{peer['error']:.1e}",
-                    f"{seconds(peer)} ({peer['runs']} runs)",
+                    seconds(peer),
                 ]
                 rows.append([*start, "`min_l1_with_fixed`", *what, ratio(peer, r["ours"])])
     return grid(head, rows)
@@ -160,38 +91,57 @@ def assemblies(records: list[Record]) -> str:
     return grid(head, rows)
 
 
-NOISES = ", ".join(
-    f"{amount:g} (fidelity {fidelity:g}, {name})" for name, (amount, fidelity) in DENOISING.items()
+SCALAR = (
+    "Values known at 10, 40 or 1000 vertices (at most half of them), or everywhere but in a hole of"
+    f" {100 * HOLE:g} % of the vertices. Noise of standard deviation {LIGHT[0]:g} (light, fidelity"
+    f" {LIGHT[1]:g}) or {HEAVY[0]:g} (heavy, fidelity {HEAVY[1]:g}) on a function that spans 1. Weights:"
+    f" light noise, fidelity {HEAVY[1]:g}, the squares of a segmentation's indicator, down to"
+    f" {LEAST_WEIGHT:g} on the ridges. Constraints: heavy noise, eight means and three differences known."
+    " Coordinates: the positions themselves, one norm over all three. The longest side of the mesh is 1. L2:"
+    " the quadratic problem on the same mesh, one factorisation, one solve, the same Cholesky, without the"
+    " linear constraints. Everything is counted from the mesh on. Clarabel as for the flow step below."
+)
+
+PARTS = (
+    "The floor of this kind of solver is one ordering, one factorisation, and a triangular solve an"
+    " iteration; the rest is passes over the faces, assembly and certificates. One factorisation and one"
+    " solve are those of the L2 problem; solves for linear constraints and the first penalty count as the"
+    " rest."
 )
 
 SECTIONS = {
+    "scalar": ("Functions on a mesh", SCALAR, "scalar", scalar_table.scalars),
+    "growth": (
+        "Growth with the mesh",
+        "The `e` of a fit of vertices^e to the times on cubes of growing size.",
+        "scalar",
+        scalar_table.growth,
+    ),
+    "parts": (f"Parts of the time to a gap of {GAP:g}", PARTS, "scalar", scalar_table.parts),
     "flow_step": (
         "One flow step",
         "Three coordinates, one norm per face over all of them, from a cold start, fidelity 500 in units of"
         " the longest edge, sharpness 0.5. Everything is counted, from the mesh on. Clarabel: the faster of"
         " its factorisations `qdldl` and `faer`, stopped at its first iterate whose gap, computed in the same"
         " way, is small enough.",
+        "flow_step",
         flow_steps,
     ),
     "flow": (
         "A flow of 20 steps",
         "Beside one numeric factorisation of the same matrix. By default each step stops on residuals.",
+        "flow",
         flows,
-    ),
-    "scalar": (
-        "Interpolation and denoising of a function",
-        f"40 known values, or noise of standard deviation {NOISES} on a function that spans 1; the longest"
-        " side of the mesh is 1. L2: the quadratic problem on the same mesh, one factorisation, one solve,"
-        " the same Cholesky, everything counted from the mesh on, as for ours.",
-        scalars,
     ),
     "gpytoolbox": (
         "The interpolation with gpytoolbox",
         "At its loosest precision with an objective within 1e-4 of the optimum, and at its default.",
+        "gpytoolbox",
         gpytoolbox,
     ),
-    "assembly": ("Assembling the Hessian", "Both matrices have the same entries.", assemblies),
+    "assembly": ("Assembling the Hessian", "Both matrices have the same entries.", "assembly", assemblies),
 }
+"""Title, text, the records to draw, and how."""
 
 
 def header(results: Record) -> str:
@@ -199,7 +149,7 @@ def header(results: Record) -> str:
     m = results["machine"]
     return (
         f"{m['processor']}, {m['cores']} cores, {m['system']}. Processor time of one thread, medians of 5"
-        " runs where nothing else is said. Gaps are relative duality gaps, computed"
+        " runs, fewer where they take seconds. Gaps are relative duality gaps, computed"
         " from the points returned.\n"
     )
 
@@ -207,7 +157,7 @@ def header(results: Record) -> str:
 def full(results: Record) -> str:
     """All tables."""
     parts = ["# Benchmarks\n\n`make bench` makes this page. " + header(results)]
-    for name, (title, text, draw) in SECTIONS.items():
+    for title, text, name, draw in SECTIONS.values():
         if name in results:
             parts.append(f"\n## {title}\n\n{text}\n\n{draw(results[name])}")
     return "".join(parts)
@@ -215,18 +165,22 @@ def full(results: Record) -> str:
 
 def short(results: Record) -> str:
     """The few lines for the README."""
-    rows = []
-    for r in results["flow_step"]:
-        rows.append(["a flow step", r["problem"], r["vertices"], *_short(r), "-"])
-    for r in results["scalar"]:
-        rows.append([r["kind"], r["problem"], r["vertices"], *_short(r), ratio(r["ours"], r["yardstick"])])
-    head = ["what", "mesh", "vertices", f"time to gap {GAP:g}", "Clarabel", "faster", "in L2 solutions"]
-    return header(results) + "\n" + grid(head, rows)
-
-
-def _short(r: Record) -> list[str]:
-    peer = r.get("clarabel")
-    return [seconds(r["ours"]), seconds(peer), ratio(peer, r["ours"])]
+    steps = [
+        [
+            f"a flow step, {r['problem']}",
+            seconds(r["ours"]),
+            "-",
+            "-",
+            ratio(r.get("clarabel"), r["ours"]),
+            "-",
+            "-",
+        ]
+        for r in results["flow_step"]
+    ]
+    head = ["8k vertices", f"time to gap {GAP:g}", "in L2 solutions", f"the same to gap {FINE:g}"]
+    head += ["faster than Clarabel", "in L2 solutions, largest mesh", "time grows like vertices to the"]
+    lines = grid(head, scalar_table.short(results["scalar"]) + steps)
+    return header(results) + "\n" + lines + "\nAll of it: [results](benchmarks/results.md).\n"
 
 
 def put_into(path: Path, text: str) -> None:

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use ridgeform_core::mesh::Mesh;
 use ridgeform_core::solve::Columns;
+use sprs::{CsMat, TriMat};
 
 /// `KIND FOLDER [KEY=VALUE ...]`.
 pub struct Arguments {
@@ -41,6 +42,9 @@ impl Arguments {
     }
 }
 
+/// `A` and `b` of `A u = b`.
+type Equations = (CsMat<f64>, Columns);
+
 /// A mesh and data on it.
 pub struct Problem {
     /// `vertices.f64`.
@@ -67,17 +71,46 @@ impl Problem {
         Ok(Mesh::new(self.vertices.clone(), self.faces.clone())?)
     }
 
-    /// `values.f64`: one number per vertex.
+    /// `values.f64`: a number per vertex, column by column.
     pub fn values(&self) -> Result<Columns, Box<dyn Error>> {
-        Ok(Columns::from_column(doubles(&self.folder.join("values.f64"))?))
+        let data = doubles(&self.folder.join("values.f64"))?;
+        let n_rows = self.vertices.len();
+        Ok(Columns { n_rows, n_columns: data.len() / n_rows.max(1), data })
     }
 
     /// `indices.u32`: the vertices whose values are known, and those values.
     pub fn known(&self) -> Result<(Vec<usize>, Columns), Box<dyn Error>> {
-        let indices: Vec<usize> = integers(&self.folder.join("indices.u32"))?.into_iter().map(|i| i as usize).collect();
+        let indices = self.places("indices.u32")?;
         let values = self.values()?;
-        let known = indices.iter().map(|&i| values.data[i]).collect();
-        Ok((indices, Columns::from_column(known)))
+        let mut known = Columns::zeros(indices.len(), values.n_columns);
+        for c in 0..values.n_columns {
+            for (x, &i) in known.column_mut(c).iter_mut().zip(&indices) {
+                *x = values.column(c)[i];
+            }
+        }
+        Ok((indices, known))
+    }
+
+    /// `weights.f64`, if there is one: a weight per face.
+    pub fn face_weights(&self) -> Result<Option<Vec<f64>>, Box<dyn Error>> {
+        let path = self.folder.join("weights.f64");
+        Ok(if path.exists() { Some(doubles(&path)?) } else { None })
+    }
+
+    /// `constraint_*`, if there are any: the entries of `A` by row, column and value, and `b`, for one column of values.
+    pub fn linear_constraints(&self) -> Result<Option<Equations>, Box<dyn Error>> {
+        if !self.folder.join("constraint_rows.u32").exists() {
+            return Ok(None);
+        }
+        let (rows, columns) = (self.places("constraint_rows.u32")?, self.places("constraint_columns.u32")?);
+        let entries = doubles(&self.folder.join("constraint_values.f64"))?;
+        let right = doubles(&self.folder.join("constraint_right.f64"))?;
+        let matrix = TriMat::from_triplets((right.len(), self.vertices.len()), rows, columns, entries);
+        Ok(Some((matrix.to_csr(), Columns::from_column(right))))
+    }
+
+    fn places(&self, name: &str) -> Result<Vec<usize>, Box<dyn Error>> {
+        Ok(integers(&self.folder.join(name))?.into_iter().map(|i| i as usize).collect())
     }
 }
 

@@ -16,7 +16,8 @@ use ridgeform_core::operators::{hessian, Dual, HessianPattern};
 use ridgeform_core::progress::Progress;
 use ridgeform_core::solve::{Solution, Solver, Status};
 use ridgeform_core::tools::{
-    denoise, interpolate, stylize, DenoiseOptions, FlowStatus, ScalarOptions, SolveOptions, StylizeOptions,
+    denoise, interpolate, stylize, DenoiseOptions, EnergyOptions, FlowStatus, ScalarOptions, SolveOptions,
+    StylizeOptions,
 };
 
 type Outcome = Result<Vec<(&'static str, String)>, Box<dyn std::error::Error>>;
@@ -59,6 +60,16 @@ fn solve_options(arguments: &Arguments) -> Result<SolveOptions, Box<dyn std::err
     Ok(SolveOptions { solver, tolerance, max_iterations, ..SolveOptions::default() })
 }
 
+/// The weights and constraints of the folder; several columns share one norm.
+fn scalar_options(problem: &Problem, arguments: &Arguments) -> Result<ScalarOptions, Box<dyn std::error::Error>> {
+    Ok(ScalarOptions {
+        energy: EnergyOptions { face_weights: problem.face_weights()?, ..EnergyOptions::default() },
+        linear_constraints: problem.linear_constraints()?,
+        solve: solve_options(arguments)?,
+        ..ScalarOptions::default()
+    })
+}
+
 /// `steps` steps of the flow from the mesh as it is, in one call.
 fn flow(problem: &Problem, arguments: &Arguments) -> Outcome {
     let mesh = problem.mesh()?;
@@ -85,7 +96,7 @@ fn flow(problem: &Problem, arguments: &Arguments) -> Outcome {
 fn interpolation(problem: &Problem, arguments: &Arguments) -> Outcome {
     let mesh = problem.mesh()?;
     let (indices, values) = problem.known()?;
-    let options = ScalarOptions { solve: solve_options(arguments)?, ..ScalarOptions::default() };
+    let options = scalar_options(problem, arguments)?;
     let mut samples = Samples::new(arguments)?;
     let solution = samples.take(|| interpolate(&mesh, &indices, &values, &options, &Progress::new()))?;
     Ok(solved(&samples, &solution))
@@ -96,7 +107,7 @@ fn denoising(problem: &Problem, arguments: &Arguments) -> Outcome {
     let values = problem.values()?;
     let options = DenoiseOptions {
         fidelity: arguments.number("fidelity", 1e3)?,
-        scalar: ScalarOptions { solve: solve_options(arguments)?, ..ScalarOptions::default() },
+        scalar: scalar_options(problem, arguments)?,
         ..DenoiseOptions::default()
     };
     let mut samples = Samples::new(arguments)?;
