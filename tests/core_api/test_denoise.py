@@ -138,6 +138,7 @@ def test_contradictory_constraints_have_no_answer(sphere):
         ({"tolerance": np.nan}, "tolerance: "),
         ({"max_iterations": 0}, "max_iterations: got 0; .*at least 1"),
         ({"threads": -2}, "threads: got -2; .*at least 1"),
+        ({"memory_limit": 0}, "memory_limit: got 0; .*at least 1"),
         ({"sharpness": -0.1}, "sharpness: "),
         ({"sharpness": 1.1}, "sharpness: "),
         (

@@ -171,3 +171,24 @@ def test_threads_and_repetition_change_no_bit(name):
     first = solve(name, threads=1)
     for threads in (1, 2, None):
         np.testing.assert_array_equal(solve(name, threads=threads).values, first.values)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda mesh, **limit: ridgeform.denoise(mesh, mesh.vertices, fidelity=10.0, **limit),
+        lambda mesh, **limit: ridgeform.denoise(
+            mesh, mesh.vertices, fidelity=10.0, energy="l2_hessian", **limit
+        ),
+        lambda mesh, **limit: ridgeform.interpolate(mesh, [0, 5], [0.0, 1.0], **limit),
+        lambda mesh, **limit: ridgeform.stylize(mesh, iterations=1, **limit),
+        lambda mesh, **limit: ridgeform.vibration_modes(mesh, 2, energy="l2_laplacian", **limit),
+    ],
+    ids=["denoise", "denoise, L2", "interpolate", "stylize", "modes"],
+)
+def test_a_factor_beyond_the_memory_limit_is_refused_with_its_size(call):
+    vertices, faces = shapes.icosphere(3)
+    mesh = ridgeform.Mesh(shapes.add_noise(vertices, faces, 0.1), faces)
+    with pytest.raises(ridgeform.SolveError, match=r"needs \d+\.\d\d MB.*limit of 0\.00 MB.*memory_limit"):
+        call(mesh, memory_limit=1000)
+    call(mesh, memory_limit=50_000_000)

@@ -215,6 +215,7 @@ def test_defaults_are_those_of_the_manual():
         "solver": "auto",
         "tolerance": None,
         "max_iterations": None,
+        "memory_limit": None,
         "threads": None,
         "progress": None,
     }

@@ -28,9 +28,13 @@ fn solver(criterion: &mut Criterion) {
         bencher.iter(|| normal.assemble(&operator, &ones, &fidelity, &mut entries));
     });
     group.bench_function("factorisation, symbolic", |bencher| {
-        bencher.iter_batched(|| normal.pattern().clone(), Cholesky::analyse, BatchSize::PerIteration);
+        bencher.iter_batched(
+            || normal.pattern().clone(),
+            |pattern| Cholesky::analyse(pattern, None),
+            BatchSize::PerIteration,
+        );
     });
-    let mut cholesky = Cholesky::analyse(normal.pattern().clone()).unwrap();
+    let mut cholesky = Cholesky::analyse(normal.pattern().clone(), None).unwrap();
     group.bench_function("factorisation, numeric", |bencher| bencher.iter(|| cholesky.factorise(&entries)));
     let points = Columns::from_points(&shape.vertices);
     let one: Vec<[f64; 1]> = shape.vertices.iter().map(|x| [x[0]]).collect();

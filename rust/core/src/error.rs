@@ -113,10 +113,24 @@ pub enum SolveError {
         /// What the factorisation reported.
         reason: String,
     },
+    /// The factor of the linear system does not fit.
+    #[error("the factorisation needs {} of memory, more than {}; raise memory_limit, keep more values fixed or reduce the mesh",
+        readable(*needed), limit.map_or("there is".into(), |limit| format!("the limit of {}", readable(limit))))]
+    Memory {
+        /// Bytes for the factor and the work on it.
+        needed: usize,
+        /// The limit in bytes that was given; without one the system refused.
+        limit: Option<usize>,
+    },
     /// The constraints contradict each other or the problem has no unique solution.
     #[error("the problem has no solution: {reason}")]
     Infeasible {
         /// Why.
         reason: String,
     },
+}
+
+fn readable(bytes: usize) -> String {
+    let (size, unit) = if bytes < 1_000_000_000 { (1e6, "MB") } else { (1e9, "GB") };
+    format!("{:.2} {unit}", bytes as f64 / size)
 }

@@ -156,6 +156,7 @@ def interpolate(
     solver: Solver = "auto",
     tolerance: float | None = 1e-3,
     max_iterations: int | None = None,
+    memory_limit: int | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Solution: ...
@@ -175,6 +176,7 @@ def denoise(
     solver: Solver = "auto",
     tolerance: float | None = 1e-3,
     max_iterations: int | None = None,
+    memory_limit: int | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Solution: ...
@@ -189,6 +191,7 @@ def vibration_modes(
     solver: Solver = "auto",
     tolerance: float | None = 1e-3,
     max_iterations: int | None = None,
+    memory_limit: int | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Floats: ...
@@ -208,6 +211,7 @@ def stylize(
     solver: Solver = "auto",
     tolerance: float | None = None,
     max_iterations: int | None = None,
+    memory_limit: int | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Stylized: ...

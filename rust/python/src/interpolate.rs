@@ -31,6 +31,8 @@ use crate::{arrays, columns, doorway, matrix, options};
 ///     one sparse factorisation
 /// tolerance : certified relative gap to reach; None stops on residuals and reports the gap reached
 /// max_iterations, threads : int or None
+/// memory_limit : bytes that the factor of the linear system, the larger part of all memory, may take, or None; SolveError
+///     with the bytes needed where it does not fit. Clarabel does not know it
 /// progress : Progress or None
 ///
 /// Returns
@@ -48,7 +50,7 @@ use crate::{arrays, columns, doorway, matrix, options};
 #[pyfunction]
 #[pyo3(signature = (mesh, indices, values, *, energy="l1_hessian", face_weights=None, linear_constraints=None,
     coupling="joint", dual="barycentric", delaunay=false, sharpness=0.0, solver="auto", tolerance=1e-3, max_iterations=None,
-    threads=None, progress=None))]
+    memory_limit=None, threads=None, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn interpolate(
     py: Python<'_>,
@@ -65,6 +67,7 @@ pub fn interpolate(
     solver: &str,
     tolerance: Option<f64>,
     max_iterations: Option<i64>,
+    memory_limit: Option<i64>,
     threads: Option<i64>,
     progress: Option<&Bound<'_, Progress>>,
 ) -> PyResult<Solution> {
@@ -78,7 +81,7 @@ pub fn interpolate(
             .transpose()?,
         coupling: options::coupling(py, coupling)?,
         sharpness,
-        solve: options::solve(py, solver, tolerance, max_iterations, threads)?,
+        solve: options::solve(py, solver, tolerance, max_iterations, memory_limit, threads)?,
     };
     let progress = handle(progress);
     let solution = doorway::call(py, &progress, || {

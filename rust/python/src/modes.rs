@@ -23,7 +23,7 @@ use crate::{doorway, options};
 /// energy : as for `interpolate`
 /// face_weights : (m,) array w ≥ 0, 1 where None
 /// dual, delaunay : as for `interpolate`
-/// solver, max_iterations : as for `interpolate`, for every problem in between
+/// solver, max_iterations, memory_limit : as for `interpolate`, for every problem in between
 /// tolerance : certified relative gap of every problem in between, and a mode is done when its energy falls by a smaller share
 /// threads : int or None
 /// progress : Progress or None; its iteration is the number of modes done
@@ -42,7 +42,7 @@ use crate::{doorway, options};
 /// Rowe et al. 2024, eq. (38), in the limit of large μ; Brandt and Hildebrandt 2017.
 #[pyfunction]
 #[pyo3(signature = (mesh, count, *, energy="l1_hessian", face_weights=None, dual="barycentric", delaunay=false, solver="auto",
-    tolerance=1e-3, max_iterations=None, threads=None, progress=None))]
+    tolerance=1e-3, max_iterations=None, memory_limit=None, threads=None, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn vibration_modes<'py>(
     py: Python<'py>,
@@ -55,13 +55,14 @@ pub fn vibration_modes<'py>(
     solver: &str,
     tolerance: Option<f64>,
     max_iterations: Option<i64>,
+    memory_limit: Option<i64>,
     threads: Option<i64>,
     progress: Option<&Bound<'py, Progress>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let count = options::at_least(py, "count", count, 1)?;
     let options = tools::ModeOptions {
         energy: options::EnergyWords { energy, face_weights, dual, delaunay }.read(py, mesh)?,
-        solve: options::solve(py, solver, tolerance, max_iterations, threads)?,
+        solve: options::solve(py, solver, tolerance, max_iterations, memory_limit, threads)?,
     };
     let progress = handle(progress);
     let modes = doorway::call(py, &progress, || tools::vibration_modes(mesh.inner(), count, &options, &progress))?;

@@ -49,7 +49,7 @@ pub fn coupling(py: Python<'_>, given: &str) -> PyResult<Coupling> {
     choice(py, "coupling", given, &[("joint", Coupling::Joint), ("separate", Coupling::Separate)])
 }
 
-/// `solver=`, `tolerance=`, `max_iterations=` and `threads=`.
+/// `solver=`, `tolerance=`, `max_iterations=`, `memory_limit=` and `threads=`.
 ///
 /// # Errors
 /// `ArgumentError` for an unknown solver and for counts below 1; the core judges the tolerance.
@@ -58,6 +58,7 @@ pub fn solve(
     solver: &str,
     tolerance: Option<f64>,
     max_iterations: Option<i64>,
+    memory_limit: Option<i64>,
     threads: Option<i64>,
 ) -> PyResult<SolveOptions> {
     let solvers = [
@@ -71,6 +72,7 @@ pub fn solve(
         solver: choice(py, "solver", solver, &solvers)?,
         tolerance,
         max_iterations: max_iterations.map(|count| at_least(py, "max_iterations", count, 1)).transpose()?,
+        memory_limit: memory_limit.map(|bytes| at_least(py, "memory_limit", bytes, 1)).transpose()?,
         threads: threads.map(|count| at_least(py, "threads", count, 1)).transpose()?,
     })
 }

@@ -57,6 +57,7 @@ impl Stylized {
 /// solver : "auto", "fast", "clarabel", "clarabel-qdldl" or "clarabel-faer"
 /// tolerance : certified relative gap of every step; None stops on residuals and reports the gap reached
 /// max_iterations : at most so many solver iterations in a step, or None
+/// memory_limit : bytes that the factor of the linear system, the larger part of all memory, may take, or None
 /// threads : int or None
 /// progress : Progress or None; its snapshot() shows the vertices after the last finished step
 ///
@@ -74,7 +75,7 @@ impl Stylized {
 #[pyfunction]
 #[pyo3(signature = (mesh, *, iterations=20, fidelity=500.0, sharpness=0.5, coupling="joint", scale="max_edge", fixed=None,
     strength=None, ridge_weights=None, delaunay=false, dual="barycentric", solver="auto", tolerance=None,
-    max_iterations=None, threads=None, progress=None))]
+    max_iterations=None, memory_limit=None, threads=None, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn stylize(
     py: Python<'_>,
@@ -92,6 +93,7 @@ pub fn stylize(
     solver: &str,
     tolerance: Option<f64>,
     max_iterations: Option<i64>,
+    memory_limit: Option<i64>,
     threads: Option<i64>,
     progress: Option<&Bound<'_, Progress>>,
 ) -> PyResult<Stylized> {
@@ -112,7 +114,7 @@ pub fn stylize(
         ridge_weights: options::weights("ridge_weights", ridge_weights, m, "face")?,
         delaunay,
         dual: options::dual(py, dual)?,
-        solve: options::solve(py, solver, tolerance, max_iterations, threads)?,
+        solve: options::solve(py, solver, tolerance, max_iterations, memory_limit, threads)?,
     };
     let progress = handle(progress);
     let result = doorway::call(py, &progress, || tools::stylize(mesh.inner(), &options, &progress))?;

@@ -39,7 +39,7 @@ fn of_columns<const K: usize>(problem: &Problem, arguments: &Arguments) -> Outco
 
     let mut quadratic = set_up()?;
     let mut symbolic = Samples::new(arguments)?;
-    quadratic.cholesky = symbolic.take(|| Cholesky::analyse(quadratic.normal.pattern().clone()))?;
+    quadratic.cholesky = symbolic.take(|| Cholesky::analyse(quadratic.normal.pattern().clone(), None))?;
     let mut numeric = Samples::new(arguments)?;
     numeric.take(|| quadratic.cholesky.factorise(&quadratic.entries))?;
     let mut solve = Samples::new(arguments)?;
@@ -95,7 +95,7 @@ impl<const K: usize> Quadratic<K> {
         }
         let diagonal: Vec<f64> = free.iter().map(|&i| fidelity * mass[i]).collect();
         let normal = NormalMatrix::new(&operator);
-        let cholesky = Cholesky::analyse(normal.pattern().clone())?;
+        let cholesky = Cholesky::analyse(normal.pattern().clone(), None)?;
         let mut entries = Vec::new();
         normal.assemble(&operator, &per_face, &diagonal, &mut entries);
         Ok(Self { right, normal, cholesky, entries })

@@ -52,11 +52,11 @@ impl std::fmt::Debug for Cholesky {
 }
 
 impl Cholesky {
-    /// Orders (approximate minimum degree) and analyses the pattern.
+    /// Orders (approximate minimum degree) and analyses the pattern, for a factor of at most `memory_limit` bytes.
     ///
     /// # Errors
-    /// [`SolveError::Factorisation`] when memory runs out.
-    pub fn analyse(pattern: LowerPattern) -> Result<Self, SolveError> {
+    /// [`SolveError::Memory`] when the factor is larger than that, or than what the system gives.
+    pub fn analyse(pattern: LowerPattern, memory_limit: Option<usize>) -> Result<Self, SolveError> {
         let failed = |e: &dyn std::fmt::Debug| SolveError::Factorisation { reason: format!("{e:?}") };
         let view = SymbolicSparseColMatRef::new_checked(pattern.n, pattern.n, &pattern.starts, None, &pattern.rows);
         let parameters = CholeskySymbolicParams {
@@ -67,8 +67,15 @@ impl Cholesky {
         let symbolic = factorize_symbolic_cholesky(view, Side::Lower, SymmetricOrdering::Amd, parameters)
             .map_err(|e| failed(&e))?;
         let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, faer::Spec::default());
-        let memory = MemBuffer::try_new(scratch).map_err(|e| failed(&e))?;
-        let factor = vec![0.0; symbolic.len_val() + LANES];
+        let needed = size_of::<f64>() * symbolic.len_val() + scratch.size_bytes();
+        let too_large = || SolveError::Memory { needed, limit: memory_limit };
+        if memory_limit.is_some_and(|limit| needed > limit) {
+            return Err(too_large());
+        }
+        let memory = MemBuffer::try_new(scratch).map_err(|_| too_large())?;
+        let mut factor = Vec::new();
+        factor.try_reserve_exact(symbolic.len_val() + LANES).map_err(|_| too_large())?;
+        factor.resize(symbolic.len_val() + LANES, 0.0);
         let order = symbolic.perm().map_or_else(Vec::new, |p| p.arrays().0.iter().map(|&i| i as u32).collect());
         let panels = panels(&symbolic);
         Ok(Self {
@@ -246,7 +253,7 @@ mod tests {
         let (pattern, values) = matrix(n, band);
         let x: Vec<[f64; K]> = (0..n).map(|i| std::array::from_fn(|c| (i as f64 + 0.3 * c as f64).cos())).collect();
         let right = times(&pattern, &values, &x);
-        let mut cholesky = Cholesky::analyse(pattern).unwrap();
+        let mut cholesky = Cholesky::analyse(pattern, None).unwrap();
         cholesky.factorise(&values).unwrap();
         let mut solution = right.clone();
         cholesky.solve_columns::<A, K>(&mut solution);
@@ -271,9 +278,22 @@ mod tests {
     }
 
     #[test]
+    fn refuses_a_factor_that_is_larger_than_the_limit_and_says_how_large() {
+        let (pattern, _) = matrix(200, 199);
+        let error = Cholesky::analyse(pattern.clone(), Some(10_000)).unwrap_err();
+        let needed = match error {
+            SolveError::Memory { needed, limit: Some(10_000) } => needed,
+            _ => 0,
+        };
+        assert!(needed >= 8 * 200 * 201 / 2, "{needed}");
+        assert!(error.to_string().contains("the limit of 0.01 MB; raise memory_limit"), "{error}");
+        assert!(Cholesky::analyse(pattern, Some(needed)).is_ok());
+    }
+
+    #[test]
     fn refuses_a_matrix_that_is_not_positive_definite_and_recovers() {
         let (pattern, values) = matrix(20, 4);
-        let mut cholesky = Cholesky::analyse(pattern.clone()).unwrap();
+        let mut cholesky = Cholesky::analyse(pattern.clone(), None).unwrap();
         assert!(cholesky.factorise(&values.iter().map(|v| -v).collect::<Vec<_>>()).is_err());
         cholesky.factorise(&values).unwrap();
         let mut right = times(&pattern, &values, &[[1.0]; 20]);

@@ -51,6 +51,8 @@ pub struct Pencil<'a> {
     pub mass: &'a [f64],
     /// About how large the smallest positive eigenvalues are.
     pub scale: f64,
+    /// The most bytes that the factor may take.
+    pub memory_limit: Option<usize>,
 }
 
 impl Pencil<'_> {
@@ -111,7 +113,7 @@ impl Pencil<'_> {
     /// The factor of `Q + σM`.
     fn factored(&self) -> Result<Cholesky> {
         let normal = NormalMatrix::new(self.operator);
-        let mut cholesky = Cholesky::analyse(normal.pattern().clone())?;
+        let mut cholesky = Cholesky::analyse(normal.pattern().clone(), self.memory_limit)?;
         let mut values = Vec::new();
         let mut shift = SHIFT * self.scale;
         let mut attempt = 0;

@@ -149,7 +149,7 @@ impl FastSolver {
             Method::Fast => {
                 let system = match &mut structure.system {
                     Some(system) => system,
-                    empty => empty.insert(System::new(&structure.free)?),
+                    empty => empty.insert(System::new(&structure.free, call.settings.memory_limit)?),
                 };
                 let before = system.n_factorisations();
                 let warm = warm.and_then(|w| w.restore(problem.operator.n_blocks()));

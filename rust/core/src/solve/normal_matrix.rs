@@ -146,7 +146,7 @@ mod tests {
         }
         assert_eq!(seen, 4 + 2 * 4, "no entry is missing: four off the diagonal");
 
-        let mut cholesky = Cholesky::analyse(pattern.clone()).unwrap();
+        let mut cholesky = Cholesky::analyse(pattern.clone(), None).unwrap();
         cholesky.factorise(&values).unwrap();
         let x = [1.0, -2.0, 3.0, 0.5, 0.0, 4.0, -1.0, 2.0];
         let mut right: Vec<[f64; 2]> = expected

@@ -95,13 +95,15 @@ pub struct Settings {
     pub tolerance: Option<f64>,
     /// At most this many iterations; the solver's own bound where `None`.
     pub max_iterations: Option<usize>,
+    /// The most bytes that the factor of the linear system may take; any that the system gives where `None`.
+    pub memory_limit: Option<usize>,
     /// Whether to publish iterations as progress; a tool that publishes its own steps says no.
     pub announce: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { tolerance: Some(1e-3), max_iterations: None, announce: true }
+        Self { tolerance: Some(1e-3), max_iterations: None, memory_limit: None, announce: true }
     }
 }
 

@@ -50,7 +50,7 @@ const MOST_STEPS: usize = 300;
 pub fn minimise(problem: &Problem<'_>, settings: &Settings, progress: &Progress) -> Result<Solution> {
     problem.check_shapes()?;
     let free = FreeOperator::new(problem.operator, &problem.fixed);
-    let mut newton = Newton::new(problem, &free)?;
+    let mut newton = Newton::new(problem, &free, settings.memory_limit)?;
     let mut values = problem.target.clone();
     let mut total = Totals::default();
     for c in 0..values.n_columns {
@@ -88,9 +88,9 @@ struct Newton<'a> {
 }
 
 impl<'a> Newton<'a> {
-    fn new(problem: &'a Problem<'a>, free: &'a FreeOperator) -> Result<Self> {
+    fn new(problem: &'a Problem<'a>, free: &'a FreeOperator, memory_limit: Option<usize>) -> Result<Self> {
         let normal = NormalMatrix::new(&free.operator);
-        let mut cholesky = Cholesky::analyse(normal.pattern().clone())?;
+        let mut cholesky = Cholesky::analyse(normal.pattern().clone(), memory_limit)?;
         if free.free.is_empty() {
             return Ok(Self { problem, free, cholesky });
         }

@@ -28,10 +28,10 @@ impl System {
     /// Analyses the pattern of the free operator.
     ///
     /// # Errors
-    /// [`SolveError::Factorisation`] when memory runs out.
-    pub fn new(free: &FreeOperator) -> Result<Self, SolveError> {
+    /// [`SolveError::Memory`] when the factor does not fit into `memory_limit` bytes.
+    pub fn new(free: &FreeOperator, memory_limit: Option<usize>) -> Result<Self, SolveError> {
         let normal = NormalMatrix::new(&free.operator);
-        let cholesky = Cholesky::analyse(normal.pattern().clone())?;
+        let cholesky = Cholesky::analyse(normal.pattern().clone(), memory_limit)?;
         Ok(Self { normal, cholesky, values: Vec::new(), proximal: Vec::new(), scale: 1.0 })
     }
 

@@ -128,7 +128,13 @@ impl Sequence<'_> {
         if let Some(weights) = &self.options.energy.face_weights {
             scale *= (weights.iter().sum::<f64>() / weights.len() as f64).max(f64::MIN_POSITIVE);
         }
-        Pencil { operator: &self.form.operator, weights, mass: self.mass, scale }
+        Pencil {
+            operator: &self.form.operator,
+            weights,
+            mass: self.mass,
+            scale,
+            memory_limit: self.settings.memory_limit,
+        }
     }
 
     /// The functions without energy among the eigenvectors `found`, ordered by their Dirichlet energy.

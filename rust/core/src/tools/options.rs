@@ -12,13 +12,16 @@ pub struct SolveOptions {
     pub tolerance: Option<f64>,
     /// At most this many iterations of the solver.
     pub max_iterations: Option<usize>,
+    /// The most bytes that the factor of the linear system may take, the larger part of all memory; any that the system
+    /// gives where `None`. Clarabel does not know it.
+    pub memory_limit: Option<usize>,
     /// Threads to use; all where `None`. The result does not depend on it.
     pub threads: Option<usize>,
 }
 
 impl Default for SolveOptions {
     fn default() -> Self {
-        Self { solver: Solver::Auto, tolerance: Some(1e-3), max_iterations: None, threads: None }
+        Self { solver: Solver::Auto, tolerance: Some(1e-3), max_iterations: None, memory_limit: None, threads: None }
     }
 }
 
@@ -39,7 +42,8 @@ impl SolveOptions {
         if self.threads == Some(0) {
             return Err(Error::argument("threads", "is 0; use at least one thread, or None for all"));
         }
-        Ok(Settings { tolerance: self.tolerance, max_iterations: self.max_iterations, announce: true })
+        let Self { tolerance, max_iterations, memory_limit, .. } = *self;
+        Ok(Settings { tolerance, max_iterations, memory_limit, announce: true })
     }
 
     /// Runs `work` on the number of threads asked for.
