@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,6 +26,8 @@ TRUTHS: dict[str, Callable[[Array], Array]] = {
 SHARPNESSES = (0.5, 1.0)
 SEEDS = 5
 """Meshes and noises; the fidelity is searched on the first and kept for the others."""
+STRETCH = 3.0
+"""How many times too long the triangles of the mesh are on which the L1 energies are compared again."""
 SHOWN = (
     *("truth", "L2 Hessian", "L2 Laplacian", "L1 edge Laplacian"),
     *("noise", "L1 Hessian, Stein 2018", "L1 Hessian (ours)", "ours, sharpness 0.5"),
@@ -44,9 +46,9 @@ class Problem:
     noisy: Array
 
     @staticmethod
-    def make(name: str, side: int = SIDE, seed: int = 0) -> Problem:
-        """The truth `name` on about `side²` vertices, noise and mesh from `seed`."""
-        vertices, faces = domains.irregular_square(side, seed)
+    def make(name: str, side: int = SIDE, seed: int = 0, stretch: float = 1.0) -> Problem:
+        """The truth `name` on about `side²` vertices, noise and mesh from `seed`, triangles long in x."""
+        vertices, faces = domains.stretched_square(side, stretch, seed)
         truth = TRUTHS[name](vertices)
         noise = np.random.default_rng(seed + 1).normal(scale=NOISE, size=len(truth))
         return Problem(vertices, faces, truth, truth + noise)
@@ -82,13 +84,17 @@ class Result:
         return float(self.errors.mean())
 
 
-def results(name: str, side: int = SIDE, seeds: int = SEEDS) -> dict[str, Result]:
-    """What every energy, and ours with sharpness, leaves of the noise, by the words of the table."""
-    problems = [Problem.make(name, side, seed) for seed in range(seeds)]
-    choices = {words: (energy, 0.0) for energy, words in NAMES.items()}
-    choices |= {f"ours, sharpness {sharpness:g}": ("l1_hessian", sharpness) for sharpness in SHARPNESSES}
+CHOICES = {words: (energy, 0.0) for energy, words in NAMES.items()}
+CHOICES |= {f"ours, sharpness {sharpness:g}": ("l1_hessian", sharpness) for sharpness in SHARPNESSES}
+"""Energy and sharpness, by the words of the tables."""
+
+
+def results(name: str, among: Iterable[str] = CHOICES, stretch: float = 1.0) -> dict[str, Result]:
+    """What `CHOICES` leave of the noise on a height field, by their words."""
+    problems = [Problem.make(name, seed=seed, stretch=stretch) for seed in range(SEEDS)]
     found = {}
-    for words, choice in choices.items():
+    for words in among:
+        choice = CHOICES[words]
         fit = problems[0].best(*choice)
         others = [problem.error(problem.denoised(fit.fidelity, *choice).values) for problem in problems[1:]]
         found[words] = Result(fit, np.array([fit.error, *others]))
@@ -122,10 +128,16 @@ def draw(folder: Path) -> dict[str, str]:
             bent = bending_in_tenth(problem.mesh, result.fit.solution.values)
             gap = f"{result.fit.solution.gap:.0e}" if result.fit.solution.solver != "cholesky" else "exact"
             details.setdefault(words, []).extend([f"{result.fit.fidelity:.3g}", f"{bent:.0%}", gap])
+    long = results("ramp", (words for words in CHOICES if "L1" in words), STRETCH)
+    of_long = [
+        [words, *(f"{error:.1%}" for error in result.errors), f"{result.error:.1%}"]
+        for words, result in long.items()
+    ]
     header = ["energy"]
     for name in TRUTHS:
         header += [f"{name}: fidelity", "bent in a tenth", "gap"]
     return {
         "heights": table(["noise left", *TRUTHS], [[words, *row] for words, row in errors.items()]),
+        "heights long": table(["noise left", *(f"seed {k}" for k in range(SEEDS)), "mean"], of_long),
         "heights details": table(header, [[words, *row] for words, row in details.items()]),
     }
