@@ -6,6 +6,22 @@
 use crate::solve::cones::{inner, norm, Block};
 use crate::solve::reduced::Reduced;
 
+/// What a term of a long sum loses to rounding, over the root of the number of terms.
+const ROUNDING: f64 = 2.0 * f64::EPSILON;
+
+/// How far apart the values of each column are: no minimiser is farther from a point near it.
+#[must_use]
+pub fn spread<const K: usize>(u: &[[f64; K]]) -> [f64; K] {
+    let (mut low, mut high) = ([f64::INFINITY; K], [f64::NEG_INFINITY; K]);
+    for row in u {
+        for c in 0..K {
+            low[c] = low[c].min(row[c]);
+            high[c] = high[c].max(row[c]);
+        }
+    }
+    std::array::from_fn(|c| (high[c] - low[c]).max(0.0))
+}
+
 /// What a lower bound needs to know of the blocks of a dual point `q`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DualPoint {
@@ -48,8 +64,8 @@ impl DualPoint {
 
 /// The best lower bound along the ray `s·(q, y)`, `0 ≤ s ≤ 1 / max ‖q_b‖/w_b`, which is feasible for every `q`.
 ///
-/// `g` must be `Hᵀq + Aᵀy`. Where there is no fidelity, `g_i` is zero up to rounding; its product with the point `u`
-/// stands for its product with the minimiser.
+/// `g` must be `Hᵀq + Aᵀy`, computed from `q` and `y`. Where there is no fidelity, `g_i` is zero up to rounding; its product
+/// with the point `u` stands for its product with the minimiser, less an allowance for the distance of the two.
 #[must_use]
 pub fn bound_along_ray<const K: usize>(
     reduced: &Reduced<'_, K>,
@@ -59,18 +75,31 @@ pub fn bound_along_ray<const K: usize>(
     u: &[[f64; K]],
 ) -> f64 {
     let (mut linear, longest) = (q.along_constant, q.longest);
+    // What rounding may have made of the sums, and a minimiser elsewhere of gradients that are not quite zero.
+    let mut terms = linear.abs();
+    let mut allowance = 0.0;
     if let Some(constraints) = &reduced.constraints {
-        linear -= y.iter().flatten().zip(constraints.right.iter().flatten()).map(|(y, b)| y * b).sum::<f64>();
+        for (y, b) in y.iter().flatten().zip(constraints.right.iter().flatten()) {
+            linear -= y * b;
+            terms += (y * b).abs();
+        }
     }
     let mut quadratic = 0.0;
+    let spread = spread(u);
     for (i, g) in g.iter().enumerate() {
         let a = reduced.fidelity[i];
         let against = if a > 0.0 { &reduced.target[i] } else { &u[i] };
-        linear += g.iter().zip(against).map(|(g, t)| g * t).sum::<f64>();
-        if a > 0.0 {
-            quadratic += g.iter().map(|g| g * g).sum::<f64>() / (4.0 * a);
+        for c in 0..K {
+            linear += g[c] * against[c];
+            terms += (g[c] * against[c]).abs();
+            if a > 0.0 {
+                quadratic += g[c] * g[c] / (4.0 * a);
+            } else {
+                allowance += g[c].abs() * spread[c];
+            }
         }
     }
+    linear -= allowance + ROUNDING * (g.len() as f64).sqrt() * terms;
     if !longest.is_finite() {
         return 0.0;
     }

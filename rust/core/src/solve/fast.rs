@@ -6,7 +6,7 @@
 
 use crate::block_rows::BLOCK;
 use crate::progress::{Progress, Report};
-use crate::solve::certificate::{bound_along_ray, DualPoint};
+use crate::solve::certificate::{bound_along_ray, spread, DualPoint};
 use crate::solve::cones::{norm, scaled, Block};
 use crate::solve::penalty::{reweighted, uniform};
 use crate::solve::problem::{Problem, Settings, Status};
@@ -32,6 +32,9 @@ const RESIDUAL_GOAL: f64 = 1e-4;
 /// A gap this small also means a true error of about 1e-4: the bound is the slower of the two by a factor of ten (measured
 /// on the flow), so there is no need to wait for the residuals.
 const GAP_ENOUGH: f64 = 1e-3;
+
+/// The part of the gap asked for that residuals of the linear system may take before its solutions are refined.
+const WORTH_REFINING: f64 = 0.1;
 
 /// The first new penalties come after this many iterations from nothing, when the ridges begin to show, and then each
 /// time the iterations have tripled.
@@ -167,7 +170,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
                 self.best.u.clone_from(&self.u);
             }
             if check {
-                self.bound(&sums);
+                self.bound(&sums, settings);
                 if self.is_done(settings, last_check, &sums) {
                     status = Status::Solved;
                     break;
@@ -194,23 +197,40 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         Ok(())
     }
 
-    /// Lower bounds from `p + R (H u + c − z)`, whose `Hᵀq + Aᵀy` the linear system has computed, and, where there is
-    /// fidelity everywhere, from the multipliers themselves, which are never too long.
-    fn bound(&mut self, sums: &Sums) {
-        let g: Vec<[f64; K]> = (0..self.u.len())
-            .map(|i| {
-                let (a, proximal) = (2.0 * self.reduced.fidelity[i], self.system.proximal()[i]);
-                let (t, u, before) = (&self.reduced.target[i], &self.u[i], &self.previous[i]);
-                std::array::from_fn(|c| a * (t[c] - u[c]) + proximal * (before[c] - u[c]))
-            })
-            .collect();
+    /// Lower bounds from `p + R (H u + c − z)` and, where there is fidelity everywhere, from the multipliers themselves,
+    /// which are never too long.
+    fn bound(&mut self, sums: &Sums, settings: &Settings) {
+        let mut g = self.sweep.from_equations().to_vec();
+        if let Some(constraints) = &self.reduced.constraints {
+            constraints.add_transposed(&self.y, &mut g);
+        }
+        self.refine_if_worth(&g, settings);
         self.bound_from(&sums.from_equations, &g);
         if self.reduced.fidelity.iter().all(|a| *a > 0.0) {
-            let mut g = self.sweep.product().to_vec();
+            let mut g = self.sweep.multipliers().to_vec();
             if let Some(constraints) = &self.reduced.constraints {
                 constraints.add_transposed(&self.y, &mut g);
             }
             self.bound_from(&sums.multipliers, &g);
+        }
+    }
+
+    /// Asks the linear system for refined solutions once what it leaves over would show in the gap. `g` is `Hᵀq + Aᵀy` for
+    /// the dual point that solves the equations, were they solved exactly.
+    fn refine_if_worth(&mut self, g: &[[f64; K]], settings: &Settings) {
+        let spread = spread(&self.u);
+        let mut left = 0.0;
+        for (i, g) in g.iter().enumerate() {
+            let (a, proximal) = (2.0 * self.reduced.fidelity[i], self.system.proximal()[i]);
+            let (t, u, before) = (&self.reduced.target[i], &self.u[i], &self.previous[i]);
+            for c in 0..K {
+                let exact = a * (t[c] - u[c]) + proximal * (before[c] - u[c]);
+                left += (g[c] - exact).abs() * spread[c];
+            }
+        }
+        let goal = settings.tolerance.unwrap_or(RESIDUAL_GOAL);
+        if left > WORTH_REFINING * goal * Problem::gap_scale(self.best.primal, self.floor) {
+            self.system.refine();
         }
     }
 

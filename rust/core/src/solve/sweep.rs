@@ -21,8 +21,9 @@ pub struct Sweep<const K: usize> {
     state: Vec<Block<K>>,
     /// Partial sums of the right side; the first holds the whole after a pass.
     right: Vec<Vec<[f64; K]>>,
-    /// Partial sums of `Hᵀp`, likewise.
-    product: Vec<Vec<[f64; K]>>,
+    /// Partial sums of `Hᵀq` for the two dual points of [`Sums`], likewise.
+    from_equations: Vec<Vec<[f64; K]>>,
+    multipliers: Vec<Vec<[f64; K]>>,
 }
 
 /// What a pass finds out about the point `u` it was given.
@@ -32,8 +33,7 @@ pub struct Sums {
     pub norms: f64,
     /// `Σ w ‖H u + c − z‖`; only when asked to check.
     pub split: f64,
-    /// The dual point `p + R (H u + c − z)` with `z` and `p` before the pass, whose `Hᵀq + Aᵀy` the linear system has
-    /// computed; only when asked to check.
+    /// The dual point `p + R (H u + c − z)` with `z` and `p` before the pass; only when asked to check.
     pub from_equations: DualPoint,
     /// The dual point `p` after the pass; only when asked to check.
     pub multipliers: DualPoint,
@@ -52,7 +52,8 @@ impl<const K: usize> Sweep<K> {
             }
         };
         let state = r.iter().enumerate().map(join).collect();
-        let mut sweep = Self { state, right: vec![Vec::new(); Parts::of(r.len()).count], product: Vec::new() };
+        let none = vec![Vec::new(); Parts::of(r.len()).count];
+        let mut sweep = Self { state, right: none.clone(), from_equations: none.clone(), multipliers: none };
         let mut right = Vec::new();
         reduced.apply_transposed(|b| sweep.next_right(reduced, r, b), &mut right);
         sweep.right[0] = right;
@@ -83,10 +84,16 @@ impl<const K: usize> Sweep<K> {
         &self.right[0]
     }
 
-    /// `Hᵀp` after a pass that was asked to check.
+    /// `Hᵀq` for [`Sums::from_equations`] after a pass that was asked to check.
     #[must_use]
-    pub fn product(&self) -> &[[f64; K]] {
-        &self.product[0]
+    pub fn from_equations(&self) -> &[[f64; K]] {
+        &self.from_equations[0]
+    }
+
+    /// `Hᵀp` for [`Sums::multipliers`] after a pass that was asked to check.
+    #[must_use]
+    pub fn multipliers(&self) -> &[[f64; K]] {
+        &self.multipliers[0]
     }
 
     /// Takes split variables and multipliers one iteration further, from the solution `u` of the linear system.
@@ -101,24 +108,26 @@ impl<const K: usize> Sweep<K> {
     fn pass<const CHECK: bool>(&mut self, reduced: &Reduced<'_, K>, r: &[f64], u: &[[f64; K]]) -> Sums {
         let parts = Parts::of(r.len());
         let n = reduced.n();
-        self.product.resize(parts.count, Vec::new());
         let sums: Vec<Sums> = self
             .state
             .par_chunks_mut(parts.size)
-            .zip(self.right.par_iter_mut().zip(&mut self.product))
+            .zip(self.right.par_iter_mut().zip(&mut self.from_equations).zip(&mut self.multipliers))
             .enumerate()
-            .map(|(part, (state, (right, product)))| {
+            .map(|(part, (state, ((right, from_equations), multipliers)))| {
                 clear(right, n);
                 if CHECK {
-                    clear(product, n);
+                    clear(from_equations, n);
+                    clear(multipliers, n);
                 }
                 let first = part * parts.size;
-                Arch::new().dispatch(Pass::<K, CHECK> { reduced, r, u, first, state, right, product })
+                let products = [from_equations, multipliers];
+                Arch::new().dispatch(Pass::<K, CHECK> { reduced, r, u, first, state, right, products })
             })
             .collect();
         gather(&mut self.right, n);
         if CHECK {
-            gather(&mut self.product, n);
+            gather(&mut self.from_equations, n);
+            gather(&mut self.multipliers, n);
         }
         sums.into_iter().fold(Sums::default(), Sums::and)
     }
@@ -132,7 +141,7 @@ struct Pass<'p, const K: usize, const CHECK: bool> {
     first: usize,
     state: &'p mut [Block<K>],
     right: &'p mut [[f64; K]],
-    product: &'p mut [[f64; K]],
+    products: [&'p mut Vec<[f64; K]>; 2],
 }
 
 impl<const K: usize, const CHECK: bool> WithSimd for Pass<'_, K, CHECK> {
@@ -141,6 +150,7 @@ impl<const K: usize, const CHECK: bool> WithSimd for Pass<'_, K, CHECK> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Sums {
         let mut sums = Sums::default();
+        let [from_equations, multipliers] = self.products;
         for (b, v) in (self.first..).zip(self.state) {
             let (columns, values) = self.reduced.free.operator.block(b);
             let (c, w, r) = (self.reduced.constant(b), self.reduced.weights[b], self.r[b]);
@@ -156,7 +166,11 @@ impl<const K: usize, const CHECK: bool> WithSimd for Pass<'_, K, CHECK> {
             let apart = combine(1.0, &h, -1.0, &z);
             if CHECK {
                 let p = combine(1.0, v, -1.0, &z);
-                sums.from_equations.add(&combine(r, &p, r, &apart), w, &c);
+                let q = combine(r, &p, r, &apart);
+                sums.from_equations.add(&q, w, &c);
+                for (&column, value) in columns.iter().zip(values) {
+                    add_outer_transposed(&mut from_equations[column as usize], value, &q);
+                }
             }
             *v = combine(1.0, v, RELAXATION, &apart);
             let z = shrink(v, w / r);
@@ -165,7 +179,7 @@ impl<const K: usize, const CHECK: bool> WithSimd for Pass<'_, K, CHECK> {
                 sums.split += w * norm(&combine(1.0, &h, -1.0, &z));
                 sums.multipliers.add(&p, w, &c);
                 for (&column, value) in columns.iter().zip(values) {
-                    add_outer_transposed(&mut self.product[column as usize], value, &p);
+                    add_outer_transposed(&mut multipliers[column as usize], value, &p);
                 }
             }
             // R(z − c) − p
@@ -275,12 +289,14 @@ mod tests {
         let mut h = Vec::new();
         reduced.apply(&u, &mut h);
         let (mut q, mut apart) = (DualPoint::default(), 0.0);
+        let mut q_at = vec![[[0.0; 2]; BLOCK]; m];
         let after: Vec<(Block<2>, Block<2>)> = (0..m)
             .map(|b| {
                 if w[b] == 0.0 {
                     return ([[0.0; 2]; BLOCK], [[0.0; 2]; BLOCK]);
                 }
-                q.add(&combine(1.0, &p[b], r[b], &combine(1.0, &h[b], -1.0, &z[b])), w[b], &reduced.constant(b));
+                q_at[b] = combine(1.0, &p[b], r[b], &combine(1.0, &h[b], -1.0, &z[b]));
+                q.add(&q_at[b], w[b], &reduced.constant(b));
                 let relaxed = combine(RELAXATION, &h[b], 1.0 - RELAXATION, &z[b]);
                 let new = shrink(&combine(1.0, &relaxed, 1.0 / r[b], &p[b]), w[b] / r[b]);
                 apart += w[b] * norm(&combine(1.0, &h[b], -1.0, &new));
@@ -295,7 +311,9 @@ mod tests {
         reduced.apply_transposed(|b| next(&after[b].0, &after[b].1, b), &mut expected);
         assert!(close(sweep.right(), &expected));
         reduced.apply_transposed(|b| after[b].1, &mut expected);
-        assert!(close(sweep.product(), &expected));
+        assert!(close(sweep.multipliers(), &expected));
+        reduced.apply_transposed(|b| q_at[b], &mut expected);
+        assert!(close(sweep.from_equations(), &expected));
         let norms: f64 = h.iter().zip(w).map(|(h, w)| w * norm(h)).sum();
         assert!((sums.norms - norms).abs() < 1e-9 * norms);
         assert!((sums.split - apart).abs() < 1e-9 * apart);

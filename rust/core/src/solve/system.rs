@@ -22,6 +22,8 @@ pub struct System {
     proximal: Vec<f64>,
     /// The matrix is this times the one that was factored.
     scale: f64,
+    /// Whether every solution is refined once.
+    refined: bool,
 }
 
 impl System {
@@ -32,7 +34,7 @@ impl System {
     pub fn new(free: &FreeOperator, memory_limit: Option<usize>) -> Result<Self, SolveError> {
         let normal = NormalMatrix::new(&free.operator);
         let cholesky = Cholesky::analyse(normal.pattern().clone(), memory_limit)?;
-        Ok(Self { normal, cholesky, values: Vec::new(), proximal: Vec::new(), scale: 1.0 })
+        Ok(Self { normal, cholesky, values: Vec::new(), proximal: Vec::new(), scale: 1.0, refined: false })
     }
 
     /// Numeric factorisations made so far.
@@ -71,6 +73,30 @@ impl System {
         Ok(())
     }
 
+    /// From now on takes the residual of every solution and solves for it: in matrices with very unlike weights a solution is
+    /// far less exact than its digits.
+    pub fn refine(&mut self) {
+        self.refined = true;
+    }
+
+    /// `right − matrix · u` of the matrix that was factored.
+    fn residual<const K: usize>(&self, right: &[[f64; K]], u: &[[f64; K]]) -> Vec<[f64; K]> {
+        let mut out = right.to_vec();
+        let pattern = self.normal.pattern();
+        for j in 0..pattern.n {
+            let column = pattern.starts[j]..pattern.starts[j + 1];
+            for (&i, value) in pattern.rows[column.clone()].iter().zip(&self.values[column]) {
+                for c in 0..K {
+                    out[i][c] -= value * u[j][c];
+                    if i != j {
+                        out[j][c] -= value * u[i][c];
+                    }
+                }
+            }
+        }
+        out
+    }
+
     /// Turns the factored matrix into `factor` times itself: all penalties scaled alike, where there is no fidelity.
     pub fn rescale(&mut self, factor: f64) {
         self.scale *= factor;
@@ -96,12 +122,24 @@ impl System {
             let target = &reduced.target[i];
             *x = std::array::from_fn(|c| (row[c] + a * target[c] + p * x[c]) / self.scale);
         }
-        match reduced.n_columns {
-            3 => self.cholesky.solve_columns::<3, K>(u),
-            _ => self.cholesky.solve_columns::<K, K>(u),
+        let right = if self.refined { u.to_vec() } else { Vec::new() };
+        self.substitute(reduced.n_columns, u);
+        if self.refined {
+            let mut rest = self.residual(&right, u);
+            self.substitute(reduced.n_columns, &mut rest);
+            for (u, rest) in u.iter_mut().zip(&rest) {
+                u.iter_mut().zip(rest).for_each(|(x, r)| *x += r);
+            }
         }
         let mut y = reduced.constraints.as_ref().map_or_else(Vec::new, |constraints| constraints.correct(u));
         y.iter_mut().flatten().for_each(|y| *y *= self.scale);
         y
+    }
+
+    fn substitute<const K: usize>(&mut self, n_columns: usize, right: &mut [[f64; K]]) {
+        match n_columns {
+            3 => self.cholesky.solve_columns::<3, K>(right),
+            _ => self.cholesky.solve_columns::<K, K>(right),
+        }
     }
 }
