@@ -11,7 +11,7 @@ from problems import Problem
 GAP, FINE, EXACT = 1e-3, 1e-4, 1e-6
 """The certified gaps that are measured."""
 
-LARGEST_FOR_CLARABEL = 8_500
+LARGEST_FOR_CLARABEL = 2_000
 """Vertices up to which Clarabel solves every class of problem; the flow step and `ON_SCANS` up to 15 000."""
 
 ON_SCANS = ("interpolation, 40 points", "hole", "denoising, heavy noise")
