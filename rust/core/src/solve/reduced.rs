@@ -5,7 +5,6 @@ use crate::error::SolveError;
 use crate::solve::cones::{norm, Block};
 use crate::solve::linear_constraints::LinearConstraints;
 use crate::solve::problem::Problem;
-use crate::solve::Columns;
 use rayon::prelude::*;
 
 /// Blocks or rows that one thread takes at least: below that the hand-over costs more than the work.
@@ -164,7 +163,7 @@ impl<'a, const K: usize> Reduced<'a, K> {
     /// `out = Hᵀ y`, for a `y` given block by block.
     pub fn apply_transposed(&self, y: impl Fn(usize) -> Block<K> + Sync, out: &mut Vec<[f64; K]>) {
         let parts = Parts::of(self.n_blocks());
-        let sums: Vec<Vec<[f64; K]>> = (0..parts.count)
+        let mut sums: Vec<Vec<[f64; K]>> = (0..parts.count)
             .into_par_iter()
             .map(|part| {
                 let mut sum = vec![[0.0; K]; self.n()];
@@ -178,13 +177,8 @@ impl<'a, const K: usize> Reduced<'a, K> {
                 sum
             })
             .collect();
-        let mut sums = sums.into_iter();
-        *out = sums.next().unwrap_or_else(|| vec![[0.0; K]; self.n()]);
-        for part in sums {
-            for (sum, more) in out.iter_mut().zip(&part) {
-                sum.iter_mut().zip(more).for_each(|(s, x)| *s += x);
-            }
-        }
+        gather(&mut sums, self.n());
+        *out = sums.swap_remove(0);
     }
 
     /// The objective at `u`, where `h = H u + c`.
@@ -222,14 +216,17 @@ impl<'a, const K: usize> Reduced<'a, K> {
         }
         sum
     }
+}
 
-    /// Writes the free rows `u` into the `columns` of a whole matrix.
-    pub fn expand(&self, u: &[[f64; K]], columns: &[usize], out: &mut Columns) {
-        for (c, &column) in columns.iter().enumerate() {
-            let values = out.column_mut(column);
-            for (&i, x) in self.free.free.iter().zip(u) {
-                values[i as usize] = x[c];
-            }
+/// Adds all partial sums of `n` rows to the first, in their order.
+pub fn gather<const K: usize>(parts: &mut [Vec<[f64; K]>], n: usize) {
+    let Some((whole, rest)) = parts.split_first_mut() else {
+        return;
+    };
+    whole.resize(n, [0.0; K]);
+    for part in rest {
+        for (sum, more) in whole.iter_mut().zip(part.iter()) {
+            sum.iter_mut().zip(more).for_each(|(s, x)| *s += x);
         }
     }
 }

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use crate::block_rows::BLOCK;
 use crate::solve::certificate::DualPoint;
 use crate::solve::cones::{combine, norm, shrink, Block};
-use crate::solve::reduced::{add_outer, add_outer_transposed, Parts, Reduced};
+use crate::solve::reduced::{add_outer, add_outer_transposed, gather, Parts, Reduced};
 
 /// Over-relaxation: 1.5 to 1.8 is usual for alternating directions; 1.7 was the best measured.
 const RELAXATION: f64 = 1.7;
@@ -206,19 +206,6 @@ impl Sums {
 fn clear<const K: usize>(sum: &mut Vec<[f64; K]>, n: usize) {
     sum.clear();
     sum.resize(n, [0.0; K]);
-}
-
-/// Adds all partial sums to the first, in their order.
-fn gather<const K: usize>(parts: &mut [Vec<[f64; K]>], n: usize) {
-    let Some((whole, rest)) = parts.split_first_mut() else {
-        return;
-    };
-    whole.resize(n, [0.0; K]);
-    for part in rest {
-        for (sum, more) in whole.iter_mut().zip(part.iter()) {
-            sum.iter_mut().zip(more).for_each(|(s, x)| *s += x);
-        }
-    }
 }
 
 #[cfg(test)]
