@@ -7,6 +7,7 @@ pub mod intrinsic;
 pub mod mesh;
 pub mod operators;
 pub mod progress;
+pub mod remesh;
 #[doc(hidden)]
 pub mod shapes;
 pub mod solve;

@@ -6,6 +6,7 @@ mod flip;
 pub mod invariants;
 mod report;
 pub mod triangle;
+pub mod vector;
 
 pub use boundary::boundary_loops;
 pub use connectivity::{Connectivity, EdgeKind};

@@ -1,0 +1,369 @@
+//! A triangle mesh whose edges can be flipped, split and collapsed.
+
+use std::collections::HashSet;
+
+use crate::error::MeshError;
+use crate::mesh::vector::{area_vector, Point};
+
+/// The corners of a face that was removed.
+const GONE: [u32; 3] = [u32::MAX; 3];
+
+/// A triangle mesh under edit: positions, faces, and the faces of every vertex.
+///
+/// Vertices and faces keep their numbers through every operation. A face that a collapse removes leaves its number empty,
+/// and so does a vertex; [`EditableMesh::into_parts`] closes the gaps. An edge is named by its two vertices, in any order.
+///
+/// The operations look after the connectivity alone: none ever makes an edge with three faces, a face that names a vertex
+/// twice, or two faces on the same three vertices, and each does nothing where it would. Whether the surface folds over is
+/// the business of [`super::guard`].
+#[derive(Debug, Clone)]
+pub struct EditableMesh {
+    positions: Vec<Point>,
+    faces: Vec<[u32; 3]>,
+    faces_of: Vec<Vec<u32>>,
+    forbidden: HashSet<[u32; 2]>,
+}
+
+/// The two faces of an interior edge `a b`, and the vertices opposite it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Wings {
+    /// The face in which `b` follows `a`, and the other one.
+    pub faces: [u32; 2],
+    /// The third vertices of those faces.
+    pub tips: [u32; 2],
+}
+
+/// What lies at a pair of vertices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Edge {
+    /// No face has both.
+    None,
+    /// One face: its number and its third vertex.
+    Border(u32, u32),
+    /// Two faces that run through the edge in opposite directions.
+    Interior(Wings),
+    /// Three or more faces, or two that disagree on their orientation.
+    NonManifold,
+}
+
+/// The edge's two vertices, smaller first.
+#[must_use]
+pub fn key(a: u32, b: u32) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
+impl EditableMesh {
+    /// A mesh from positions and vertex triples. Face numbers are kept; a face that names a vertex twice becomes empty.
+    ///
+    /// # Errors
+    /// [`MeshError::VertexOutOfRange`].
+    pub fn new(positions: Vec<Point>, faces: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        let mut mesh =
+            Self { faces_of: vec![Vec::new(); positions.len()], positions, faces, forbidden: HashSet::new() };
+        for (f, corners) in mesh.faces.iter_mut().enumerate() {
+            let n_vertices = mesh.positions.len();
+            if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= n_vertices) {
+                return Err(MeshError::VertexOutOfRange { face: f, vertex: i64::from(vertex), n_vertices });
+            }
+            let [a, b, c] = *corners;
+            if a == b || b == c || c == a {
+                *corners = GONE;
+            } else {
+                corners.iter().for_each(|&v| mesh.faces_of[v as usize].push(f as u32));
+            }
+        }
+        Ok(mesh)
+    }
+
+    /// Forbids an edge: no operation will make it. For edges that exist in a larger mesh of which this is a part.
+    pub fn forbid_edge(&mut self, a: u32, b: u32) {
+        self.forbidden.insert(key(a, b));
+    }
+
+    /// The positions by vertex number, those of removed vertices included.
+    #[must_use]
+    pub fn positions(&self) -> &[Point] {
+        &self.positions
+    }
+
+    /// The position of `v`.
+    #[must_use]
+    pub fn position(&self, v: u32) -> Point {
+        self.positions[v as usize]
+    }
+
+    /// Moves `v`.
+    pub fn set_position(&mut self, v: u32, position: Point) {
+        self.positions[v as usize] = position;
+    }
+
+    /// How many vertex numbers are in use or were.
+    #[must_use]
+    pub fn n_vertices(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// How many face numbers are in use or were.
+    #[must_use]
+    pub fn n_faces(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// The vertices of face `f`, unless it was removed.
+    #[must_use]
+    pub fn face(&self, f: u32) -> Option<[u32; 3]> {
+        Some(self.faces[f as usize]).filter(|&corners| corners != GONE)
+    }
+
+    /// All faces with their numbers.
+    pub fn faces(&self) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
+        (0..).zip(&self.faces).filter(|(_, &corners)| corners != GONE).map(|(f, &corners)| (f, corners))
+    }
+
+    /// The faces of `v`, in no particular but a reproducible order.
+    #[must_use]
+    pub fn faces_of(&self, v: u32) -> &[u32] {
+        &self.faces_of[v as usize]
+    }
+
+    /// The positions of three vertices.
+    #[must_use]
+    pub fn corners(&self, face: [u32; 3]) -> [Point; 3] {
+        face.map(|v| self.position(v))
+    }
+
+    /// The area vector of face `f`; zero if it was removed.
+    #[must_use]
+    pub fn area_vector(&self, f: u32) -> Point {
+        self.face(f).map_or([0.0; 3], |face| area_vector(self.corners(face)))
+    }
+
+    /// The vertices joined to `v` by an edge, ascending.
+    #[must_use]
+    pub fn neighbours(&self, v: u32) -> Vec<u32> {
+        let mut found = Vec::with_capacity(2 * self.faces_of(v).len());
+        found.extend(self.faces_of(v).iter().flat_map(|&f| self.faces[f as usize]).filter(|&w| w != v));
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    /// The faces with a vertex at most `rings - 1` edges away from one of `seeds`, ascending.
+    #[must_use]
+    pub fn faces_within(&self, seeds: &[u32], rings: usize) -> Vec<u32> {
+        let (mut faces, mut front) = (Vec::new(), seeds.to_vec());
+        for _ in 0..rings {
+            faces = front.iter().flat_map(|&v| self.faces_of(v)).copied().collect();
+            faces.sort_unstable();
+            faces.dedup();
+            front = faces.iter().flat_map(|&f| self.faces[f as usize]).collect();
+            front.sort_unstable();
+            front.dedup();
+        }
+        faces
+    }
+
+    /// All edges, smaller vertex first, ascending.
+    #[must_use]
+    pub fn edges(&self) -> Vec<[u32; 2]> {
+        let mut edges: Vec<_> = self.faces().flat_map(|(_, [a, b, c])| [key(a, b), key(b, c), key(c, a)]).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+
+    /// What lies at the vertices `a` and `b`.
+    #[must_use]
+    pub fn edge(&self, a: u32, b: u32) -> Edge {
+        // For every face of the edge: its number, its tip, and whether `b` follows `a` in it.
+        let mut found = [(0, 0, false); 2];
+        let mut count = 0;
+        for &f in self.faces_of(a) {
+            let face = self.faces[f as usize];
+            let Some(i) = (0..3).find(|&i| face[i] == b) else { continue };
+            if count == 2 {
+                return Edge::NonManifold;
+            }
+            let forward = face[(i + 2) % 3] == a;
+            found[count] = (f, if forward { face[(i + 1) % 3] } else { face[(i + 2) % 3] }, forward);
+            count += 1;
+        }
+        match (count, found) {
+            (0, _) => Edge::None,
+            (1, [(f, tip, _), _]) => Edge::Border(f, tip),
+            (_, [(f, left, true), (g, right, false)] | [(g, right, false), (f, left, true)]) => {
+                Edge::Interior(Wings { faces: [f, g], tips: [left, right] })
+            }
+            _ => Edge::NonManifold,
+        }
+    }
+
+    /// The faces of an interior edge; nothing at any other pair of vertices.
+    #[must_use]
+    pub fn wings(&self, a: u32, b: u32) -> Option<Wings> {
+        match self.edge(a, b) {
+            Edge::Interior(wings) => Some(wings),
+            _ => None,
+        }
+    }
+
+    /// Whether a face has both vertices, or the edge is forbidden.
+    #[must_use]
+    pub fn is_taken(&self, a: u32, b: u32) -> bool {
+        self.faces_of(a).iter().any(|&f| self.faces[f as usize].contains(&b))
+            || (!self.forbidden.is_empty() && self.forbidden.contains(&key(a, b)))
+    }
+
+    /// Whether an edge at `v` has one face only.
+    #[must_use]
+    pub fn is_border(&self, v: u32) -> bool {
+        self.neighbours(v).iter().any(|&w| matches!(self.edge(v, w), Edge::Border(..)))
+    }
+
+    /// Whether the faces of `v` form one fan across interior edges; a vertex without faces has none.
+    #[must_use]
+    pub fn is_manifold(&self, v: u32) -> bool {
+        let faces = self.faces_of(v);
+        let Some(&first) = faces.first() else { return false };
+        let (mut reached, mut next) = (vec![first], 0);
+        while let Some(&f) = reached.get(next) {
+            next += 1;
+            for w in self.faces[f as usize].into_iter().filter(|&w| w != v) {
+                match self.edge(v, w) {
+                    Edge::Interior(wings) => {
+                        let new = wings.faces.into_iter().filter(|g| !reached.contains(g)).collect::<Vec<_>>();
+                        reached.extend(new);
+                    }
+                    Edge::NonManifold => return false,
+                    Edge::Border(..) | Edge::None => {}
+                }
+            }
+        }
+        reached.len() == faces.len()
+    }
+
+    /// The two faces that [`EditableMesh::flip`] would make, in the place of `wings.faces`; nothing if it would refuse.
+    #[must_use]
+    pub fn flipped(&self, a: u32, b: u32) -> Option<[[u32; 3]; 2]> {
+        let Wings { tips: [left, right], .. } = self.wings(a, b)?;
+        (left != right && !self.is_taken(left, right)).then_some([[left, a, right], [right, b, left]])
+    }
+
+    /// Flips the edge `a b` into the other diagonal of its two faces, and returns its ends; does nothing and returns nothing
+    /// if the edge is not interior or the new one exists already or is forbidden. The two face numbers stay.
+    pub fn flip(&mut self, a: u32, b: u32) -> Option<[u32; 2]> {
+        let new = self.flipped(a, b)?;
+        let Wings { faces: [f, g], tips: [left, right] } = self.wings(a, b)?;
+        // `f` was a, b, left and loses b; `g` was b, a, right and loses a.
+        self.detach(b, f);
+        self.detach(a, g);
+        self.faces_of[right as usize].push(f);
+        self.faces_of[left as usize].push(g);
+        (self.faces[f as usize], self.faces[g as usize]) = (new[0], new[1]);
+        Some([left, right])
+    }
+
+    /// Splits the edge `a b` and its one or two faces at a new vertex at `position`, and returns that vertex; does nothing
+    /// and returns nothing if there is no such edge or it is not manifold.
+    ///
+    /// The old face numbers stay at `a`; the new faces at `b` are the last ones, that of `wings.faces[0]` first.
+    pub fn split(&mut self, a: u32, b: u32, position: Point) -> Option<u32> {
+        let faces: &[u32] = match &self.edge(a, b) {
+            Edge::Border(f, _) => &[*f],
+            Edge::Interior(wings) => &wings.faces.clone(),
+            Edge::None | Edge::NonManifold => return None,
+        };
+        let new = self.add_vertex(position);
+        for &f in faces {
+            let old = self.faces[f as usize];
+            self.detach(b, f);
+            self.faces_of[new as usize].push(f);
+            self.faces[f as usize] = old.map(|v| if v == b { new } else { v });
+            self.add_face(old.map(|v| if v == a { new } else { v }));
+        }
+        Some(new)
+    }
+
+    /// Splits face `f` into three at a new vertex at `position`, and returns that vertex; nothing if `f` was removed.
+    ///
+    /// The part at the face's first edge keeps the number, the two others are the last faces.
+    pub fn split_face(&mut self, f: u32, position: Point) -> Option<u32> {
+        let [a, b, c] = self.face(f)?;
+        let new = self.add_vertex(position);
+        self.detach(c, f);
+        self.faces_of[new as usize].push(f);
+        self.faces[f as usize] = [a, b, new];
+        self.add_face([b, c, new]);
+        self.add_face([c, a, new]);
+        Some(new)
+    }
+
+    /// Whether [`EditableMesh::collapse`] keeps the surface as it is but for its size: the link condition (Dey et al. 1999),
+    /// and no vertex is left with less than a fan.
+    #[must_use]
+    pub fn can_collapse(&self, from: u32, to: u32) -> bool {
+        let (tips, interior) = match self.edge(from, to) {
+            Edge::Border(_, tip) => ([tip, tip], false),
+            Edge::Interior(wings) => (wings.tips, true),
+            Edge::None | Edge::NonManifold => return false,
+        };
+        if interior && self.is_border(from) && self.is_border(to) {
+            return false;
+        }
+        // A tip loses a face: one with three faces all around it would be left with two, back to back.
+        let thin = |&tip: &u32| {
+            let count = self.faces_of(tip).len();
+            count <= 1 || count <= 3 && !self.is_border(tip)
+        };
+        !tips.iter().any(thin)
+            && self.neighbours(from).into_iter().all(|w| w == to || tips.contains(&w) || !self.is_taken(to, w))
+    }
+
+    /// Collapses the edge into its end `to`, which moves to `position`; `from` is gone. Does nothing and returns false unless
+    /// [`EditableMesh::can_collapse`]. Both must be manifold vertices ([`EditableMesh::is_manifold`]).
+    pub fn collapse(&mut self, from: u32, to: u32, position: Point) -> bool {
+        if !self.can_collapse(from, to) {
+            return false;
+        }
+        for f in std::mem::take(&mut self.faces_of[from as usize]) {
+            let old = self.faces[f as usize];
+            if old.contains(&to) {
+                old.into_iter().filter(|&v| v != from).for_each(|v| self.detach(v, f));
+                self.faces[f as usize] = GONE;
+            } else {
+                self.faces[f as usize] = old.map(|v| if v == from { to } else { v });
+                self.faces_of[to as usize].push(f);
+            }
+        }
+        self.set_position(to, position);
+        true
+    }
+
+    /// The positions and faces without gaps, and for every vertex kept its number before. `keep(v)` says which vertices
+    /// without faces to keep; order is kept.
+    #[must_use]
+    pub fn into_parts(self, keep: impl Fn(u32) -> bool) -> (Vec<Point>, Vec<[u32; 3]>, Vec<u32>) {
+        let kept: Vec<u32> =
+            (0..self.positions.len() as u32).filter(|&v| !self.faces_of(v).is_empty() || keep(v)).collect();
+        let mut number = vec![u32::MAX; self.positions.len()];
+        kept.iter().zip(0..).for_each(|(&v, new)| number[v as usize] = new);
+        let faces = self.faces().map(|(_, face)| face.map(|v| number[v as usize])).collect();
+        (kept.iter().map(|&v| self.position(v)).collect(), faces, kept)
+    }
+
+    fn add_vertex(&mut self, position: Point) -> u32 {
+        self.positions.push(position);
+        self.faces_of.push(Vec::with_capacity(6));
+        self.positions.len() as u32 - 1
+    }
+
+    fn add_face(&mut self, face: [u32; 3]) {
+        face.iter().for_each(|&v| self.faces_of[v as usize].push(self.faces.len() as u32));
+        self.faces.push(face);
+    }
+
+    /// Takes face `f` from the list of `v`.
+    fn detach(&mut self, v: u32, f: u32) {
+        self.faces_of[v as usize].retain(|&g| g != f);
+    }
+}
