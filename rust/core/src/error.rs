@@ -98,9 +98,37 @@ pub enum MeshError {
         /// Its neighbour.
         neighbour: usize,
     },
+    /// A boundary loop cannot be filled.
+    #[error("the hole of {n_edges} edges at vertex {vertex} cannot be filled: {reason}")]
+    Unfillable {
+        /// A vertex on the loop.
+        vertex: u32,
+        /// The length of the loop.
+        n_edges: usize,
+        /// Why not.
+        reason: Refusal,
+    },
     /// The operation needs positions, but the mesh is known by its edge lengths only.
     #[error("the mesh has edge lengths only; this operation needs vertex positions")]
     NoPositions,
+}
+
+/// Why a boundary loop cannot be filled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Refusal {
+    /// The vertices are not three or more, each once, around a boundary.
+    #[error("its vertices do not follow the boundary edges around a hole, each vertex once")]
+    NotALoop,
+    /// The faces at the loop do not all run the same way along it.
+    #[error("the faces around it disagree on which side is outside; make the normals consistent")]
+    InconsistentOrientation,
+    /// The loop is the three edges of one face.
+    #[error("it is the outline of a single triangle, and would be filled with the same triangle again")]
+    SingleFace,
+    /// The rim encloses no area.
+    #[error("it has no width: the two sides of the rim lie in the same place; merge vertices by distance")]
+    NoExtent,
 }
 
 /// Why a numerical problem has no answer.

@@ -3,6 +3,7 @@
 //! Read in this order: [`mesh`] → [`operators`] → [`solve`] → [`tools`].
 pub mod block_rows;
 pub mod error;
+pub mod hole_filling;
 pub mod intrinsic;
 pub mod mesh;
 pub mod operators;

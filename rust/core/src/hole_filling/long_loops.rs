@@ -1,0 +1,125 @@
+//! Triangulating polygons of any length: long ones are divided along the chords of a coarse polygon.
+
+use super::polygon::Polygon;
+use super::rims::Rims;
+use super::triangulation::{minimum_weight, TABLE_LIMIT};
+use crate::mesh::vector::{add, area_vector, cross, distance, dot, norm, scale, sub, unit, Point};
+use crate::Progress;
+
+/// Vertices of the coarse polygon. Its table takes a third of the time of a full one.
+const COARSE: usize = 200;
+
+/// Triangles as places in the polygon; places from its length on are the extra points.
+pub(super) struct Triangulation {
+    /// New points, needed only where all chords are taken.
+    pub(super) extra: Vec<Point>,
+    /// Vertex triples, counterclockwise.
+    pub(super) faces: Vec<[u32; 3]>,
+}
+
+/// A triangulation of the polygon that makes no edge which is taken.
+///
+/// - Up to [`TABLE_LIMIT`] vertices: that of minimum weight.
+/// - Longer polygons: [`COARSE`] of the vertices, denser at corners, form a coarse polygon. The chords of its triangulation of
+///   minimum weight cut the polygon into parts, one for each coarse triangle, with the whole run of vertices in place of a
+///   coarse edge. The parts are triangulated in the same way, so that the time grows in proportion to the length; 5000 vertices
+///   take some 0.2 s. The weight is then not the least possible, but no fold across the hole is decided by less than all of it.
+/// - Where every triangulation needs an edge that is taken, a fan around one new point at the middle.
+pub(super) fn triangulate(polygon: &Polygon, rims: &Rims, progress: &Progress) -> Triangulation {
+    let mut result = Triangulation { extra: Vec::new(), faces: Vec::new() };
+    let places: Vec<usize> = (0..polygon.len()).collect();
+    add_part(polygon, &places, polygon.outside.clone(), rims, progress, &mut result);
+    result
+}
+
+/// Adds the triangles of the part of `polygon` at `places`.
+fn add_part(
+    polygon: &Polygon,
+    places: &[usize],
+    outside: Vec<Point>,
+    rims: &Rims,
+    progress: &Progress,
+    result: &mut Triangulation,
+) {
+    let part = polygon.part(places, outside);
+    let whole = |local: u32| places[local as usize] as u32;
+    if part.len() <= TABLE_LIMIT {
+        match minimum_weight(&part, rims, progress) {
+            Some(faces) => result.faces.extend(faces.into_iter().map(|face| face.map(whole))),
+            None => add_fan(polygon, places, result),
+        }
+        return;
+    }
+    let samples = samples(&part);
+    let coarse = coarse_polygon(&part, &samples);
+    let Some(faces) = minimum_weight(&coarse, rims, progress) else {
+        return add_fan(polygon, places, result);
+    };
+    let normals: Vec<Point> =
+        faces.iter().map(|face| unit(area_vector(face.map(|v| coarse.points[v as usize])))).collect();
+    let beyond: std::collections::HashMap<[u32; 2], usize> =
+        faces.iter().enumerate().flat_map(|(f, &[a, b, c])| [([a, b], f), ([b, c], f), ([c, a], f)]).collect();
+    for &[a, b, c] in &faces {
+        if progress.is_cancelled() {
+            return;
+        }
+        let (mut run, mut outside) = (Vec::new(), Vec::new());
+        for [tail, head] in [[a, b], [b, c], [c, a]] {
+            if (tail as usize + 1) % samples.len() == head as usize {
+                let (mut at, end) = (samples[tail as usize], samples[head as usize]);
+                while at != end {
+                    run.push(places[at]);
+                    outside.push(part.outside[at]);
+                    at = (at + 1) % part.len();
+                }
+            } else {
+                run.push(places[samples[tail as usize]]);
+                outside.push(beyond.get(&[head, tail]).map_or([0.0; 3], |&f| normals[f]));
+            }
+        }
+        add_part(polygon, &run, outside, rims, progress, result);
+    }
+}
+
+/// Adds a fan around the mean of the part's vertices.
+fn add_fan(polygon: &Polygon, places: &[usize], result: &mut Triangulation) {
+    let sum = places.iter().fold([0.0; 3], |sum, &i| add(sum, polygon.points[i]));
+    let centre = (polygon.len() + result.extra.len()) as u32;
+    result.extra.push(scale(sum, 1.0 / places.len() as f64));
+    let ends = places.iter().zip(places.iter().cycle().skip(1));
+    result.faces.extend(ends.map(|(&a, &b)| [a as u32, b as u32, centre]));
+}
+
+/// [`COARSE`] places of the polygon, equally spaced by a measure that is half length and half turning angle, so that
+/// corners are met more closely than straight runs.
+fn samples(polygon: &Polygon) -> Vec<usize> {
+    let n = polygon.len();
+    let edge = |i: usize| sub(polygon.points[(i + 1) % n], polygon.points[i]);
+    let turn = |i: usize| {
+        let (before, after) = (edge((i + n - 1) % n), edge(i));
+        norm(cross(before, after)).atan2(dot(before, after))
+    };
+    let length: f64 = (0..n).map(|i| distance(polygon.points[i], polygon.points[(i + 1) % n])).sum();
+    let turning: f64 = (0..n).map(turn).sum();
+    let share = |value: f64, total: f64| if total > 0.0 { 0.5 * value / total } else { 0.5 / n as f64 };
+    let (mut samples, mut measure) = (Vec::with_capacity(COARSE), 0.0);
+    for i in 0..n {
+        measure += share(turn(i), turning);
+        if samples.len() < COARSE && measure * COARSE as f64 >= samples.len() as f64 {
+            samples.push(i);
+        }
+        measure += share(norm(edge(i)), length);
+    }
+    samples
+}
+
+/// The polygon of the samples; beyond its edges, the mean normals of the runs.
+fn coarse_polygon(polygon: &Polygon, samples: &[usize]) -> Polygon {
+    let n = polygon.len();
+    let ends = samples.iter().zip(samples.iter().cycle().skip(1));
+    let outside = ends.map(|(&tail, &head)| {
+        let run = (0..n).map(|step| (tail + step) % n).take_while(|&i| i != head);
+        unit(run.fold([0.0; 3], |sum, i| add(sum, polygon.outside[i])))
+    });
+    polygon.part(samples, outside.collect())
+}

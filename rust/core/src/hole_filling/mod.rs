@@ -1,0 +1,117 @@
+//! Filling holes: which boundary loops are holes, and a triangulated patch for each, at the resolution of its rim.
+//!
+//! 1. [`find_holes`] lists the boundary loops, says which is the outer border of an open sheet and which cannot be filled
+//!    and why ([`Refusal`]); [`fillable_loops`] are the rest.
+//! 2. [`fill_loops`] (or [`fill_loop`] for one) makes the patches: a triangulation of minimum weight [Liepa 2003], his
+//!    refinement, and isotropic remeshing of the patch alone [Botsch and Kobbelt 2004].
+//!
+//! ```text
+//! find_holes(mesh: &Mesh) -> Result<Vec<Hole>>
+//! fillable_loops(mesh: &Mesh) -> Result<Vec<Vec<u32>>>
+//! fill_loop(mesh: &Mesh, boundary_loop: &[u32], options: &FillOptions, progress: &Progress) -> Result<Patch>
+//! fill_loops(mesh: &Mesh, loops: &[Vec<u32>], options: &FillOptions, progress: &Progress) -> Result<Vec<Patch>>
+//! ```
+//!
+//! The mesh with its patches is its vertices, then those of each patch; its faces, then those of each patch. Vertices on
+//! the rim are the mesh's own and do not move. No patch makes an edge that the mesh or another patch has.
+
+mod long_loops;
+mod loops;
+mod polygon;
+mod rims;
+mod triangulation;
+
+pub use loops::{fillable_loops, find_holes, Hole};
+
+use crate::error::{MeshError, Refusal};
+use crate::mesh::vector::{area_vector, distance, norm, Point};
+use crate::mesh::Mesh;
+use crate::{Progress, Result};
+use polygon::Polygon;
+use rims::Rims;
+
+/// A rim encloses nothing if its triangulation has less than this part of its squared length in area: rounding alone.
+const NO_EXTENT: f64 = 1e-13;
+
+/// How a hole is filled.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FillOptions {
+    /// The edge length inside the patch; without it, that of the rim continues into the patch.
+    pub edge_length: Option<f64>,
+    /// Whether to refine and remesh; without, a patch is the triangulation of minimum weight alone and has no new vertex
+    /// unless nothing else is possible.
+    pub refine: bool,
+    /// Rounds of isotropic remeshing, 0 for Liepa's refinement alone.
+    pub remesh_iterations: usize,
+    /// Where the patch would have more faces than about this many, edges grow with the distance from the rim.
+    pub max_faces: usize,
+}
+
+impl Default for FillOptions {
+    fn default() -> Self {
+        Self { edge_length: None, refine: true, remesh_iterations: 10, max_faces: 40_000 }
+    }
+}
+
+/// The filling of one hole.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Patch {
+    /// Positions of the new vertices; those on the rim are the mesh's.
+    pub vertices: Vec<Point>,
+    /// Vertex triples, oriented as the mesh around. Numbers below the mesh's vertex count are its vertices; new ones
+    /// follow, first those of the patches before this one of the same call.
+    pub faces: Vec<[u32; 3]>,
+}
+
+/// Fills one hole; see [`fill_loops`].
+///
+/// # Errors
+/// Those of [`fill_loops`].
+pub fn fill_loop(mesh: &Mesh, boundary_loop: &[u32], options: &FillOptions, progress: &Progress) -> Result<Patch> {
+    Ok(fill_loops(mesh, &[boundary_loop.to_vec()], options, progress)?.pop().unwrap_or_default())
+}
+
+/// Fills holes, each given as the vertices around it in either direction, without repeats ([`find_holes`]).
+///
+/// # Errors
+/// [`MeshError::NoPositions`]; [`MeshError::Unfillable`] for the first loop that cannot be filled, with the reason;
+/// [`crate::Error::Cancelled`].
+pub fn fill_loops(mesh: &Mesh, loops: &[Vec<u32>], options: &FillOptions, progress: &Progress) -> Result<Vec<Patch>> {
+    let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
+    let mut rims = Rims::new(mesh, loops)?;
+    let mut n_vertices = positions.len() as u32;
+    let mut patches = Vec::with_capacity(loops.len());
+    for rim in loops {
+        progress.check()?;
+        let patch = fill_one(positions, rim, &rims, options, n_vertices, progress);
+        progress.check()?;
+        let vertex = rim.first().copied().unwrap_or(0);
+        let patch = patch.map_err(|reason| MeshError::Unfillable { vertex, n_edges: rim.len(), reason })?;
+        rims.add(&patch);
+        n_vertices += patch.vertices.len() as u32;
+        patches.push(patch);
+    }
+    Ok(patches)
+}
+
+/// One patch, its new vertices numbered from `first_new` on.
+fn fill_one(
+    positions: &[Point],
+    rim: &[u32],
+    rims: &Rims,
+    _options: &FillOptions,
+    first_new: u32,
+    progress: &Progress,
+) -> std::result::Result<Patch, Refusal> {
+    let polygon = Polygon::new(positions, rim, rims)?;
+    let flat = long_loops::triangulate(&polygon, rims, progress);
+    let n = polygon.len();
+    let points: Vec<Point> = polygon.points.iter().chain(&flat.extra).copied().collect();
+    let area: f64 = flat.faces.iter().map(|face| norm(area_vector(face.map(|v| points[v as usize])))).sum();
+    let length: f64 = (0..n).map(|i| distance(points[i], points[(i + 1) % n])).sum();
+    if area <= NO_EXTENT * length * length {
+        return Err(Refusal::NoExtent);
+    }
+    let number = |local: u32| polygon.vertices.get(local as usize).copied().unwrap_or(first_new + local - n as u32);
+    Ok(Patch { vertices: flat.extra, faces: flat.faces.into_iter().map(|face| face.map(number)).collect() })
+}
