@@ -1,0 +1,75 @@
+"""Fill holes with known truth by every tool, and write the tables: `holes.md`, `holes.json`.
+
+    python scripts/setup_env.py benchmarks/holes.py [--only WORDS] [--tools TOOL ...] [--site FOLDER]
+
+`--only` takes the kinds of holes with these words in their name, `--tools` some tools: both print and keep
+nothing. `--site` names a folder with the package `ridgeform`, instead of building the wheel. The peers get an
+environment of their own; what cannot be installed, crashes or takes too long is named in the table.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
+# Beside this folder: the shapes of the tests, and what all scripts share.
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests")]
+
+import holes_run  # noqa: E402
+import holes_table  # noqa: E402
+from build_wheel import build_wheel  # noqa: E402
+from driver import Record  # noqa: E402
+from holes_cases import cases, holed  # noqa: E402
+from run import machine  # noqa: E402
+from workspace import WHEEL_SITE  # noqa: E402
+
+RESULTS = ROOT / "benchmarks/holes"
+
+
+def measure(words: str, tools: list[str], site: Path, scratch: Path) -> list[Record]:
+    """A record for each hole, with one for each tool."""
+    chosen = cases(words)
+    made = {case.name: holed(case) for case in chosen}
+    records = [{**case.__dict__, "before": holes_run.before(made[case.name]), "tools": {}} for case in chosen]
+    for tool in tools:
+        print(f"== {tool}", flush=True)
+        folder = scratch / tool
+        folder.mkdir()
+        for name, one in made.items():
+            np.savez(folder / f"{name}.in.npz", vertices=one.vertices, faces=one.faces)
+        holes_run.fill(tool, folder, site)
+        for case, record in zip(chosen, records, strict=True):
+            record["tools"][tool] = holes_run.measured(made[case.name], folder, case.name)
+    return records
+
+
+def main() -> None:
+    """Measure, print, and keep the full run."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--only", metavar="WORDS", default="", help="kinds of holes; keeps nothing")
+    parser.add_argument("--tools", nargs="+", choices=list(holes_table.NAMES), help="tools; keeps nothing")
+    parser.add_argument("--site", type=Path, help="a folder with the package to be measured")
+    choice = parser.parse_args()
+    tools = choice.tools or list(holes_table.NAMES)
+    if holes_run.OURS in tools and choice.site is None:
+        build_wheel()
+    site = choice.site or WHEEL_SITE
+    results: Record = {"machine": machine()}
+    with tempfile.TemporaryDirectory() as scratch:
+        results["cases"] = measure(choice.only, tools, site, Path(scratch))
+    text = holes_table.full(results)
+    print()
+    print(text)
+    if not (choice.only or choice.tools):
+        RESULTS.with_suffix(".json").write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+        RESULTS.with_suffix(".md").write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
