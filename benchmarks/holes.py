@@ -1,10 +1,12 @@
 """Fill holes with known truth by every tool, and write the tables: `holes.md`, `holes.json`.
 
-    python scripts/setup_env.py benchmarks/holes.py [--only WORDS] [--tools TOOL ...] [--site FOLDER]
+    python scripts/setup_env.py benchmarks/holes.py [--only WORDS] [--tools TOOL ...] [--stress [COUNT]]
+        [--site FOLDER]
 
-`--only` takes the kinds of holes with these words in their name, `--tools` some tools: both print and keep
-nothing. `--site` names a folder with the package `ridgeform`, instead of building the wheel. The peers get an
-environment of their own; what cannot be installed, crashes or takes too long is named in the table.
+`--only` takes the kinds of holes with these words in their name, `--tools` some tools, `--stress` random
+holes only: these print and keep nothing. `--site` names a folder with the package `ridgeform`, instead of
+building the wheel. The peers get an environment of their own; what cannot be installed, crashes or takes too
+long is named in the table.
 """
 
 from __future__ import annotations
@@ -55,18 +57,29 @@ def main() -> None:
     parser.add_argument("--only", metavar="WORDS", default="", help="kinds of holes; keeps nothing")
     parser.add_argument("--tools", nargs="+", choices=list(holes_table.NAMES), help="tools; keeps nothing")
     parser.add_argument("--site", type=Path, help="a folder with the package to be measured")
+    parser.add_argument(
+        "--stress", nargs="?", const="500", metavar="COUNT", help="only random holes; keeps nothing"
+    )
     choice = parser.parse_args()
     tools = choice.tools or list(holes_table.NAMES)
     if holes_run.OURS in tools and choice.site is None:
         build_wheel()
     site = choice.site or WHEEL_SITE
-    results: Record = {"machine": machine()}
-    with tempfile.TemporaryDirectory() as scratch:
-        results["cases"] = measure(choice.only, tools, site, Path(scratch))
+    full = not (choice.only or choice.tools or choice.stress)
+    results: Record = {"machine": machine(), "cases": []}
+    if choice.stress:
+        results["stress"] = holes_run.limit("stress", site, choice.stress)
+    else:
+        with tempfile.TemporaryDirectory() as scratch:
+            results["cases"] = measure(choice.only, tools, site, Path(scratch))
+    if full:
+        for kind in ("locality", "long", "stress"):
+            print(f"== {kind}", flush=True)
+            results[kind] = holes_run.limit(kind, site)
     text = holes_table.full(results)
     print()
     print(text)
-    if not (choice.only or choice.tools):
+    if full:
         RESULTS.with_suffix(".json").write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
         RESULTS.with_suffix(".md").write_text(text, encoding="utf-8")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import json
 import os
 import subprocess
 import sys
@@ -28,6 +29,8 @@ ENVIRONMENT = STATE / "bench-holes"
 OURS = "ridgeform"
 LIMIT = 120.0
 """Seconds for one hole."""
+PATIENCE = 3600.0
+"""Seconds for one of the measurements of ours alone."""
 SAME = 1e-4
 """A face whose centre moved by less, in edge lengths, is an old one: some tools store single precision."""
 
@@ -81,6 +84,22 @@ def fill(tool: str, folder: Path, site: Path = WHEEL_SITE) -> None:
                 _refuse(folder, name, said[-1] if said else "did not start")
             return
         _refuse(folder, at.read_text(encoding="utf-8"), ended)
+
+
+def limit(kind: str, site: Path, *words: str) -> Record:
+    """What `holes_limits.py` says of ours, or why it says nothing."""
+    command = [sys.executable, str(ROOT / "benchmarks/holes_limits.py"), kind, *words]
+    environment = {**os.environ, "PYTHONPATH": str(site)}
+    try:
+        done = subprocess.run(
+            command, env=environment, capture_output=True, text=True, timeout=PATIENCE, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return {"error": f"took more than {PATIENCE:.0f} s"}
+    if done.returncode:
+        said = done.stderr.strip().splitlines()
+        return {"error": said[-1] if said else f"crashed with exit code {done.returncode}"}
+    return {"found": json.loads(done.stdout)}
 
 
 def open_cases(folder: Path) -> list[str]:

@@ -103,10 +103,59 @@ def failures(results: Record) -> str:
     return "\n".join(lines) + "\n" if lines else ""
 
 
+def limits(results: Record) -> list[str]:
+    """Growth with the mesh and with the hole, and the random holes."""
+    parts = []
+    for key, title, head in (
+        ("locality", "The same hole in larger meshes", ["vertices", "new faces", "time", "of the first"]),
+        ("long", "Long loops", ["loop", "its vertices", "new faces", "worst triangle", "time"]),
+    ):
+        if key not in results:
+            continue
+        parts.append(f"## {title}\n")
+        found = results[key].get("found")
+        if found is None:
+            parts.append(results[key]["error"] + "\n")
+        elif key == "locality":
+            first = found[0]["seconds"]
+            rows = [
+                [r["vertices"], r["new_faces"], duration(r["seconds"]), f"{r['seconds'] / first:.2f}"]
+                for r in found
+            ]
+            parts.append(grid(head, rows))
+        else:
+            rows = [
+                [
+                    r["loop"],
+                    r["loop_vertices"],
+                    r["new_faces"],
+                    f"{r['worst_quality']:.2f}",
+                    duration(r["seconds"]),
+                ]
+                for r in found
+            ]
+            parts.append(grid(head, rows))
+    if "stress" in results:
+        parts += ["## Random holes\n", _stress(results["stress"])]
+    return parts
+
+
+def _stress(record: Record) -> str:
+    found = record.get("found")
+    if found is None:
+        return record["error"] + "\n"
+    text = f"{found['holes']} holes in {found['meshes']} meshes, cut out of ten: "
+    text += f"{len(found['wrong'])} meshes with a fault. "
+    if found["median_seconds"] is not None:
+        text += f"{duration(found['median_seconds'])} a mesh, at most {duration(found['longest_seconds'])}."
+    lines = [f"- {seed}: {'; '.join(words)}" for seed, words in found["wrong"].items()]
+    return "\n".join([text, "", *lines] if lines else [text]) + "\n"
+
+
 def full(results: Record) -> str:
     """The whole page."""
     if not results["cases"]:
-        return ""
+        return "\n".join(limits(results))
     parts = [
         "# Holes\n",
         ABOUT,
@@ -121,4 +170,4 @@ def full(results: Record) -> str:
     table = ours(results)
     if table:
         parts += ["## Ours, hole by hole\n", table]
-    return "\n".join(parts)
+    return "\n".join(parts + limits(results))
