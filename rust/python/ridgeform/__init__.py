@@ -2,6 +2,7 @@
 
 Make a `Mesh` from arrays, then call a function per problem: `stylize` turns it piecewise flat, `denoise` and
 `interpolate` find functions on it with sparse second derivatives, `vibration_modes` those of least energy,
+`diffusion_curves` the few curves that redraw a painted surface, and
 `hessian` and its companions are the operators behind them. Arrays of any numeric dtype and memory order go
 in; fresh C-contiguous `float64` and `int32` arrays come out. Long calls release the interpreter lock, report
 to a `Progress`, and hear Ctrl-C. Every failure is a `RidgeformError`.
@@ -10,9 +11,11 @@ Source: Rowe, Jacobson and Stein, Sharpening and Sparsifying with Surface Hessia
 """
 
 from ._native import (
+    DiffusionCurves,
     Mesh,
     MeshReport,
     Progress,
+    Redrawn,
     Solution,
     SparseMatrix,
     Stylized,
@@ -20,11 +23,13 @@ from ._native import (
     boundary_loops,
     cotangent_laplacian,
     denoise,
+    diffusion_curves,
     energy,
     hessian,
     hessian_norm,
     interpolate,
     intrinsic_delaunay,
+    redraw,
     stylize,
     vibration_modes,
     voronoi_mass,
@@ -34,10 +39,12 @@ from .errors import ArgumentError, Cancelled, MeshError, RidgeformError, SolveEr
 __all__ = [
     "ArgumentError",
     "Cancelled",
+    "DiffusionCurves",
     "Mesh",
     "MeshError",
     "MeshReport",
     "Progress",
+    "Redrawn",
     "RidgeformError",
     "Solution",
     "SolveError",
@@ -47,11 +54,13 @@ __all__ = [
     "boundary_loops",
     "cotangent_laplacian",
     "denoise",
+    "diffusion_curves",
     "energy",
     "hessian",
     "hessian_norm",
     "interpolate",
     "intrinsic_delaunay",
+    "redraw",
     "stylize",
     "vibration_modes",
     "voronoi_mass",

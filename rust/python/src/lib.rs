@@ -6,6 +6,7 @@
 mod arrays;
 mod columns;
 mod denoise;
+mod diffusion_curves;
 mod doorway;
 mod errors;
 mod interpolate;
@@ -30,6 +31,8 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<progress::Progress>()?;
     module.add_class::<solution::Solution>()?;
     module.add_class::<stylize::Stylized>()?;
+    module.add_class::<diffusion_curves::DiffusionCurves>()?;
+    module.add_class::<diffusion_curves::Redrawn>()?;
     module.add_function(wrap_pyfunction!(operators::hessian, module)?)?;
     module.add_function(wrap_pyfunction!(operators::hessian_norm, module)?)?;
     module.add_function(wrap_pyfunction!(operators::energy, module)?)?;
@@ -41,5 +44,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(interpolate::interpolate, module)?)?;
     module.add_function(wrap_pyfunction!(modes::vibration_modes, module)?)?;
     module.add_function(wrap_pyfunction!(stylize::stylize, module)?)?;
+    module.add_function(wrap_pyfunction!(diffusion_curves::diffusion_curves, module)?)?;
+    module.add_function(wrap_pyfunction!(diffusion_curves::redraw, module)?)?;
     Ok(())
 }

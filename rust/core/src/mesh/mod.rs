@@ -2,14 +2,19 @@
 
 mod boundary;
 pub mod connectivity;
+mod cut;
+mod edge_table;
 mod flip;
 pub mod invariants;
+pub(crate) mod partition;
 mod report;
 pub mod triangle;
 pub mod vector;
 
 pub use boundary::boundary_loops;
 pub use connectivity::{Connectivity, EdgeKind};
+pub use cut::CutMesh;
+pub use edge_table::EdgeTable;
 pub use flip::Flip;
 pub use report::{report, MeshReport};
 

@@ -1,6 +1,7 @@
 //! What is unusual about a mesh.
 
 use crate::mesh::connectivity::{next, previous};
+use crate::mesh::partition::Partition;
 use crate::mesh::{boundary_loops, triangle, Connectivity, EdgeKind, Mesh};
 
 /// Counts, and the edges, vertices and faces that are not as on a clean surface. All lists are sorted.
@@ -40,29 +41,6 @@ pub fn report(mesh: &Mesh) -> MeshReport {
         degenerate_faces: degenerate_faces(mesh),
         duplicate_faces: duplicate_faces(connectivity),
         unreferenced_vertices: (0..).zip(&referenced).filter_map(|(v, &named)| (!named).then_some(v)).collect(),
-    }
-}
-
-/// Sets that can be united (Tarjan 1975, with path halving).
-struct Partition(Vec<u32>);
-
-impl Partition {
-    fn new(n: usize) -> Self {
-        Self((0..n as u32).collect())
-    }
-
-    fn root(&mut self, mut x: u32) -> u32 {
-        while self.0[x as usize] != x {
-            let parent = self.0[x as usize];
-            self.0[x as usize] = self.0[parent as usize];
-            x = self.0[x as usize];
-        }
-        x
-    }
-
-    fn unite(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
     }
 }
 

@@ -4,6 +4,7 @@
 //! [`solve`] with any solver by name. Every [`Solution`] carries a relative duality gap that was computed from the point
 //! that is returned.
 
+pub mod bounded;
 pub mod certificate;
 pub mod cholesky;
 mod columns;

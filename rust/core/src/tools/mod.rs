@@ -1,7 +1,8 @@
 //! What a user asks for, one file each: scattered data interpolation, denoising, vibration modes,
-//! stylization.
+//! stylization, diffusion curves.
 
 mod denoise;
+mod diffusion_curves;
 mod energy_options;
 mod interpolate;
 mod modes;
@@ -12,6 +13,7 @@ mod stylize;
 mod unseen;
 
 pub use denoise::{denoise, DenoiseOptions};
+pub use diffusion_curves::{diffusion_curves, redraw, ColoredCurves, DiffusionCurves, DiffusionCurvesOptions, Redrawn};
 pub use energy_options::EnergyOptions;
 pub use interpolate::interpolate;
 pub use modes::{vibration_modes, ModeOptions, Modes};

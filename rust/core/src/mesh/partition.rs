@@ -1,0 +1,28 @@
+//! Sets that can be united.
+
+/// A partition of `0..n` into sets; the root of a set is its least element (Tarjan 1975, with path halving).
+#[derive(Debug, Clone)]
+pub(crate) struct Partition(Vec<u32>);
+
+impl Partition {
+    /// `n` sets of one element each.
+    pub(crate) fn new(n: usize) -> Self {
+        Self((0..n as u32).collect())
+    }
+
+    /// The least element of the set of `x`.
+    pub(crate) fn root(&mut self, mut x: u32) -> u32 {
+        while self.0[x as usize] != x {
+            let parent = self.0[x as usize];
+            self.0[x as usize] = self.0[parent as usize];
+            x = self.0[x as usize];
+        }
+        x
+    }
+
+    /// Makes one set of those of `a` and `b`.
+    pub(crate) fn unite(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.0[a.max(b) as usize] = a.min(b);
+    }
+}

@@ -1,0 +1,181 @@
+//! The Laplacian of a cut mesh with weights that keep every solution within the range of its data, and its linear systems.
+
+use sprs::CsMat;
+
+use crate::intrinsic::delaunay_flips;
+use crate::mesh::{Connectivity, CutMesh};
+use crate::operators::{cotangent_laplacian, mollify, voronoi_mass};
+use crate::progress::Progress;
+use crate::solve::cholesky::{Cholesky, LowerPattern};
+use crate::solve::Columns;
+use crate::Result;
+
+/// The least weight of an edge. Delaunay edges inside have weights from 0 up; only edges with one face opposite an obtuse
+/// angle fall below, and those of flat right-angled cells are 0. A positive floor keeps connected what is connected.
+const LEAST_WEIGHT: f64 = 1e-9;
+
+/// Right sides solved at once.
+const LANES: usize = 4;
+
+/// Laplacian and mass of a cut mesh.
+pub(super) struct Membrane {
+    /// Off the diagonal ≤ 0, rows sum to 0: an M-matrix, whose solutions obey the maximum principle.
+    pub laplacian: CsMat<f64>,
+    /// The Voronoi area of every copy.
+    pub mass: Vec<f64>,
+}
+
+impl Membrane {
+    /// The cotangent Laplacian on the intrinsic Delaunay triangulation of every piece of `cut` (Bobenko and Springborn 2007),
+    /// weights under [`LEAST_WEIGHT`] raised to it.
+    pub fn new(cut: &CutMesh, lengths: &[[f64; 3]]) -> Result<Self> {
+        let n = cut.n_copies();
+        let connectivity = Connectivity::new(cut.faces.clone(), n)?;
+        let mass = voronoi_mass(&connectivity, lengths);
+        let mut lengths = lengths.to_vec();
+        mollify(&connectivity, &mut lengths);
+        let (connectivity, lengths, _) = delaunay_flips(&connectivity, &lengths);
+        let mut laplacian = cotangent_laplacian(&connectivity, &lengths);
+        for v in 0..n {
+            let range = laplacian.indptr().outer_inds_sz(v);
+            let (mut sum, mut diagonal) = (0.0, None);
+            for k in range {
+                if laplacian.indices()[k] == v {
+                    diagonal = Some(k);
+                } else {
+                    let value = laplacian.data()[k].min(-LEAST_WEIGHT);
+                    laplacian.data_mut()[k] = value;
+                    sum += value;
+                }
+            }
+            if let Some(k) = diagonal {
+                laplacian.data_mut()[k] = -sum;
+            }
+        }
+        Ok(Self { laplacian, mass })
+    }
+
+    /// `L` plus a diagonal on the rows for which `free` holds, factored.
+    fn factorise(&self, free: &[u32], index: &[u32], diagonal: impl Fn(usize) -> f64) -> Result<Cholesky> {
+        let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+        for (j, &v) in free.iter().enumerate() {
+            rows.push(j);
+            let place = values.len();
+            values.push(0.0);
+            let neighbours = self.laplacian.outer_view(v as usize);
+            for (u, &value) in neighbours.iter().flat_map(|row| row.iter()) {
+                if u == v as usize {
+                    values[place] += value + diagonal(u);
+                } else if index[u] != FIXED && index[u] as usize > j {
+                    rows.push(index[u] as usize);
+                    values.push(value);
+                }
+            }
+            if values[place] <= 0.0 {
+                // A copy that no edge reaches stays where it is.
+                values[place] = 1.0;
+            }
+            starts.push(rows.len());
+        }
+        let mut cholesky = Cholesky::analyse(LowerPattern { n: free.len(), starts, rows }, None)?;
+        cholesky.factorise(&values)?;
+        Ok(cholesky)
+    }
+
+    /// `argmin uᵀ L u + Σ_i a_i (u_i − t_i)²`, column by column (Rowe et al. 2024, eq. (27)); every piece of the surface needs
+    /// a positive weight `a`.
+    pub fn screened(&self, weights: &[f64], target: &Columns, progress: &Progress) -> Result<Columns> {
+        let all: Vec<u32> = (0..weights.len() as u32).collect();
+        let mut cholesky = self.factorise(&all, &all, |v| weights[v])?;
+        let mut values = target.clone();
+        for c in 0..values.n_columns {
+            values.column_mut(c).iter_mut().zip(weights).for_each(|(x, a)| *x *= a);
+        }
+        solve(&mut cholesky, &mut values, progress)?;
+        Ok(values)
+    }
+}
+
+/// No row in the matrix.
+const FIXED: u32 = u32::MAX;
+
+/// Harmonic functions with given values on some copies (Rowe et al. 2024, eq. (26)).
+pub(super) struct Harmonic<'a> {
+    membrane: &'a Membrane,
+    free: Vec<u32>,
+    cholesky: Option<Cholesky>,
+}
+
+impl<'a> Harmonic<'a> {
+    /// Factors the Laplacian of the copies that are not `fixed`; every piece needs a fixed copy.
+    pub fn new(membrane: &'a Membrane, fixed: &[bool]) -> Result<Self> {
+        let free: Vec<u32> = (0..fixed.len()).filter(|&v| !fixed[v]).map(|v| v as u32).collect();
+        let mut index = vec![FIXED; fixed.len()];
+        (0..).zip(&free).for_each(|(i, &v)| index[v as usize] = i);
+        let cholesky = if free.is_empty() { None } else { Some(membrane.factorise(&free, &index, |_| 0.0)?) };
+        Ok(Self { membrane, free, cholesky })
+    }
+
+    /// Replaces the values of the free copies by the harmonic function through the others.
+    pub fn extend(&mut self, values: &mut Columns, progress: &Progress) -> Result<()> {
+        let Some(cholesky) = &mut self.cholesky else { return Ok(()) };
+        for c in 0..values.n_columns {
+            self.free.iter().for_each(|&v| values.column_mut(c)[v as usize] = 0.0);
+        }
+        let mut right = Columns::zeros(self.free.len(), values.n_columns);
+        for c in 0..values.n_columns {
+            let column = values.column(c);
+            for (x, &v) in right.column_mut(c).iter_mut().zip(&self.free) {
+                *x = -row_times(&self.membrane.laplacian, v as usize, column);
+            }
+        }
+        solve(cholesky, &mut right, progress)?;
+        for c in 0..values.n_columns {
+            for (x, &v) in right.column(c).iter().zip(&self.free) {
+                values.column_mut(c)[v as usize] = *x;
+            }
+        }
+        Ok(())
+    }
+
+    /// The transpose of [`Harmonic::extend`]: what a change of each fixed value does to `Σ_i r_i u_i`, 0 at the free copies.
+    pub fn transposed(&mut self, residual: &mut Columns, progress: &Progress) -> Result<()> {
+        let Some(cholesky) = &mut self.cholesky else { return Ok(()) };
+        let mut inner = Columns::zeros(self.free.len(), residual.n_columns);
+        for c in 0..residual.n_columns {
+            for (x, &v) in inner.column_mut(c).iter_mut().zip(&self.free) {
+                *x = std::mem::take(&mut residual.column_mut(c)[v as usize]);
+            }
+        }
+        solve(cholesky, &mut inner, progress)?;
+        for c in 0..residual.n_columns {
+            for (x, &v) in inner.column(c).iter().zip(&self.free) {
+                for (u, value) in self.membrane.laplacian.outer_view(v as usize).iter().flat_map(|row| row.iter()) {
+                    residual.column_mut(c)[u] -= value * x;
+                }
+            }
+            self.free.iter().for_each(|&v| residual.column_mut(c)[v as usize] = 0.0);
+        }
+        Ok(())
+    }
+}
+
+fn row_times(matrix: &CsMat<f64>, row: usize, x: &[f64]) -> f64 {
+    matrix.outer_view(row).iter().flat_map(|row| row.iter()).map(|(j, value)| value * x[j]).sum()
+}
+
+/// Solves in place for all columns, [`LANES`] at a time.
+fn solve(cholesky: &mut Cholesky, right: &mut Columns, progress: &Progress) -> Result<()> {
+    let n = right.n_rows;
+    for first in (0..right.n_columns).step_by(LANES) {
+        progress.check()?;
+        let lanes = LANES.min(right.n_columns - first);
+        let at = |i: usize, c: usize| if c < lanes { (first + c) * n + i } else { first * n + i };
+        let mut rows: Vec<[f64; LANES]> = (0..n).map(|i| std::array::from_fn(|c| right.data[at(i, c)])).collect();
+        cholesky.solve(&mut rows);
+        for (i, row) in rows.iter().enumerate() {
+            (0..lanes).for_each(|c| right.data[at(i, c)] = row[c]);
+        }
+    }
+    Ok(())
+}
