@@ -17,7 +17,9 @@
 
 mod long_loops;
 mod loops;
+mod patch;
 mod polygon;
+mod refinement;
 mod rims;
 mod triangulation;
 
@@ -82,11 +84,7 @@ pub fn fill_loops(mesh: &Mesh, loops: &[Vec<u32>], options: &FillOptions, progre
     let mut n_vertices = positions.len() as u32;
     let mut patches = Vec::with_capacity(loops.len());
     for rim in loops {
-        progress.check()?;
-        let patch = fill_one(positions, rim, &rims, options, n_vertices, progress);
-        progress.check()?;
-        let vertex = rim.first().copied().unwrap_or(0);
-        let patch = patch.map_err(|reason| MeshError::Unfillable { vertex, n_edges: rim.len(), reason })?;
+        let patch = fill_one(positions, rim, &rims, options, n_vertices, progress)?;
         rims.add(&patch);
         n_vertices += patch.vertices.len() as u32;
         patches.push(patch);
@@ -99,19 +97,29 @@ fn fill_one(
     positions: &[Point],
     rim: &[u32],
     rims: &Rims,
-    _options: &FillOptions,
+    options: &FillOptions,
     first_new: u32,
     progress: &Progress,
-) -> std::result::Result<Patch, Refusal> {
-    let polygon = Polygon::new(positions, rim, rims)?;
+) -> Result<Patch> {
+    let vertex = rim.first().copied().unwrap_or(0);
+    let refused = |reason: Refusal| MeshError::Unfillable { vertex, n_edges: rim.len(), reason };
+    progress.check()?;
+    let polygon = Polygon::new(positions, rim, rims).map_err(refused)?;
     let flat = long_loops::triangulate(&polygon, rims, progress);
+    progress.check()?;
     let n = polygon.len();
     let points: Vec<Point> = polygon.points.iter().chain(&flat.extra).copied().collect();
     let area: f64 = flat.faces.iter().map(|face| norm(area_vector(face.map(|v| points[v as usize])))).sum();
     let length: f64 = (0..n).map(|i| distance(points[i], points[(i + 1) % n])).sum();
     if area <= NO_EXTENT * length * length {
-        return Err(Refusal::NoExtent);
+        return Err(refused(Refusal::NoExtent).into());
     }
-    let number = |local: u32| polygon.vertices.get(local as usize).copied().unwrap_or(first_new + local - n as u32);
-    Ok(Patch { vertices: flat.extra, faces: flat.faces.into_iter().map(|face| face.map(number)).collect() })
+    let (vertices, faces) = if options.refine {
+        patch::refined(&polygon, &flat, rims, options, progress)?
+    } else {
+        (flat.extra, flat.faces)
+    };
+    let number =
+        |local: u32| polygon.vertices.get(local as usize).copied().unwrap_or_else(|| first_new + local - n as u32);
+    Ok(Patch { vertices, faces: faces.into_iter().map(|face| face.map(number)).collect() })
 }

@@ -6,14 +6,13 @@ use super::Patch;
 use crate::error::{MeshError, Refusal};
 use crate::mesh::vector::{area_vector, unit, Point};
 use crate::mesh::Mesh;
-use crate::remesh::editable::key;
 use crate::Result;
 
 /// The faces at the loops and the edges between their vertices.
 pub(super) struct Rims {
     is_rim: Vec<bool>,
-    /// Edges between two vertices of loops.
-    taken: HashSet<[u32; 2]>,
+    /// For every vertex of a loop, those to which an edge joins it.
+    joined: HashMap<u32, Vec<u32>>,
     /// The unit normal of the face at the halfedge, for the halfedges between two vertices of loops.
     normals: HashMap<[u32; 2], Point>,
     /// Faces with three vertices of loops, sorted.
@@ -26,7 +25,7 @@ impl Rims {
         let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
         let mut rims = Self {
             is_rim: vec![false; positions.len()],
-            taken: HashSet::new(),
+            joined: HashMap::new(),
             normals: HashMap::new(),
             faces: HashSet::new(),
         };
@@ -50,7 +49,7 @@ impl Rims {
             let normal = unit(area_vector(face.map(|v| positions[v as usize])));
             for i in (0..3).filter(|&i| on_rim[i] && on_rim[(i + 1) % 3]) {
                 let (tail, head) = (face[i], face[(i + 1) % 3]);
-                rims.taken.insert(key(tail, head));
+                rims.join(tail, head);
                 // A second face in the same direction leaves no side free.
                 if rims.normals.insert([tail, head], normal).is_some() {
                     rims.normals.insert([head, tail], normal);
@@ -64,14 +63,38 @@ impl Rims {
     pub(super) fn add(&mut self, patch: &Patch) {
         for [a, b] in patch.faces.iter().flat_map(|face| [[face[0], face[1]], [face[1], face[2]], [face[2], face[0]]]) {
             if ((a.max(b)) as usize) < self.is_rim.len() {
-                self.taken.insert(key(a, b));
+                self.join(a, b);
             }
         }
     }
 
     /// Whether two vertices of loops are joined by an edge.
     pub(super) fn is_taken(&self, a: u32, b: u32) -> bool {
-        self.taken.contains(&key(a, b))
+        self.joined.get(&a).is_some_and(|others| others.contains(&b))
+    }
+
+    /// The edges that exist among `vertices` and are not on the closed loop that these form, as places in it, ascending.
+    pub(super) fn chords(&self, vertices: &[u32]) -> Vec<[u32; 2]> {
+        let place: HashMap<u32, u32> = vertices.iter().copied().zip(0..).collect();
+        let n = vertices.len() as u32;
+        let is_chord = |&[i, j]: &[u32; 2]| i < j && i + 1 != j && !(i == 0 && j + 1 == n);
+        let from = |v: u32| self.joined.get(&v).into_iter().flatten();
+        let mut chords: Vec<[u32; 2]> = (0..)
+            .zip(vertices)
+            .flat_map(|(i, &v)| from(v).filter_map(|w| place.get(w)).map(move |&j| [i, j]))
+            .filter(is_chord)
+            .collect();
+        chords.sort_unstable();
+        chords
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        for (from, to) in [(a, b), (b, a)] {
+            let others = self.joined.entry(from).or_default();
+            if !others.contains(&to) {
+                others.push(to);
+            }
+        }
     }
 
     /// Whether a face has these vertices, sorted.

@@ -1,8 +1,20 @@
 //! Changing the triangles of a surface but not its shape.
 //!
-//! [`EditableMesh`] is the mesh that the passes work on; [`guard`] says which edits keep the surface unfolded.
+//! [`EditableMesh`] is the mesh under edit, [`guard`] says which edits keep it unfolded; [`remesh`] is isotropic remeshing
+//! [Botsch and Kobbelt 2004], with a file for each of its passes.
 
+pub mod closest;
+mod collapse;
+pub(crate) mod curves;
 pub mod editable;
+mod flips;
 pub mod guard;
+pub(crate) mod isotropic;
+mod relax;
+pub(crate) mod remesher;
+mod repair;
+pub(crate) mod sizing;
+mod split;
 
 pub use editable::{Edge, EditableMesh, Wings};
+pub use isotropic::{remesh, RemeshOptions, Remeshed};

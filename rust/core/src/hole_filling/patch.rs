@@ -1,0 +1,71 @@
+//! From the triangulation of a hole to a patch at the resolution of its rim.
+
+use super::long_loops::Triangulation;
+use super::polygon::Polygon;
+use super::refinement::refine;
+use super::rims::Rims;
+use super::FillOptions;
+use crate::mesh::vector::{distance, norm, Point};
+use crate::remesh::curves::Keep;
+use crate::remesh::isotropic::run;
+use crate::remesh::remesher::{Remesher, Surface};
+use crate::remesh::sizing::Sizing;
+use crate::remesh::EditableMesh;
+use crate::{Progress, Result};
+
+/// Edges grow by at most this for every unit of distance from the rim: faster, and the triangles lose their shape.
+const STEEPEST_GROWTH: f64 = 0.5;
+
+/// The area of an equilateral triangle of edge length 1.
+const EQUILATERAL: f64 = 0.433;
+
+/// Refines and remeshes a triangulation. Returns the new points, and the faces as places in the polygon; places from its
+/// length on are the new points.
+///
+/// Edges are as long as those of the rim, interpolated smoothly where these differ, or `edge_length`. If that would take
+/// more faces than `max_faces` they grow with their distance from the rim: with growth g and a rim of length P some
+/// `P / (0.433 g L)` faces are made, however large the hole.
+pub(super) fn refined(
+    polygon: &Polygon,
+    flat: &Triangulation,
+    rims: &Rims,
+    options: &FillOptions,
+    progress: &Progress,
+) -> Result<(Vec<Point>, Vec<[u32; 3]>)> {
+    let n = polygon.len();
+    let points: Vec<Point> = polygon.points.iter().chain(&flat.extra).copied().collect();
+    let mut mesh = EditableMesh::new(points, flat.faces.clone())?;
+    for [a, b] in rims.chords(&polygon.vertices) {
+        mesh.forbid_edge(a, b);
+    }
+    let surface = Surface::of(&mesh);
+    let rim_edges: Vec<f64> = (0..n).map(|i| distance(polygon.points[i], polygon.points[(i + 1) % n])).collect();
+    let rim_length: f64 = rim_edges.iter().sum();
+    let rim_size = |i: usize| 0.5 * (rim_edges[i] + rim_edges[(i + n - 1) % n]);
+    let typical = options.edge_length.unwrap_or(rim_length / n as f64);
+    let area: f64 = mesh.faces().map(|(f, _)| norm(mesh.area_vector(f))).sum();
+    let most = options.max_faces.max(1) as f64;
+    let growth = if area / (EQUILATERAL * typical * typical) > most {
+        (rim_length / (EQUILATERAL * typical * most)).min(STEEPEST_GROWTH)
+    } else {
+        0.0
+    };
+    let mut sizes: Vec<f64> = (0..n)
+        .map(|i| options.edge_length.map_or(rim_size(i), |length| length.max(rim_size(i))))
+        .chain(flat.extra.iter().map(|_| typical))
+        .collect();
+    let size_between = |sizes: [f64; 3], far: [f64; 3]| match options.edge_length {
+        Some(length) => length + growth * far.iter().copied().fold(f64::INFINITY, f64::min),
+        None => (sizes.iter().sum::<f64>() + growth * far.iter().sum::<f64>()) / 3.0,
+    };
+    refine(&mut mesh, &mut sizes, size_between, progress)?;
+    let fixed: Vec<bool> = (0..mesh.n_vertices()).map(|v| v < n).collect();
+    let keep = Keep { fixed: &fixed, fixed_faces: false, feature_cosine: -2.0 };
+    let mut remesher = Remesher::new(mesh, &surface, &keep, |mesh, curves| match options.edge_length {
+        Some(length) => Sizing::uniform(length, growth, mesh, curves),
+        None => Sizing::graded(sizes.clone(), growth, mesh, curves),
+    });
+    run(&mut remesher, options.remesh_iterations, progress)?;
+    let (points, faces, _) = remesher.mesh.into_parts(|v| (v as usize) < n);
+    Ok((points[n..].to_vec(), faces))
+}

@@ -1,0 +1,86 @@
+//! Refining a coarse patch until its edges are as long as wanted [Liepa 2003, section 4].
+
+use std::f64::consts::{PI, SQRT_2};
+
+use crate::mesh::vector::{centroid, distance, dot, norm, quality};
+use crate::mesh::{edge_lengths, triangle};
+use crate::remesh::guard::{self, SLIVER};
+use crate::remesh::EditableMesh;
+use crate::{Progress, Result};
+
+/// A face is split if its centre is this much farther from each corner than the lengths wanted there: Liepa's density
+/// factor.
+const DENSITY: f64 = SQRT_2;
+
+/// Flips past this many an edge are rounding, not progress.
+const FLIPS_PER_EDGE: usize = 20;
+
+/// Two angles opposite an edge must exceed π by this for a flip, so that four points on a circle do not flip forever.
+const ANGLE_TOLERANCE: f64 = 1e-9;
+
+/// Edges whose faces turn by more than this (60 degrees) are the patch's shape, not its mesh, and are not flipped.
+const FOLD_COSINE: f64 = 0.5;
+
+/// Inserts vertices at the centres of faces that are too large and flips edges to be Delaunay, in turns, until no face is.
+///
+/// `sizes` is the length wanted at every vertex; `size_between` gives that at a new one from those at the corners of its face
+/// and its distances from them.
+pub(super) fn refine(
+    mesh: &mut EditableMesh,
+    sizes: &mut Vec<f64>,
+    size_between: impl Fn([f64; 3], [f64; 3]) -> f64,
+    progress: &Progress,
+) -> Result<()> {
+    flip_to_delaunay(mesh);
+    loop {
+        progress.check()?;
+        let mut split_any = false;
+        for f in 0..mesh.n_faces() as u32 {
+            let Some(face) = mesh.face(f) else { continue };
+            let corners = mesh.corners(face);
+            let centre = centroid(corners);
+            let far = corners.map(|corner| distance(corner, centre));
+            let size = size_between(face.map(|v| sizes[v as usize]), far);
+            let is_far = |i: usize| DENSITY * far[i] > size && DENSITY * far[i] > sizes[face[i] as usize];
+            if (0..3).all(is_far) && mesh.split_face(f, centre).is_some() {
+                sizes.push(size);
+                split_any = true;
+            }
+        }
+        if !split_any {
+            return Ok(());
+        }
+        flip_to_delaunay(mesh);
+    }
+}
+
+/// Flips edges whose opposite angles sum to more than π, unless that folds the surface or makes its faces worse.
+fn flip_to_delaunay(mesh: &mut EditableMesh) {
+    let mut stack = mesh.edges();
+    let mut left = FLIPS_PER_EDGE * stack.len();
+    while let Some([a, b]) = stack.pop() {
+        let Some(wings) = mesh.wings(a, b) else { continue };
+        if left > 0 && excess(mesh, a, b) > ANGLE_TOLERANCE && is_flat(mesh, wings.faces) && guard::may_flip(mesh, a, b)
+        {
+            left -= 1;
+            mesh.flip(a, b);
+            stack.extend([a, b].into_iter().flat_map(|v| wings.tips.map(|tip| [v, tip])));
+        }
+    }
+}
+
+/// By how much the angles opposite the edge exceed π.
+fn excess(mesh: &EditableMesh, a: u32, b: u32) -> f64 {
+    let angle = |tip: u32| {
+        let lengths = edge_lengths(&[[0, 1, 2]], &mesh.corners([tip, a, b]))[0];
+        triangle::angles(lengths)[0]
+    };
+    mesh.wings(a, b).map_or(-1.0, |wings| wings.tips.into_iter().map(angle).sum::<f64>() - PI)
+}
+
+/// Whether the two faces make no fold, or one of them is so thin that its normal says nothing.
+fn is_flat(mesh: &EditableMesh, faces: [u32; 2]) -> bool {
+    let [m, n] = faces.map(|f| mesh.area_vector(f));
+    let thin = |f: u32| mesh.face(f).is_some_and(|face| quality(mesh.corners(face)) < SLIVER);
+    dot(m, n) > FOLD_COSINE * norm(m) * norm(n) || faces.into_iter().any(thin)
+}

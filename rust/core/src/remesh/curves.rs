@@ -1,0 +1,159 @@
+//! What a remeshing must keep: borders, feature edges, corners, fixed vertices.
+
+use std::collections::{HashMap, HashSet};
+
+use crate::mesh::vector::{dot, norm, sub, Point};
+use crate::remesh::closest::ClosestPoint;
+use crate::remesh::editable::key;
+use crate::remesh::{Edge, EditableMesh};
+
+/// A vertex where a border or feature line turns by more than this (45 degrees) is a corner, and stays.
+const CORNER_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// How far a vertex may move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// On the surface.
+    Free,
+    /// On the curve of that number.
+    Curve(u32),
+    /// Not at all.
+    Fixed,
+    /// Not at all, and no edge at it may collapse: it is not a manifold vertex.
+    Pinched,
+}
+
+/// Borders and feature lines, as edges of the mesh under edit and as the segments that they were at first.
+#[derive(Debug)]
+pub(crate) struct Curves {
+    /// The curve of every edge on one.
+    edges: HashMap<[u32; 2], u32>,
+    /// Edges that stay as they are.
+    locked: HashSet<[u32; 2]>,
+    segments: ClosestPoint,
+    curve_of_segment: Vec<u32>,
+}
+
+/// What is fixed and what counts as a feature.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Keep<'a> {
+    /// The vertices that stay.
+    pub(crate) fixed: &'a [bool],
+    /// Whether faces with three such vertices stay too.
+    pub(crate) fixed_faces: bool,
+    /// Edges whose faces' normals have less than this cosine are features.
+    pub(crate) feature_cosine: f64,
+}
+
+impl Curves {
+    /// The curves of `mesh` and the role of every vertex.
+    ///
+    /// Border and feature edges are curves; those between two fixed vertices, non-manifold edges, and the edges of
+    /// faces that stay are locked. A vertex is on a curve where exactly two curve edges meet without a corner; other vertices
+    /// of curve or locked edges are fixed.
+    pub(crate) fn new(mesh: &EditableMesh, keep: &Keep) -> (Self, Vec<Role>) {
+        let (mut lines, mut locked, mut ends) = (Vec::new(), HashSet::new(), vec![Vec::new(); mesh.n_vertices()]);
+        let mut roles: Vec<Role> = keep.fixed.iter().map(|&f| if f { Role::Fixed } else { Role::Free }).collect();
+        let is_fixed = |v: u32| keep.fixed[v as usize];
+        for [a, b] in mesh.edges() {
+            let is_line = match mesh.edge(a, b) {
+                Edge::None => false,
+                Edge::NonManifold => {
+                    locked.insert([a, b]);
+                    [a, b].iter().for_each(|&v| roles[v as usize] = Role::Pinched);
+                    false
+                }
+                Edge::Border(..) => true,
+                Edge::Interior(wings) => {
+                    let [m, n] = wings.faces.map(|f| mesh.area_vector(f));
+                    dot(m, n) < keep.feature_cosine * norm(m) * norm(n)
+                }
+            };
+            if is_line && is_fixed(a) && is_fixed(b) {
+                locked.insert([a, b]);
+            } else if is_line {
+                lines.push([a, b]);
+                ends[a as usize].push(b);
+                ends[b as usize].push(a);
+            }
+        }
+        if keep.fixed_faces {
+            for (_, [a, b, c]) in mesh.faces().filter(|(_, face)| face.iter().all(|&v| is_fixed(v))) {
+                locked.extend([key(a, b), key(b, c), key(c, a)]);
+            }
+        }
+        for v in 0..mesh.n_vertices() as u32 {
+            if !mesh.is_manifold(v) {
+                roles[v as usize] = Role::Pinched;
+            } else if roles[v as usize] == Role::Free && !is_smooth(mesh, v, &ends[v as usize]) {
+                roles[v as usize] = Role::Fixed;
+            }
+        }
+        let edges = number_curves(&lines, &ends, &mut roles);
+        let segments: Vec<[Point; 3]> = lines.iter().map(|&[a, b]| mesh.corners([a, b, b])).collect();
+        let curve_of_segment = lines.iter().map(|line| edges.get(line).copied().unwrap_or(0)).collect();
+        (Self { edges, locked, segments: ClosestPoint::new(segments), curve_of_segment }, roles)
+    }
+
+    /// The curve that the edge is on.
+    pub(crate) fn curve(&self, a: u32, b: u32) -> Option<u32> {
+        self.edges.get(&key(a, b)).copied()
+    }
+
+    /// Whether the edge must stay.
+    pub(crate) fn is_locked(&self, a: u32, b: u32) -> bool {
+        self.locked.contains(&key(a, b))
+    }
+
+    /// The edges that must stay, ascending.
+    pub(crate) fn locked_edges(&self) -> Vec<[u32; 2]> {
+        let mut edges: Vec<_> = self.locked.iter().copied().collect();
+        edges.sort_unstable();
+        edges
+    }
+
+    /// The point of `curve` closest to `p`.
+    pub(crate) fn project(&self, curve: u32, p: Point) -> Point {
+        self.segments.closest(p, None, |s| self.curve_of_segment[s as usize] == curve).map_or(p, |found| found.point)
+    }
+
+    /// Puts edges onto a curve in place of an old one.
+    pub(crate) fn replace(&mut self, old: [u32; 2], new: &[[u32; 2]], curve: u32) {
+        self.edges.remove(&key(old[0], old[1]));
+        self.edges.extend(new.iter().map(|&[a, b]| (key(a, b), curve)));
+    }
+}
+
+/// Whether `v` is on no line, or on one that passes through it without a corner.
+fn is_smooth(mesh: &EditableMesh, v: u32, ends: &[u32]) -> bool {
+    match *ends {
+        [] => true,
+        [a, b] => {
+            let (before, after) = (sub(mesh.position(v), mesh.position(a)), sub(mesh.position(b), mesh.position(v)));
+            dot(before, after) > CORNER_COSINE * norm(before) * norm(after)
+        }
+        _ => false,
+    }
+}
+
+/// Numbers the curves: lines that meet at a vertex that is free to move along them are one. Gives those vertices their role.
+fn number_curves(lines: &[[u32; 2]], ends: &[Vec<u32>], roles: &mut [Role]) -> HashMap<[u32; 2], u32> {
+    let mut number: HashMap<[u32; 2], u32> = HashMap::with_capacity(lines.len());
+    let mut count = 0;
+    for &line in lines {
+        if number.contains_key(&line) {
+            continue;
+        }
+        number.insert(line, count);
+        for [mut at, mut from] in [line, [line[1], line[0]]] {
+            while roles[at as usize] == Role::Free {
+                roles[at as usize] = Role::Curve(count);
+                let Some(&following) = ends[at as usize].iter().find(|&&w| w != from) else { break };
+                number.insert(key(at, following), count);
+                (from, at) = (at, following);
+            }
+        }
+        count += 1;
+    }
+    number
+}

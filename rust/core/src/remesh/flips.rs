@@ -1,0 +1,83 @@
+//! Flipping edges towards regular valences.
+
+use std::f64::consts::FRAC_PI_3;
+
+use crate::mesh::edge_lengths;
+use crate::mesh::triangle;
+use crate::mesh::vector::{dot, norm, quality};
+use crate::remesh::curves::Role;
+use crate::remesh::remesher::Remesher;
+use crate::remesh::{guard, EditableMesh};
+
+/// Edges whose faces turn by more than this (40 degrees) carry shape and stay, unless one of the faces is a sliver.
+const RIDGE_COSINE: f64 = 0.766;
+
+/// By how much the worse of two faces must gain in quality for a flip that leaves the valences as good as they were.
+const WORTH: f64 = 1.1;
+
+/// Flips edges where that brings the valences of the four vertices closer to regular: 6 inside, on a border one more than
+/// the number of 60-degree triangles that fit there (4 on a straight one). Of two equal choices the better triangles.
+pub(crate) fn equalise_valences(remesher: &mut Remesher) {
+    let targets = target_valences(remesher);
+    for [a, b] in remesher.mesh.edges() {
+        if !remesher.is_free(a, b) {
+            continue;
+        }
+        let Some(wings) = remesher.mesh.wings(a, b) else { continue };
+        let [c, d] = wings.tips;
+        let excess = |v: u32| valence(remesher, v) - targets[v as usize];
+        let [a_excess, b_excess, c_excess, d_excess] = [a, b, c, d].map(excess);
+        let squares = |values: [i32; 4]| values.iter().map(|x| x * x).sum::<i32>();
+        let before = squares([a_excess, b_excess, c_excess, d_excess]);
+        let after = squares([a_excess - 1, b_excess - 1, c_excess + 1, d_excess + 1]);
+        let is_better = after < before || after == before && gain(&remesher.mesh, a, b) > WORTH;
+        if is_better && keeps_shape(&remesher.mesh, a, b) && guard::may_flip(&remesher.mesh, a, b) {
+            remesher.mesh.flip(a, b);
+        }
+    }
+}
+
+/// The worse quality of the two faces after a flip over that before; 0 if the edge cannot be flipped.
+pub(crate) fn gain(mesh: &EditableMesh, a: u32, b: u32) -> f64 {
+    let (Some(new), Some(wings)) = (mesh.flipped(a, b), mesh.wings(a, b)) else { return 0.0 };
+    let worst = |faces: [[u32; 3]; 2]| faces.map(|face| quality(mesh.corners(face))).into_iter().fold(1.0, f64::min);
+    let old = wings.faces.map(|f| mesh.face(f).unwrap_or_default());
+    worst(new) / worst(old).max(f64::MIN_POSITIVE)
+}
+
+/// Whether the edge lies flat enough to be flipped, or has a face so thin that its normal says nothing.
+fn keeps_shape(mesh: &EditableMesh, a: u32, b: u32) -> bool {
+    mesh.wings(a, b).is_some_and(|wings| {
+        let [m, n] = wings.faces.map(|f| mesh.area_vector(f));
+        let is_sliver = |f: u32| mesh.face(f).is_some_and(|face| quality(mesh.corners(face)) < guard::SLIVER);
+        dot(m, n) > RIDGE_COSINE * norm(m) * norm(n) || wings.faces.into_iter().any(is_sliver)
+    })
+}
+
+/// Number of edges at `v`.
+fn valence(remesher: &Remesher, v: u32) -> i32 {
+    let faces = remesher.mesh.faces_of(v).len() as i32;
+    let may_be_border = remesher.roles[v as usize] != Role::Free;
+    faces + i32::from(may_be_border && remesher.mesh.is_border(v))
+}
+
+/// The regular valence of every vertex.
+fn target_valences(remesher: &Remesher) -> Vec<i32> {
+    let mesh = &remesher.mesh;
+    let mut targets = vec![6; mesh.n_vertices()];
+    for v in (0..mesh.n_vertices() as u32).filter(|&v| remesher.roles[v as usize] != Role::Free && mesh.is_border(v)) {
+        let angle: f64 = mesh
+            .faces_of(v)
+            .iter()
+            .filter_map(|&f| mesh.face(f))
+            .map(|face| {
+                let corner = face.iter().position(|&w| w == v).unwrap_or(0);
+                triangle::angles(edge_lengths(&[[0, 1, 2]], &mesh.corners(face))[0])[corner]
+            })
+            .sum();
+        #[allow(clippy::cast_possible_truncation)]
+        let fitting = (angle / FRAC_PI_3).round().max(1.0) as i32;
+        targets[v as usize] = fitting + 1;
+    }
+    targets
+}

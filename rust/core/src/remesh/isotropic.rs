@@ -1,0 +1,140 @@
+//! Isotropic remeshing [Botsch and Kobbelt 2004].
+
+use crate::error::{Error, MeshError};
+use crate::mesh::vector::{norm, Point};
+use crate::mesh::Mesh;
+use crate::progress::Report;
+use crate::remesh::collapse::collapse_short_edges;
+use crate::remesh::curves::Keep;
+use crate::remesh::flips::equalise_valences;
+use crate::remesh::relax::relax_and_project;
+use crate::remesh::remesher::{Remesher, Surface};
+use crate::remesh::repair::remove_slivers;
+use crate::remesh::sizing::Sizing;
+use crate::remesh::split::split_long_edges;
+use crate::remesh::EditableMesh;
+use crate::{Progress, Result};
+
+/// No remeshing makes more faces than about this many: a target length that is too small by a factor of a thousand would
+/// otherwise fill the memory.
+const MOST_FACES: f64 = 5e7;
+
+/// How a mesh is remeshed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RemeshOptions {
+    /// The target edge length, > 0; without it, the mean of the mesh's.
+    pub edge_length: Option<f64>,
+    /// Rounds of all passes.
+    pub iterations: usize,
+    /// Vertices that stay, bit by bit, and with them the border and feature edges between two of them and the faces
+    /// with three.
+    pub fixed: Option<Vec<bool>>,
+    /// Edges whose faces turn by more than this, in radians, are kept as lines on which vertices may slide; without it, none.
+    pub feature_angle: Option<f64>,
+}
+
+impl Default for RemeshOptions {
+    fn default() -> Self {
+        Self { edge_length: None, iterations: 10, fixed: None, feature_angle: Some(std::f64::consts::FRAC_PI_4) }
+    }
+}
+
+/// A remeshed surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Remeshed {
+    /// Positions.
+    pub vertices: Vec<Point>,
+    /// Vertex triples.
+    pub faces: Vec<[u32; 3]>,
+    /// For every vertex, which vertex of the input it is if it has not moved: fixed vertices, corners, non-manifold ones.
+    pub origin: Vec<Option<u32>>,
+    /// Rounds done.
+    pub iterations: usize,
+    /// The target edge length.
+    pub edge_length: f64,
+}
+
+/// Remeshes a surface with edges of about the same length and triangles close to equilateral, without moving it.
+///
+/// Each round splits edges longer than 4/3 of the target, collapses those shorter than 4/5, flips edges towards valence 6,
+/// moves vertices tangentially to the centre of their neighbours and projects them back onto the input. Borders and feature
+/// lines keep their course and their corners; non-manifold edges stay. No edit is made that folds the surface or
+/// makes a sliver; slivers that are left are removed at the end where possible. A face that names a vertex twice is dropped,
+/// and so are vertices without faces unless they are fixed.
+///
+/// # Errors
+/// [`MeshError::NoPositions`], [`MeshError::NoFaces`]; [`Error::Argument`] for a target length that is not finite and
+/// positive or asks for more than 50 million faces, for a mask of the wrong length and an angle outside of 0 to π;
+/// [`Error::Cancelled`].
+pub fn remesh(mesh: &Mesh, options: &RemeshOptions, progress: &Progress) -> Result<Remeshed> {
+    let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
+    let fixed = options.fixed.clone().unwrap_or_else(|| vec![false; positions.len()]);
+    if fixed.len() != positions.len() {
+        let problem = format!("expected one entry for each of {} vertices, got {}", positions.len(), fixed.len());
+        return Err(Error::argument("fixed", problem));
+    }
+    let editable = EditableMesh::new(positions.to_vec(), mesh.connectivity().faces().to_vec())?;
+    let area: f64 = editable.faces().map(|(f, _)| norm(editable.area_vector(f))).sum();
+    if area <= 0.0 {
+        return Err(MeshError::NoFaces.into());
+    }
+    let edge_length = options.edge_length.unwrap_or_else(|| mean_edge_length(&editable));
+    check_length(edge_length, area)?;
+    let feature_cosine = match options.feature_angle {
+        None => -2.0,
+        Some(angle) if (0.0..=std::f64::consts::PI).contains(&angle) => angle.cos(),
+        Some(angle) => return Err(Error::argument("feature_angle", format!("got {angle}; pass 0 to 180 degrees"))),
+    };
+    let keep = Keep { fixed: &fixed, fixed_faces: true, feature_cosine };
+    let surface = Surface::of(&editable);
+    let mut remesher =
+        Remesher::new(editable, &surface, &keep, |mesh, curves| Sizing::uniform(edge_length, 0.0, mesh, curves));
+    let iterations = run(&mut remesher, options.iterations, progress)?;
+    let moved = |v: u32| remesher.is_movable(v);
+    let movable: Vec<bool> = (0..remesher.mesh.n_vertices() as u32).map(moved).collect();
+    let (vertices, faces, kept) = remesher.mesh.into_parts(|v| fixed.get(v as usize).copied().unwrap_or(false));
+    let origin = kept.into_iter().map(|v| (!movable[v as usize]).then_some(v)).collect();
+    Ok(Remeshed { vertices, faces, origin, iterations, edge_length })
+}
+
+/// The passes, `iterations` times, then the removal of slivers. Returns the number of rounds done.
+pub(crate) fn run(remesher: &mut Remesher, iterations: usize, progress: &Progress) -> Result<usize> {
+    for iteration in 0..iterations {
+        progress.check()?;
+        if progress.is_finishing() {
+            return Ok(iteration);
+        }
+        let fraction = iteration as f64 / iterations as f64;
+        progress.report(Report { fraction, stage: "remesh".into(), iteration, ..Report::default() });
+        remesher.sizing.update(&remesher.mesh);
+        split_long_edges(remesher);
+        progress.check()?;
+        collapse_short_edges(remesher);
+        progress.check()?;
+        equalise_valences(remesher);
+        relax_and_project(remesher);
+    }
+    if iterations > 0 {
+        remove_slivers(remesher);
+    }
+    progress.check()?;
+    Ok(iterations)
+}
+
+fn mean_edge_length(mesh: &EditableMesh) -> f64 {
+    let edges = mesh.edges();
+    let sum: f64 = edges.iter().map(|&[a, b]| crate::mesh::vector::distance(mesh.position(a), mesh.position(b))).sum();
+    sum / edges.len().max(1) as f64
+}
+
+fn check_length(length: f64, area: f64) -> Result<()> {
+    if !(length > 0.0 && length.is_finite()) {
+        return Err(Error::argument("edge_length", format!("got {length}; pass a number > 0")));
+    }
+    let n_faces = area / (0.25 * 3.0_f64.sqrt() * length * length);
+    if n_faces > MOST_FACES {
+        let problem = format!("{length} would make {n_faces:.1e} faces, more than {MOST_FACES:.0e}; pass a larger one");
+        return Err(Error::argument("edge_length", problem));
+    }
+    Ok(())
+}

@@ -1,0 +1,68 @@
+//! Moving vertices along the surface towards their neighbours' centre, and back onto the surface.
+
+use rayon::prelude::*;
+
+use crate::mesh::vector::{add, between, dot, norm, scale, sub, unit, Point};
+use crate::remesh::curves::Role;
+use crate::remesh::guard;
+use crate::remesh::remesher::Remesher;
+
+/// Where a whole step would fold a face, these parts of it are tried.
+const STEPS: [f64; 3] = [1.0, 0.5, 0.25];
+
+/// Moves every free vertex in its tangent plane to the centre of its neighbours, weighted by the area around them over that
+/// wanted (Botsch and Kobbelt 2004, with their weights for a graded mesh), then to the closest point of the surface; a vertex
+/// on a curve to the middle between its neighbours on it, and to the closest point of the curve.
+pub(crate) fn relax_and_project(remesher: &mut Remesher) {
+    let n = remesher.mesh.n_vertices() as u32;
+    let weights: Vec<f64> = (0..n)
+        .into_par_iter()
+        .map(|v| {
+            let area: f64 = remesher.mesh.faces_of(v).iter().map(|&f| norm(remesher.mesh.area_vector(f))).sum();
+            area / remesher.sizing.at(v).powi(2)
+        })
+        .collect();
+    let targets: Vec<Option<(Point, u32)>> = (0..n).into_par_iter().map(|v| target(remesher, &weights, v)).collect();
+    for (v, target) in (0..n).zip(targets) {
+        let Some((target, near)) = target else { continue };
+        let start = remesher.mesh.position(v);
+        let allowed = STEPS.iter().map(|&step| between(start, target, step));
+        if let Some(position) = allowed.into_iter().find(|&p| guard::may_move(&remesher.mesh, v, p)) {
+            remesher.mesh.set_position(v, position);
+            remesher.near[v as usize] = near;
+        }
+    }
+}
+
+/// Where `v` should go, and the triangle of the surface there.
+fn target(remesher: &Remesher, weights: &[f64], v: u32) -> Option<(Point, u32)> {
+    let mesh = &remesher.mesh;
+    if mesh.faces_of(v).is_empty() {
+        return None;
+    }
+    let (p, near) = (mesh.position(v), remesher.near[v as usize]);
+    match remesher.roles[v as usize] {
+        Role::Fixed | Role::Pinched => None,
+        Role::Curve(curve) => {
+            let ends: Vec<u32> =
+                mesh.neighbours(v).into_iter().filter(|&w| remesher.curves.curve(v, w).is_some()).collect();
+            let &[a, b] = ends.as_slice() else { return None };
+            Some((remesher.curves.project(curve, between(mesh.position(a), mesh.position(b), 0.5)), near))
+        }
+        Role::Free => {
+            let normal = unit(mesh.faces_of(v).iter().fold([0.0; 3], |sum, &f| add(sum, mesh.area_vector(f))));
+            let (mut sum, mut total) = ([0.0; 3], 0.0);
+            for w in mesh.neighbours(v) {
+                let weight = weights[w as usize];
+                sum = add(sum, scale(sub(mesh.position(w), p), weight));
+                total += weight;
+            }
+            if total <= 0.0 {
+                return None;
+            }
+            let step = scale(sum, 1.0 / total);
+            let tangential = sub(step, scale(normal, dot(step, normal)));
+            Some(remesher.surface.project(add(p, tangential), normal, near))
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! How long edges should be where.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use crate::mesh::vector::distance;
+use crate::remesh::curves::Curves;
+use crate::remesh::EditableMesh;
+
+/// Sweeps that spread the sizes of the rim over the patch, in every update: they start from the last ones.
+const SWEEPS: usize = 20;
+
+/// The target edge length at every vertex.
+#[derive(Debug, Clone)]
+pub(crate) struct Sizing {
+    sizes: Vec<f64>,
+    /// The target at the vertices of locked edges, which nothing changes.
+    anchors: Vec<Option<f64>>,
+    /// The target elsewhere; without it, that of the anchors spreads.
+    uniform: Option<f64>,
+    /// By how much targets grow with the distance from the anchors.
+    growth: f64,
+}
+
+impl Sizing {
+    /// The same length everywhere, but where a locked edge is longer: next to it, edges shorter than half of it could only
+    /// make slivers. `growth` is added for every unit of distance from the locked edges.
+    pub(crate) fn uniform(length: f64, growth: f64, mesh: &EditableMesh, curves: &Curves) -> Self {
+        let mut anchors = vec![None; mesh.n_vertices()];
+        for [a, b] in curves.locked_edges() {
+            let locked = distance(mesh.position(a), mesh.position(b));
+            for v in [a, b] {
+                let anchor: &mut Option<f64> = &mut anchors[v as usize];
+                *anchor = Some(anchor.unwrap_or(length).max(locked));
+            }
+        }
+        let sizes = anchors.iter().map(|anchor| anchor.unwrap_or(length)).collect();
+        Self { sizes, anchors, uniform: Some(length), growth }
+    }
+
+    /// The lengths of the locked edges, their mean at each vertex, spread smoothly, and `growth` for every unit of distance
+    /// from them. `sizes` are the first targets; those at locked edges are not used.
+    pub(crate) fn graded(sizes: Vec<f64>, growth: f64, mesh: &EditableMesh, curves: &Curves) -> Self {
+        let mut sums = vec![(0.0, 0.0); mesh.n_vertices()];
+        for [a, b] in curves.locked_edges() {
+            for v in [a, b] {
+                sums[v as usize].0 += distance(mesh.position(a), mesh.position(b));
+                sums[v as usize].1 += 1.0;
+            }
+        }
+        let anchors: Vec<_> = sums.iter().map(|&(sum, count)| (count > 0.0).then(|| sum / count)).collect();
+        let sizes = sizes.into_iter().zip(&anchors).map(|(size, anchor)| anchor.unwrap_or(size)).collect();
+        Self { sizes, anchors, uniform: None, growth }
+    }
+
+    /// The target at the edge.
+    pub(crate) fn target(&self, a: u32, b: u32) -> f64 {
+        0.5 * (self.sizes[a as usize] + self.sizes[b as usize])
+    }
+
+    /// The target at the vertex.
+    pub(crate) fn at(&self, v: u32) -> f64 {
+        self.sizes[v as usize]
+    }
+
+    /// A new vertex between two.
+    pub(crate) fn push_between(&mut self, a: u32, b: u32) {
+        self.sizes.push(self.target(a, b));
+        self.anchors.push(None);
+    }
+
+    /// Spreads the sizes over the mesh as it is now.
+    pub(crate) fn update(&mut self, mesh: &EditableMesh) {
+        let neighbours: Vec<Vec<u32>> = if self.uniform.is_none() || self.growth > 0.0 {
+            (0..mesh.n_vertices() as u32).map(|v| mesh.neighbours(v)).collect()
+        } else {
+            vec![Vec::new(); mesh.n_vertices()]
+        };
+        let far = self.distances(mesh, &neighbours);
+        let mut base: Vec<f64> = match self.uniform {
+            Some(length) => vec![length; far.len()],
+            None => self.sizes.iter().zip(&far).map(|(size, d)| size - self.growth * d).collect(),
+        };
+        for (size, anchor) in base.iter_mut().zip(&self.anchors) {
+            *size = anchor.unwrap_or(*size);
+        }
+        if self.uniform.is_none() {
+            self.spread(&mut base, &neighbours);
+        }
+        self.sizes = base.iter().zip(&far).map(|(size, d)| size + self.growth * d).collect();
+    }
+
+    /// Moves the sizes at vertices that are no anchors towards the mean of their neighbours'.
+    fn spread(&self, sizes: &mut [f64], neighbours: &[Vec<u32>]) {
+        for _ in 0..SWEEPS {
+            for v in (0..sizes.len()).filter(|&v| self.anchors[v].is_none() && !neighbours[v].is_empty()) {
+                sizes[v] = neighbours[v].iter().map(|&w| sizes[w as usize]).sum::<f64>() / neighbours[v].len() as f64;
+            }
+        }
+    }
+
+    /// The distance along edges from the nearest anchor (Dijkstra 1959); 0 everywhere if nothing grows.
+    fn distances(&self, mesh: &EditableMesh, neighbours: &[Vec<u32>]) -> Vec<f64> {
+        let mut far = vec![0.0; neighbours.len()];
+        if self.growth == 0.0 {
+            return far;
+        }
+        let mut heap = BinaryHeap::new();
+        for v in 0..far.len() {
+            if self.anchors[v].is_some() {
+                heap.push(Reverse((Ordered(0.0), v as u32)));
+            } else if !neighbours[v].is_empty() {
+                far[v] = f64::INFINITY;
+            }
+        }
+        while let Some(Reverse((Ordered(d), v))) = heap.pop() {
+            if d > far[v as usize] {
+                continue;
+            }
+            for &w in &neighbours[v as usize] {
+                let through = d + distance(mesh.position(v), mesh.position(w));
+                if through < far[w as usize] {
+                    far[w as usize] = through;
+                    heap.push(Reverse((Ordered(through), w)));
+                }
+            }
+        }
+        far.iter_mut().filter(|d| !d.is_finite()).for_each(|d| *d = 0.0);
+        far
+    }
+}
+
+/// A number in its total order.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Ordered(f64);
+
+impl Eq for Ordered {}
+
+impl PartialOrd for Ordered {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Ordered {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
