@@ -20,10 +20,14 @@ pub struct Report {
     pub gap: Option<f64>,
 }
 
+/// Vertices and faces that a running call has made so far.
+pub type Surface = (Vec<[f64; 3]>, Vec<[u32; 3]>);
+
 #[derive(Debug, Default)]
 struct State {
     report: Report,
     snapshot: Option<Vec<[f64; 3]>>,
+    surface: Option<Surface>,
 }
 
 #[derive(Debug, Default)]
@@ -98,6 +102,17 @@ impl Progress {
     #[must_use]
     pub fn snapshot(&self) -> Option<Vec<[f64; 3]>> {
         self.state().snapshot.clone()
+    }
+
+    /// Publish the faces that the call has made so far, with vertices of their own.
+    pub fn set_surface(&self, vertices: Vec<[f64; 3]>, faces: Vec<[u32; 3]>) {
+        self.state().surface = Some((vertices, faces));
+    }
+
+    /// The faces that the call had made when it last said so.
+    #[must_use]
+    pub fn surface(&self) -> Option<Surface> {
+        self.state().surface.clone()
     }
 
     fn state(&self) -> MutexGuard<'_, State> {

@@ -12,6 +12,7 @@ Source: Rowe, Jacobson and Stein, Sharpening and Sparsifying with Surface Hessia
 
 from ._native import (
     DiffusionCurves,
+    Hole,
     Mesh,
     MeshReport,
     Progress,
@@ -25,6 +26,7 @@ from ._native import (
     denoise,
     diffusion_curves,
     energy,
+    find_holes,
     hessian,
     hessian_norm,
     interpolate,
@@ -40,6 +42,7 @@ __all__ = [
     "ArgumentError",
     "Cancelled",
     "DiffusionCurves",
+    "Hole",
     "Mesh",
     "MeshError",
     "MeshReport",
@@ -56,6 +59,7 @@ __all__ = [
     "denoise",
     "diffusion_curves",
     "energy",
+    "find_holes",
     "hessian",
     "hessian_norm",
     "interpolate",

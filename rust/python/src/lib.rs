@@ -9,6 +9,7 @@ mod denoise;
 mod diffusion_curves;
 mod doorway;
 mod errors;
+mod holes;
 mod interpolate;
 mod matrix;
 mod mesh;
@@ -30,6 +31,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<matrix::SparseMatrix>()?;
     module.add_class::<progress::Progress>()?;
     module.add_class::<solution::Solution>()?;
+    module.add_class::<holes::Hole>()?;
     module.add_class::<stylize::Stylized>()?;
     module.add_class::<diffusion_curves::DiffusionCurves>()?;
     module.add_class::<diffusion_curves::Redrawn>()?;
@@ -40,6 +42,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(operators::cotangent_laplacian, module)?)?;
     module.add_function(wrap_pyfunction!(operators::intrinsic_delaunay, module)?)?;
     module.add_function(wrap_pyfunction!(operators::boundary_loops, module)?)?;
+    module.add_function(wrap_pyfunction!(holes::find_holes, module)?)?;
     module.add_function(wrap_pyfunction!(denoise::denoise, module)?)?;
     module.add_function(wrap_pyfunction!(interpolate::interpolate, module)?)?;
     module.add_function(wrap_pyfunction!(modes::vibration_modes, module)?)?;

@@ -4,7 +4,7 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use ridgeform_core as core;
 
-use crate::arrays::float_rows;
+use crate::arrays::{float_rows, index_rows};
 
 /// A handle to pass as `progress=` and to use from another thread while the call runs; make a fresh one for each call.
 #[pyclass(frozen, module = "ridgeform")]
@@ -64,6 +64,12 @@ impl Progress {
     /// The vertices (n,3) float64 after the last finished flow step, a fresh array; None before the first.
     fn snapshot<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray2<f64>>> {
         self.inner.snapshot().map(|vertices| float_rows(py, &vertices))
+    }
+
+    /// The faces that a call which makes some (`fill_holes`) has made so far: their vertices (k,3) float64 and faces (j,3)
+    /// int32 among these, fresh arrays; None before the first.
+    fn snapshot_surface<'py>(&self, py: Python<'py>) -> Option<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i32>>)> {
+        self.inner.surface().map(|(vertices, faces)| (float_rows(py, &vertices), index_rows(py, &faces)))
     }
 
     fn __repr__(&self) -> String {

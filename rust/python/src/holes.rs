@@ -1,0 +1,44 @@
+//! `find_holes`: which boundary loops are holes.
+
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use ridgeform_core::hole_filling;
+
+use crate::arrays::index_array;
+use crate::doorway;
+use crate::mesh::Mesh;
+
+/// A boundary loop, and what can be said of it as a hole.
+#[pyclass(frozen, get_all, module = "ridgeform")]
+pub struct Hole {
+    /// Its vertices, (k,) int32, in the direction of the faces' halfedges.
+    vertices: Py<PyArray1<i32>>,
+    /// Whether it is the outer border of an open sheet rather than a hole in it.
+    is_outer_border: bool,
+    /// Why it cannot be filled, a clause in words; None if nothing is known against it.
+    refusal: Option<String>,
+}
+
+#[pymethods]
+impl Hole {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let kind = if self.is_outer_border { "outer border" } else { "hole" };
+        let refused = self.refusal.as_ref().map_or(String::new(), |reason| format!(", not fillable: {reason}"));
+        Ok(format!("<ridgeform.Hole: {kind} of {} edges{refused}>", self.vertices.bind(py).len()?))
+    }
+}
+
+/// All boundary loops, a list of Hole in the order of `boundary_loops`: which are holes, and which of them cannot be filled.
+///
+/// Every open sheet keeps one loop as its outer border: a component whose area vectors add up to more than 0.57 of its
+/// area. A tube has none: its two ends are holes. MeshError for a mesh without positions.
+#[pyfunction]
+pub fn find_holes(py: Python<'_>, mesh: &Mesh) -> PyResult<Vec<Hole>> {
+    let holes = doorway::call_briefly(py, || Ok(hole_filling::find_holes(mesh.inner())?))?;
+    let convert = |hole: hole_filling::Hole| Hole {
+        vertices: index_array(py, &hole.vertices).unbind(),
+        is_outer_border: hole.is_outer_border,
+        refusal: hole.refusal.map(|reason| reason.to_string()),
+    };
+    Ok(holes.into_iter().map(convert).collect())
+}
