@@ -1,6 +1,7 @@
 """Ridgeform: the L1 surface Hessian as a modeler's tool.
 
-Make a `Mesh` from arrays, then call a function per problem: `stylize` turns it piecewise flat, `denoise` and
+Make a `Mesh` from arrays, then call a function per problem: `stylize` turns it piecewise flat,
+`segment` finds the parts that it is made of, `denoise` and
 `interpolate` find functions on it with sparse second derivatives, `vibration_modes` those of least energy,
 `diffusion_curves` the few curves that redraw a painted surface, and
 `hessian` and its companions are the operators behind them. Arrays of any numeric dtype and memory order go
@@ -17,6 +18,7 @@ from ._native import (
     MeshReport,
     Progress,
     Redrawn,
+    Segmentation,
     Solution,
     SparseMatrix,
     Stylized,
@@ -32,6 +34,7 @@ from ._native import (
     interpolate,
     intrinsic_delaunay,
     redraw,
+    segment,
     stylize,
     vibration_modes,
     voronoi_mass,
@@ -49,6 +52,7 @@ __all__ = [
     "Progress",
     "Redrawn",
     "RidgeformError",
+    "Segmentation",
     "Solution",
     "SolveError",
     "SparseMatrix",
@@ -65,6 +69,7 @@ __all__ = [
     "interpolate",
     "intrinsic_delaunay",
     "redraw",
+    "segment",
     "stylize",
     "vibration_modes",
     "voronoi_mass",

@@ -112,6 +112,32 @@ class Solution:
     def solver(self) -> str: ...
 
 @final
+class Segmentation:
+    @property
+    def labels(self) -> Indices: ...
+    @property
+    def n_segments(self) -> int: ...
+    @property
+    def indicator(self) -> Floats: ...
+    @property
+    def values(self) -> Floats: ...
+    @property
+    def boundary_edges(self) -> Indices: ...
+    @property
+    def noise(self) -> float: ...
+    @property
+    def fidelity(self) -> float: ...
+    @property
+    def alternations(self) -> int: ...
+    @property
+    def status(self) -> Literal["solved", "inaccurate", "stopped"]: ...
+    @property
+    def range(self) -> tuple[int, int]: ...
+    @property
+    def strengths(self) -> Floats: ...
+    def labels_at(self, n_segments: int) -> Indices: ...
+
+@final
 class Stylized:
     @property
     def vertices(self) -> Floats: ...
@@ -246,6 +272,30 @@ def vibration_modes(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Floats: ...
+def segment(
+    mesh: Mesh,
+    *,
+    values: ArrayLike | None = None,
+    length_weight: float = 0.5,
+    fidelity: float | None = None,
+    epsilon_start: float = 0.1,
+    epsilon_end: float = 0.001,
+    inner_tolerance: float = 1e-5,
+    cut_threshold: float = 0.6,
+    min_faces: int = 20,
+    scale: Literal["extent", "bounding_box", "area", "max_edge"] = "extent",
+    method: Literal["fitted", "paper"] = "fitted",
+    n_segments: int | None = None,
+    face_weights: ArrayLike | None = None,
+    edge_weights: ArrayLike | None = None,
+    faces: ArrayLike | None = None,
+    solver: Solver = "auto",
+    tolerance: float | None = None,
+    max_iterations: int | None = None,
+    memory_limit: int | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Segmentation: ...
 def stylize(
     mesh: Mesh,
     *,

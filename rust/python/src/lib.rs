@@ -17,6 +17,7 @@ mod modes;
 mod operators;
 mod options;
 mod progress;
+mod segment;
 mod solution;
 mod stylize;
 mod watch;
@@ -30,6 +31,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<mesh::MeshReport>()?;
     module.add_class::<matrix::SparseMatrix>()?;
     module.add_class::<progress::Progress>()?;
+    module.add_class::<segment::Segmentation>()?;
     module.add_class::<solution::Solution>()?;
     module.add_class::<holes::Hole>()?;
     module.add_class::<stylize::Stylized>()?;
@@ -46,6 +48,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(denoise::denoise, module)?)?;
     module.add_function(wrap_pyfunction!(interpolate::interpolate, module)?)?;
     module.add_function(wrap_pyfunction!(modes::vibration_modes, module)?)?;
+    module.add_function(wrap_pyfunction!(segment::segment, module)?)?;
     module.add_function(wrap_pyfunction!(stylize::stylize, module)?)?;
     module.add_function(wrap_pyfunction!(diffusion_curves::diffusion_curves, module)?)?;
     module.add_function(wrap_pyfunction!(diffusion_curves::redraw, module)?)?;

@@ -1,5 +1,5 @@
 //! What a user asks for, one file each: scattered data interpolation, denoising, vibration modes,
-//! stylization, diffusion curves.
+//! stylization, segmentation, diffusion curves.
 
 mod denoise;
 mod diffusion_curves;
@@ -8,6 +8,8 @@ mod interpolate;
 mod modes;
 mod options;
 mod scalar;
+mod scale;
+mod segment;
 mod sharpness;
 mod stylize;
 mod unseen;
@@ -19,7 +21,9 @@ pub use interpolate::interpolate;
 pub use modes::{vibration_modes, ModeOptions, Modes};
 pub use options::SolveOptions;
 pub use scalar::ScalarOptions;
+pub use scale::Scale;
+pub use segment::{segment, Hierarchy, SegmentMethod, SegmentOptions, Segmentation};
 pub use sharpness::sharpened_weights;
-pub use stylize::{stylize, FlowStatus, Scale, StylizeOptions, Stylized};
+pub use stylize::{stylize, FlowStatus, StylizeOptions, Stylized};
 
 pub use crate::solve::Solution;

@@ -1,6 +1,7 @@
 //! The flow towards piecewise flat shapes (Rowe et al. 2024, eq. (24)), with sharpness.
 
 use super::options::{check_range, check_weights};
+use super::scale::{extent, Scale};
 use super::sharpness::{block_norms, sharpened_weights};
 use super::SolveOptions;
 use crate::block_rows::BlockRows;
@@ -17,19 +18,6 @@ const STILL: f64 = 1e-7;
 
 /// A shape has collapsed when its size has fallen below this part of what it was, or its area below the tenth of that.
 const COLLAPSED: f64 = 1e-2;
-
-/// The unit of length in which the fidelity weight is meant: the energy grows with length, the fidelity term with its
-/// fourth power.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Scale {
-    /// The longest edge before each step (Rowe et al. 2024, section 7.3).
-    #[default]
-    MaxEdge,
-    /// The longest side of the axis-aligned bounding box before each step.
-    BoundingBox,
-    /// The square root of the surface area before each step: like the bounding box, but independent of rotations.
-    Area,
-}
 
 /// How to stylize.
 #[derive(Debug, Clone)]
@@ -259,7 +247,7 @@ impl<'a> Flow<'a> {
     /// Operator, mass and unit of the shape as it is now.
     fn prepare(&mut self) -> Result<Step> {
         let mut lengths = edge_lengths(self.connectivity.faces(), &self.points);
-        let unit = self.unit(&lengths);
+        let unit = self.options.scale.unit(self.connectivity, &self.points, &lengths);
         let flipped;
         let mut base = self.base.clone();
         let (connectivity, pattern) = if self.options.delaunay {
@@ -278,14 +266,6 @@ impl<'a> Flow<'a> {
         let mass = voronoi_mass(connectivity, &lengths);
         let norms = block_norms(&operator, &Columns::from_points(&self.points), self.options.coupling);
         Ok(Step { operator, areas, base, mass, norms, unit })
-    }
-
-    fn unit(&self, lengths: &[[f64; 3]]) -> f64 {
-        match self.options.scale {
-            Scale::MaxEdge => lengths.iter().flatten().fold(0.0, |a, &l| a.max(l)),
-            Scale::BoundingBox => longest_side(self.connectivity, &self.points),
-            Scale::Area => lengths.iter().map(|&l| triangle::area(l)).sum::<f64>().sqrt(),
-        }
     }
 
     fn solve(&mut self, step: &Step, settings: &Settings, progress: &Progress) -> Result<Solution> {
@@ -328,37 +308,4 @@ impl Step {
 fn root_mean_square(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     let sum: f64 = a.iter().zip(b).flat_map(|(p, q)| p.iter().zip(q)).map(|(x, y)| (x - y) * (x - y)).sum();
     (sum / a.len().max(1) as f64).sqrt()
-}
-
-/// Root mean square distance of the face barycentres, weighted by area, from their centre (a size that rotations do not
-/// change), and the area.
-fn extent(connectivity: &Connectivity, points: &[[f64; 3]]) -> (f64, f64) {
-    let (mut total, mut first, mut second) = (0.0, [0.0; 3], 0.0);
-    for (face, l) in connectivity.faces().iter().zip(edge_lengths(connectivity.faces(), points)) {
-        let area = triangle::area(l);
-        let centre: [f64; 3] = std::array::from_fn(|c| face.iter().map(|&v| points[v as usize][c]).sum::<f64>() / 3.0);
-        total += area;
-        for (f, c) in first.iter_mut().zip(&centre) {
-            *f += area * c;
-        }
-        second += area * centre.iter().map(|c| c * c).sum::<f64>();
-    }
-    if total <= 0.0 {
-        return (0.0, 0.0);
-    }
-    let mean = first.map(|f| f / total);
-    ((second / total - mean.iter().map(|m| m * m).sum::<f64>()).max(0.0).sqrt(), total)
-}
-
-/// The longest side of the bounding box of the vertices that faces use.
-fn longest_side(connectivity: &Connectivity, points: &[[f64; 3]]) -> f64 {
-    let mut low = [f64::INFINITY; 3];
-    let mut high = [f64::NEG_INFINITY; 3];
-    for &v in connectivity.faces().iter().flatten() {
-        for (c, x) in points[v as usize].iter().enumerate() {
-            low[c] = low[c].min(*x);
-            high[c] = high[c].max(*x);
-        }
-    }
-    (0..3).fold(0.0, |side: f64, c| side.max(high[c] - low[c]))
 }

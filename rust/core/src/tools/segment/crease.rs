@@ -1,0 +1,327 @@
+//! How sharp the borders between segments are: the bend across each border edge, measured on both sides of it and corrected for
+//! the curvature inside the segments.
+
+use rayon::prelude::*;
+
+use super::surface::{Surface, NONE};
+use crate::mesh::triangle;
+use crate::solve::{Columns, MAX_JOINT_COLUMNS};
+
+/// How far, in mean edges, the gradient is averaged on either side; each tenth of an edge of noise makes it one longer.
+const REACH: f64 = 2.5;
+const REACH_OF_NOISE: f64 = 10.0;
+
+/// At most this reach, in mean edges.
+const MOST_REACH: f64 = 5.0;
+
+/// A step in the values counts as two bends, up and down over one edge; a step of positions would be a crack, which a mesh has not.
+const BENDS_OF_A_STEP: f64 = 2.0;
+
+/// A function on the surface, face by face.
+pub(super) struct Signal {
+    n_columns: usize,
+    /// Gradients of all columns in the frame of [`triangle::layout`].
+    gradients: Vec<[f64; 2]>,
+    /// Means over the faces.
+    means: Vec<f64>,
+    layouts: Vec<[[f64; 2]; 3]>,
+    /// How far, in the unit of the segmentation, gradients are averaged.
+    reach: f64,
+    /// What a step in the values counts per height.
+    step: f64,
+    /// The standard deviation of the noise of a value that one face gives.
+    noise: f64,
+}
+
+/// A border edge between two segments, given by a halfedge, and the bend across it.
+struct Bend {
+    labels: [u32; 2],
+    length: f64,
+    cost: f64,
+    bend: f64,
+}
+
+/// The common border of two segments, `labels[0] < labels[1]`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Border {
+    pub labels: [u32; 2],
+    pub length: f64,
+    /// The mean bend (the jump of the gradient, radians for positions) over the cost of a border there.
+    pub strength: f64,
+}
+
+impl Signal {
+    /// `values` on the surface, with `noise` of that standard deviation; `continuous` for positions, which have no steps.
+    pub fn new(surface: &Surface<'_>, values: &Columns, noise: f64, continuous: bool) -> Self {
+        let k = values.n_columns;
+        let m = surface.n_faces();
+        let layouts: Vec<_> = surface.lengths.iter().map(|&l| triangle::layout(l)).collect();
+        let (mut gradients, mut means) = (Vec::with_capacity(k * m), Vec::with_capacity(k * m));
+        for (face, p) in surface.connectivity.faces().iter().zip(&layouts) {
+            for c in 0..k {
+                let [a, b, d] = face.map(|v| values.column(c)[v as usize]);
+                let (width, height) = (p[1][0], p[2][1]);
+                let x = if width > 0.0 { (b - a) / width } else { 0.0 };
+                let y = if height > 0.0 { (d - a - x * p[2][0]) / height } else { 0.0 };
+                gradients.push([x, y]);
+                means.push((a + b + d) / 3.0);
+            }
+        }
+        // For positions the noise is a length; for other signals the slope that it makes takes the place of one.
+        let reach = (REACH + REACH_OF_NOISE * noise / surface.mean_edge).min(MOST_REACH) * surface.mean_edge;
+        let step = if continuous { 0.0 } else { BENDS_OF_A_STEP / surface.mean_edge };
+        Self { n_columns: k, gradients, means, layouts, reach, step, noise }
+    }
+
+    /// The borders between the segments, sorted by their labels.
+    pub fn borders(&self, surface: &Surface<'_>, labels: &[u32]) -> Vec<Border> {
+        let edges: Vec<usize> = surface
+            .connectivity
+            .edges()
+            .filter(|&h| {
+                let g = surface.neighbours[h / 3][h % 3];
+                g != NONE && labels[g as usize] != labels[h / 3]
+            })
+            .collect();
+        let n = surface.n_faces();
+        let at_border: Vec<bool> = (0..n).into_par_iter().map(|f| surface.is_at_border(labels, f)).collect();
+        let walk = Walk { signal: self, surface, labels, at_border: &at_border };
+        let mut bends: Vec<Bend> = edges
+            .par_iter()
+            .with_min_len(64)
+            .map_init(|| Marks { stamps: vec![0; n], stamp: 0, queue: Vec::new() }, |marks, &h| walk.bend(h, marks))
+            .collect();
+        bends.sort_by_key(|bend| bend.labels);
+        bends
+            .chunk_by(|a, b| a.labels == b.labels)
+            .map(|same| {
+                let length: f64 = same.iter().map(|b| b.length).sum();
+                let sum: f64 = same.iter().map(|b| b.length * b.bend / b.cost).sum();
+                Border { labels: same[0].labels, length, strength: sum / length.max(f64::MIN_POSITIVE) }
+            })
+            .collect()
+    }
+}
+
+/// A rigid motion of the plane: rotation as a complex number, then a shift.
+#[derive(Clone, Copy)]
+struct Motion {
+    rotation: [f64; 2],
+    shift: [f64; 2],
+}
+
+fn times(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
+}
+
+impl Motion {
+    fn apply(self, p: [f64; 2]) -> [f64; 2] {
+        let q = times(self.rotation, p);
+        [q[0] + self.shift[0], q[1] + self.shift[1]]
+    }
+}
+
+/// Which faces a walk has seen: those with its stamp.
+struct Marks {
+    stamps: Vec<u32>,
+    stamp: u32,
+    queue: Vec<(usize, Motion)>,
+}
+
+/// Averages over the faces of one side near a border edge, in the frame of the edge: x across it, y along it.
+struct Side {
+    area: f64,
+    center: [f64; 2],
+    gradient: [[f64; 2]; MAX_JOINT_COLUMNS],
+    mean: [f64; MAX_JOINT_COLUMNS],
+    /// Sums for the regression of the gradient on the distance from the edge.
+    far_area: f64,
+    far_x: f64,
+    far_xx: f64,
+    far_gradient: [[f64; 2]; MAX_JOINT_COLUMNS],
+    far_x_gradient: [[f64; 2]; MAX_JOINT_COLUMNS],
+}
+
+impl Side {
+    const EMPTY: Self = Self {
+        area: 0.0,
+        center: [0.0; 2],
+        gradient: [[0.0; 2]; MAX_JOINT_COLUMNS],
+        mean: [0.0; MAX_JOINT_COLUMNS],
+        far_area: 0.0,
+        far_x: 0.0,
+        far_xx: 0.0,
+        far_gradient: [[0.0; 2]; MAX_JOINT_COLUMNS],
+        far_x_gradient: [[0.0; 2]; MAX_JOINT_COLUMNS],
+    };
+}
+
+/// What a walk away from a border edge needs to know.
+struct Walk<'a> {
+    signal: &'a Signal,
+    surface: &'a Surface<'a>,
+    labels: &'a [u32],
+    at_border: &'a [bool],
+}
+
+impl Walk<'_> {
+    /// The bend across the edge of halfedge `h`.
+    fn bend(&self, h: usize, marks: &mut Marks) -> Bend {
+        let (f, surface) = (h / 3, self.surface);
+        let g = surface.neighbours[f][h % 3] as usize;
+        let p = self.signal.layouts[f];
+        let (tail, head) = (p[(h + 1) % 3], p[(h + 2) % 3]);
+        let length = surface.lengths[f][h % 3].max(f64::MIN_POSITIVE);
+        // The frame of the edge: its middle at the origin, y along it, x out of the face f, to the right of the halfedge.
+        let along = [(head[0] - tail[0]) / length, (head[1] - tail[1]) / length];
+        let rotation = times([0.0, 1.0], [along[0], -along[1]]);
+        let middle = times(rotation, [0.5 * (tail[0] + head[0]), 0.5 * (tail[1] + head[1])]);
+        let home = Motion { rotation, shift: [-middle[0], -middle[1]] };
+        let inner = self.side(f, home, marks);
+        let outer = self.side(g, self.across(h, home), marks);
+        let (a, b) = (self.labels[f], self.labels[g]);
+        let cost = surface.costs[f][h % 3].max(1e-3);
+        Bend { labels: [a.min(b), a.max(b)], length, cost, bend: self.jump(&inner, &outer) }
+    }
+
+    /// The motion of the face across halfedge `h`, unfolded into the plane of the face that has `motion`.
+    fn across(&self, h: usize, motion: Motion) -> Motion {
+        let (f, i) = (h / 3, h % 3);
+        let Some(twin) = self.surface.connectivity.twin(h) else { return motion };
+        let (g, j) = (twin / 3, twin % 3);
+        let (p, q) = (&self.signal.layouts[f], &self.signal.layouts[g]);
+        let (tail, head) = (p[(i + 1) % 3], p[(i + 2) % 3]);
+        let (twin_tail, twin_head) = (q[(j + 1) % 3], q[(j + 2) % 3]);
+        let length = self.surface.lengths[f][i].max(f64::MIN_POSITIVE).powi(2);
+        let along = [(tail[0] - head[0]) / length, (tail[1] - head[1]) / length];
+        let turn = times(along, [twin_head[0] - twin_tail[0], twin_tail[1] - twin_head[1]]);
+        let rotation = times(motion.rotation, turn);
+        let (to, from) = (motion.apply(head), times(rotation, twin_tail));
+        Motion { rotation, shift: [to[0] - from[0], to[1] - from[1]] }
+    }
+
+    /// Averages over the faces with the label of `start` near the origin. The faces at the border itself may lie on the wrong side
+    /// of it: they count only where there is nothing else.
+    fn side(&self, start: usize, motion: Motion, marks: &mut Marks) -> Side {
+        let mut side = Side::EMPTY;
+        let reach = self.signal.reach;
+        let label = self.labels[start];
+        let mut skip_border = true;
+        loop {
+            marks.stamp += 1;
+            marks.stamps[start] = marks.stamp;
+            marks.queue.clear();
+            marks.queue.push((start, motion));
+            let mut next = 0;
+            while next < marks.queue.len() {
+                let (f, motion) = marks.queue[next];
+                next += 1;
+                let q = self.signal.layouts[f];
+                let third = [0, 1].map(|c| (q[0][c] + q[1][c] + q[2][c]) / 3.0);
+                let center = motion.apply(third);
+                let distance = center[0].hypot(center[1]);
+                if f != start && distance > 2.0 * reach {
+                    continue;
+                }
+                if !(skip_border && self.at_border[f]) {
+                    self.add(&mut side, f, motion, center, distance <= reach);
+                }
+                for (h, g) in self.surface.around(f) {
+                    if self.labels[g] == label && marks.stamps[g] != marks.stamp {
+                        marks.stamps[g] = marks.stamp;
+                        let there = self.across(h, motion);
+                        marks.queue.push((g, there));
+                    }
+                }
+            }
+            if side.area > 0.0 || !skip_border {
+                return side;
+            }
+            skip_border = false;
+            side = Side::EMPTY;
+        }
+    }
+
+    /// How large a step noise may feign: the means of the sides are those of as many values as they have faces.
+    fn doubt(&self, inner: &Side, outer: &Side) -> f64 {
+        let face = self.surface.mean_edge * self.surface.mean_edge;
+        let columns = (self.signal.n_columns as f64).sqrt();
+        DOUBT * columns * self.signal.noise * (face / inner.area + face / outer.area).sqrt()
+    }
+
+    fn add(&self, side: &mut Side, f: usize, motion: Motion, center: [f64; 2], near: bool) {
+        let (area, k) = (self.surface.areas[f], self.signal.n_columns);
+        side.far_area += area;
+        side.far_x += area * center[0];
+        side.far_xx += area * center[0] * center[0];
+        if near {
+            side.area += area;
+            side.center[0] += area * center[0];
+            side.center[1] += area * center[1];
+        }
+        for c in 0..k {
+            let gradient = times(motion.rotation, self.signal.gradients[k * f + c]);
+            for d in 0..2 {
+                side.far_gradient[c][d] += area * gradient[d];
+                side.far_x_gradient[c][d] += area * center[0] * gradient[d];
+                if near {
+                    side.gradient[c][d] += area * gradient[d];
+                }
+            }
+            if near {
+                side.mean[c] += area * self.signal.means[k * f + c];
+            }
+        }
+    }
+
+    /// The jump of the gradient from one side to the other, less what the curvature of the sides explains, and the step of the
+    /// values where they may have one.
+    fn jump(&self, inner: &Side, outer: &Side) -> f64 {
+        if inner.area <= 0.0 || outer.area <= 0.0 {
+            return 0.0;
+        }
+        let (mut jump, mut explained, mut step) = (0.0, 0.0, 0.0);
+        for c in 0..self.signal.n_columns {
+            let (a, b) = (inner.at_border(c), outer.at_border(c));
+            for d in 0..2 {
+                let difference = outer.gradient[c][d] / outer.area - inner.gradient[c][d] / inner.area;
+                jump += difference * difference;
+                explained += difference * (b.bent[d] - a.bent[d]);
+            }
+            step += (b.value - a.value) * (b.value - a.value);
+        }
+        let length = jump.sqrt();
+        let explained = if length > 0.0 { (explained / length).clamp(0.0, length) } else { 0.0 };
+        length - explained + self.signal.step * (step.sqrt() - self.doubt(inner, outer)).max(0.0)
+    }
+}
+
+/// Standard deviations of a step that noise alone may make.
+const DOUBT: f64 = 3.0;
+
+/// Column `c` of a side, carried to the border edge.
+struct AtBorder {
+    /// By how much the gradient changes from the border to the middle of the side, as its curvature has it.
+    bent: [f64; 2],
+    /// The value at the middle of the edge.
+    value: f64,
+}
+
+impl Side {
+    fn at_border(&self, c: usize) -> AtBorder {
+        let center = [self.center[0] / self.area, self.center[1] / self.area];
+        let gradient = [self.gradient[c][0] / self.area, self.gradient[c][1] / self.area];
+        let mean_x = self.far_x / self.far_area;
+        let variance = self.far_xx / self.far_area - mean_x * mean_x;
+        let bent = [0, 1].map(|d| {
+            let covariance = self.far_x_gradient[c][d] / self.far_area - mean_x * self.far_gradient[c][d] / self.far_area;
+            // A side of one row of faces says nothing about curvature.
+            if variance > 1e-3 * mean_x * mean_x {
+                covariance / variance * center[0]
+            } else {
+                0.0
+            }
+        });
+        AtBorder { bent, value: self.mean[c] / self.area - gradient[0] * center[0] - gradient[1] * center[1] }
+    }
+}

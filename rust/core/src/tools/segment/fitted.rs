@@ -1,0 +1,186 @@
+//! From the indicator to segments and their hierarchy.
+
+use super::crease::Signal;
+use super::hierarchy::Hierarchy;
+use super::merge::{rename, Merge, Merging};
+use super::options::{SegmentMethod, SegmentOptions};
+use super::refit::Refit;
+use super::surface::{contiguous, Surface};
+use super::threshold::cut_and_merge;
+use super::watershed::watershed;
+use crate::progress::{Progress, Report};
+use crate::solve::Columns;
+use crate::Result;
+
+/// Two basins of the indicator stay apart if the pass between them lies deeper than this. Low: borders that are none are found by
+/// their bend later.
+const PERSISTENCE: f64 = 0.1;
+
+/// A border stands if it bends by more than this share of the length weight.
+const BEND: f64 = 0.6;
+
+/// Refits, each followed by merges across borders that have become weak.
+const REFITS: usize = 3;
+
+/// All that segments are made from.
+pub(super) struct Fitted<'a> {
+    pub surface: &'a Surface<'a>,
+    /// The signal as it came, in the unit of the segmentation.
+    pub start: &'a Columns,
+    /// Whether the signal is the positions.
+    pub is_shape: bool,
+    pub noise: f64,
+    pub indicator: &'a [f64],
+    pub options: &'a SegmentOptions,
+    pub progress: &'a Progress,
+}
+
+/// Nested segmentations, and which of them is the answer.
+pub(super) struct Finished {
+    pub hierarchy: Hierarchy,
+    pub n_segments: usize,
+}
+
+impl Fitted<'_> {
+    /// The segments.
+    ///
+    /// # Errors
+    /// [`crate::Error::Cancelled`].
+    pub fn segments(&self) -> Result<Finished> {
+        self.report(0.9, "segments");
+        let signal = Signal::new(self.surface, self.start, self.noise, self.is_shape);
+        let merging = Merging { surface: self.surface, signal: &signal, groups: None, progress: self.progress };
+        let leaves = match self.options.method {
+            SegmentMethod::Paper => {
+                let (threshold, least) = (self.options.cut_threshold, self.options.min_faces);
+                cut_and_merge(self.surface, self.indicator, threshold, least).0
+            }
+            SegmentMethod::Fitted => watershed(self.surface, self.indicator, PERSISTENCE).0,
+        };
+        let mut labels = leaves.clone();
+        if self.options.method == SegmentMethod::Fitted {
+            self.fit(&merging, &mut labels)?;
+        }
+        if let Some(n) = self.options.n_segments {
+            self.merge_to(&merging, &mut labels, n)?;
+        }
+        let (labels, n_segments) = contiguous(&labels);
+        let hierarchy = self.hierarchy(&merging, &leaves, &labels)?;
+        Ok(Finished { hierarchy, n_segments })
+    }
+
+    /// Merges and refits in turns.
+    fn fit(&self, merging: &Merging<'_>, labels: &mut Vec<u32>) -> Result<()> {
+        let refit = Refit {
+            surface: self.surface,
+            signal: (!self.is_shape).then_some(self.start),
+            noise: self.noise,
+            progress: self.progress,
+        };
+        let threshold = BEND * self.options.length_weight;
+        for round in 0..REFITS {
+            self.report(0.9 + 0.03 * round as f64, "segments");
+            merging.below(labels, threshold)?;
+            merging.absorb_small(labels, self.options.min_faces)?;
+            let before = labels.clone();
+            refit.run(labels)?;
+            if *labels == before {
+                break;
+            }
+        }
+        merging.below(labels, threshold)?;
+        merging.absorb_small(labels, self.options.min_faces)?;
+        Ok(())
+    }
+
+    /// Merges down to `n` segments, where there are more.
+    fn merge_to(&self, merging: &Merging<'_>, labels: &mut [u32], n: usize) -> Result<()> {
+        let count = contiguous(labels).1;
+        if count <= n {
+            return Ok(());
+        }
+        let mut merged = labels.to_vec();
+        let merges = merging.all(&mut merged)?;
+        rename(labels, &merges[..(count - n).min(merges.len())]);
+        Ok(())
+    }
+
+    /// The finest segments are the pieces of `leaves` inside the segments `labels`; they merge to those, and those to one for each
+    /// connected part.
+    fn hierarchy(&self, merging: &Merging<'_>, leaves: &[u32], labels: &[u32]) -> Result<Hierarchy> {
+        self.report(0.98, "hierarchy");
+        let (finest, n_leaves) = self.nested_leaves(leaves, labels);
+        let mut current = finest.clone();
+        let within = Merging { groups: Some(labels), ..*merging };
+        let mut merges: Vec<Merge> = within.all(&mut current)?;
+        merges.sort_by(|a, b| a.strength.total_cmp(&b.strength));
+        let mut merges = within_order(&finest, n_leaves, &merges);
+        let mut current = finest.clone();
+        rename(&mut current, &merges);
+        merges.extend(merging.all(&mut current)?);
+        Ok(Hierarchy::new(finest, n_leaves, &merges))
+    }
+
+    /// Each leaf belongs to the segment that has most of its faces; faces elsewhere go to the nearest leaf of their own segment.
+    fn nested_leaves(&self, leaves: &[u32], labels: &[u32]) -> (Vec<u32>, usize) {
+        let n_leaves = leaves.iter().map(|l| *l as usize + 1).max().unwrap_or(0);
+        let mut pairs: Vec<(u32, u32)> = leaves.iter().copied().zip(labels.iter().copied()).collect();
+        pairs.sort_unstable();
+        let mut owner = vec![(0, u32::MAX); n_leaves];
+        for same in pairs.chunk_by(|a, b| a == b) {
+            let held = &mut owner[same[0].0 as usize];
+            if same.len() > held.0 {
+                *held = (same.len(), same[0].1);
+            }
+        }
+        // Names that no leaf has stand for segments without a leaf of their own.
+        let mut nested: Vec<u32> = leaves
+            .iter()
+            .zip(labels)
+            .map(|(&leaf, &label)| if owner[leaf as usize].1 == label { leaf } else { u32::MAX })
+            .collect();
+        let mut queue: std::collections::VecDeque<usize> =
+            (0..nested.len()).filter(|&f| nested[f] != u32::MAX).collect();
+        while let Some(f) = queue.pop_front() {
+            for (_, g) in self.surface.around(f) {
+                if nested[g] == u32::MAX && labels[g] == labels[f] {
+                    nested[g] = nested[f];
+                    queue.push_back(g);
+                }
+            }
+        }
+        for (nested, label) in nested.iter_mut().zip(labels) {
+            if *nested == u32::MAX {
+                *nested = n_leaves as u32 + label;
+            }
+        }
+        contiguous(&nested)
+    }
+
+    fn report(&self, fraction: f64, stage: &str) {
+        self.progress.report(Report { fraction, stage: stage.into(), ..Report::default() });
+    }
+}
+
+/// The same merges in the order given, each named by segments that are still there.
+fn within_order(labels: &[u32], n: usize, merges: &[Merge]) -> Vec<Merge> {
+    debug_assert!(labels.iter().all(|l| (*l as usize) < n));
+    let mut parent: Vec<u32> = (0..n as u32).collect();
+    let mut ordered = Vec::with_capacity(merges.len());
+    for merge in merges {
+        let (kept, gone) = (root(&mut parent, merge.kept), root(&mut parent, merge.gone));
+        if kept != gone {
+            parent[gone as usize] = kept;
+            ordered.push(Merge { kept, gone, strength: merge.strength });
+        }
+    }
+    ordered
+}
+
+fn root(parent: &mut [u32], mut label: u32) -> u32 {
+    while parent[label as usize] != label {
+        parent[label as usize] = parent[parent[label as usize] as usize];
+        label = parent[label as usize];
+    }
+    label
+}

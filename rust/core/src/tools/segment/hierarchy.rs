@@ -1,0 +1,94 @@
+//! From the finest segmentation to one segment for each connected part: nested, one merge after the other.
+
+use super::merge::Merge;
+use super::surface::contiguous;
+use crate::{Error, Result};
+
+/// Nested segmentations of any size.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Hierarchy {
+    /// The segment of every face in the finest segmentation; `u32::MAX` for faces that took no part.
+    leaves: Vec<u32>,
+    n_leaves: usize,
+    /// The pairs that merge, in order: the second segment becomes part of the first.
+    merges: Vec<[u32; 2]>,
+    strengths: Vec<f64>,
+}
+
+impl Hierarchy {
+    /// `leaves` are contiguous labels; strengths of merges become ascending by their running maximum.
+    pub(super) fn new(leaves: Vec<u32>, n_leaves: usize, merges: &[Merge]) -> Self {
+        let mut most = 0.0_f64;
+        let strengths = merges
+            .iter()
+            .map(|merge| {
+                most = most.max(merge.strength);
+                most
+            })
+            .collect();
+        Self { leaves, n_leaves, merges: merges.iter().map(|m| [m.kept, m.gone]).collect(), strengths }
+    }
+
+    /// The same for a mesh of which only some faces took part: face `i` of this hierarchy is face `faces[i]` there, of `n_faces`.
+    pub(super) fn spread(mut self, faces: &[u32], n_faces: usize) -> Self {
+        let mut leaves = vec![u32::MAX; n_faces];
+        for (&face, leaf) in faces.iter().zip(&self.leaves) {
+            leaves[face as usize] = *leaf;
+        }
+        self.leaves = leaves;
+        self
+    }
+
+    /// Most and fewest segments that there can be: those of the finest segmentation, and one for each connected part.
+    #[must_use]
+    pub fn range(&self) -> [usize; 2] {
+        [self.n_leaves, self.n_leaves - self.merges.len()]
+    }
+
+    /// The strength of the border that falls with each merge, from the finest segmentation on, ascending.
+    #[must_use]
+    pub fn strengths(&self) -> &[f64] {
+        &self.strengths
+    }
+
+    /// The segmentation with `n_segments` segments, or the nearest number that there is: a label for every face, from 0 in the order
+    /// of their first faces, −1 for faces that took no part. Nested: with fewer segments, borders only vanish.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] for no segments at all.
+    pub fn labels_at(&self, n_segments: usize) -> Result<Vec<i32>> {
+        if n_segments == 0 {
+            return Err(Error::argument("n_segments", "is 0; ask for at least one segment"));
+        }
+        let count = self.n_leaves.saturating_sub(n_segments).min(self.merges.len());
+        let mut name: Vec<u32> = (0..self.n_leaves as u32).collect();
+        for &[kept, gone] in self.merges[..count].iter().rev() {
+            name[gone as usize] = name[kept as usize];
+        }
+        let used: Vec<u32> = self.leaves.iter().filter(|l| **l != u32::MAX).map(|&l| name[l as usize]).collect();
+        let mut renamed = contiguous(&used).0.into_iter();
+        let label = |leaf: &u32| if *leaf == u32::MAX { -1 } else { renamed.next().map_or(-1, u32::cast_signed) };
+        Ok(self.leaves.iter().map(label).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn takes_as_many_merges_as_it_needs() {
+        let merges = [(0, 1, 0.3), (2, 3, 0.2), (0, 2, 0.5)].map(|(kept, gone, strength)| Merge { kept, gone, strength });
+        let hierarchy = Hierarchy::new(vec![0, 1, 2, 3, 0], 4, &merges);
+        assert_eq!(hierarchy.range(), [4, 1]);
+        assert_eq!(hierarchy.strengths(), [0.3, 0.3, 0.5]);
+        assert_eq!(hierarchy.labels_at(9).unwrap(), [0, 1, 2, 3, 0]);
+        assert_eq!(hierarchy.labels_at(3).unwrap(), [0, 0, 1, 2, 0]);
+        assert_eq!(hierarchy.labels_at(2).unwrap(), [0, 0, 1, 1, 0]);
+        assert_eq!(hierarchy.labels_at(1).unwrap(), [0; 5]);
+        assert!(hierarchy.labels_at(0).is_err());
+        let spread = hierarchy.spread(&[1, 2, 3, 5, 6], 7);
+        assert_eq!(spread.labels_at(2).unwrap(), [-1, 0, 0, 1, -1, 1, 0]);
+    }
+}

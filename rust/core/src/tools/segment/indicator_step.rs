@@ -1,0 +1,84 @@
+//! The indicator of borders for a fixed signal: one linear system on the faces, its pattern analysed once.
+
+use super::surface::Surface;
+use crate::operators::face_laplacian_weights;
+use crate::solve::cholesky::{Cholesky, LowerPattern};
+use crate::Result;
+
+/// `v ← argmin vᵀ (diag ‖(H u)_f‖ + λ ε L + λ/(4ε) M_F) v − λ/(2ε) 1ᵀ M_F v` (Rowe et al. 2024, supplement E), for one `ε`
+/// after the other. `λ` is times a cost for each face, and for each edge the mean of both.
+pub(super) struct IndicatorStep {
+    cholesky: Cholesky,
+    /// `λ` times the cost and the area of each face.
+    weighted_areas: Vec<f64>,
+    /// The entries of `λ L`.
+    laplacian: Vec<f64>,
+    values: Vec<f64>,
+    epsilon: f64,
+}
+
+impl IndicatorStep {
+    /// Analyses the pattern.
+    ///
+    /// # Errors
+    /// Too little memory for the factor.
+    pub fn new(surface: &Surface<'_>, length_weight: f64, face_costs: &[f64]) -> Result<Self> {
+        let m = surface.n_faces();
+        let weights = face_laplacian_weights(surface.connectivity, &surface.lengths, &surface.centroids);
+        let (mut starts, mut rows, mut laplacian) = (vec![0], Vec::new(), Vec::new());
+        for f in 0..m {
+            let mut column: Vec<(usize, f64)> = Vec::with_capacity(3);
+            let mut diagonal = 0.0;
+            for (h, g) in surface.around(f) {
+                let weight = length_weight * 0.5 * (face_costs[f] + face_costs[g]) * weights[f][h % 3];
+                diagonal += weight;
+                if g > f {
+                    column.push((g, -weight));
+                }
+            }
+            column.sort_by_key(|(row, _)| *row);
+            rows.push(f);
+            laplacian.push(diagonal);
+            for same in column.chunk_by(|a, b| a.0 == b.0) {
+                rows.push(same[0].0);
+                laplacian.push(same.iter().map(|(_, value)| value).sum());
+            }
+            starts.push(rows.len());
+        }
+        let weighted_areas =
+            surface.areas.iter().zip(face_costs).map(|(area, cost)| length_weight * cost * area).collect();
+        Ok(Self {
+            cholesky: Cholesky::analyse(LowerPattern { n: m, starts, rows }, None)?,
+            weighted_areas,
+            values: laplacian.clone(),
+            laplacian,
+            epsilon: 1.0,
+        })
+    }
+
+    /// Sets `ε`.
+    pub fn prepare(&mut self, epsilon: f64) {
+        self.epsilon = epsilon;
+    }
+
+    /// The minimiser for the norms `‖(H u)_f‖`. Faces that nothing determines, those without area, get 1.
+    ///
+    /// # Errors
+    /// A matrix that is not positive definite.
+    pub fn minimise(&mut self, norms: &[f64]) -> Result<Vec<f64>> {
+        let largest = self.weighted_areas.iter().fold(0.0_f64, |a, b| a.max(*b)).max(f64::MIN_POSITIVE);
+        for (value, entry) in self.values.iter_mut().zip(&self.laplacian) {
+            *value = self.epsilon * entry;
+        }
+        let pull = |area: f64| 0.25 / self.epsilon * area.max(1e-12 * largest);
+        let starts = &self.cholesky.pattern().starts;
+        for ((&start, norm), &area) in starts.iter().zip(norms).zip(&self.weighted_areas) {
+            self.values[start] += norm + pull(area);
+        }
+        let mut v: Vec<[f64; 1]> = self.weighted_areas.iter().map(|&area| [pull(area)]).collect();
+        self.cholesky.factorise(&self.values)?;
+        self.cholesky.solve(&mut v);
+        // Exactly, 0 < v ≤ 1 by the maximum principle.
+        Ok(v.into_iter().map(|[v]| v.clamp(0.0, 1.0)).collect())
+    }
+}

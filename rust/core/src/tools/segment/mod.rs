@@ -1,0 +1,197 @@
+//! Segmentation: the faces that a person would name, with clean borders (Rowe et al. 2024, section 7.5).
+//!
+//! [`indicator`] minimises the functional (41), whose `v` is low at borders. From there on the paper's way is [`threshold`]; the
+//! other one is [`watershed`], then merging across borders that bend little ([`crease`], [`merge`]), and moving faces at borders
+//! to the segment that they fit best ([`refit`]). Either way a [`hierarchy`] of nested segmentations comes with it.
+
+mod crease;
+mod fit;
+mod fitted;
+mod hierarchy;
+mod indicator;
+mod indicator_step;
+mod merge;
+mod noise;
+mod options;
+mod part;
+mod refit;
+mod surface;
+mod threshold;
+mod watershed;
+
+pub use hierarchy::Hierarchy;
+pub use options::{SegmentMethod, SegmentOptions};
+
+use crate::error::MeshError;
+use crate::mesh::Mesh;
+use crate::progress::Progress;
+use crate::solve::{Columns, Settings, Status};
+use crate::tools::Scale;
+use crate::Result;
+use fitted::{Finished, Fitted};
+use indicator::Functional;
+use noise::noise_level;
+use surface::Surface;
+
+/// `ε` below this many mean edges makes the indicator rise again everywhere: no row of faces is narrow enough for it.
+const LEAST_EPSILON: f64 = 0.35;
+
+/// What came out of a segmentation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Segmentation {
+    /// The segment of each face, from 0 in the order of their first faces; −1 for faces that took no part.
+    pub labels: Vec<i32>,
+    /// How many segments there are.
+    pub n_segments: usize,
+    /// `v`: near 1 inside segments, near 0 at borders, one for each face; 1 for faces that took no part.
+    pub indicator: Vec<f64>,
+    /// `u`: the signal with borders sharpened, in the units of the input; for positions the sharpened surface.
+    pub values: Columns,
+    /// The vertices of the edges between segments.
+    pub boundary_edges: Vec<[u32; 2]>,
+    /// Coarser and finer segmentations, nested.
+    pub hierarchy: Hierarchy,
+    /// The noise found in the signal, in its units; 0 where the fidelity was given.
+    pub noise: f64,
+    /// The fidelity weight at the end.
+    pub fidelity: f64,
+    /// How often indicator and signal took turns.
+    pub alternations: usize,
+    /// `Solved`, or `Stopped` if the caller asked to finish early: then with fewer values of `ε`.
+    pub status: Status,
+}
+
+/// Divides the faces of `mesh` into segments on which `values`, or without them the vertex positions, are nearly affine.
+///
+/// Minimises `α ‖u − u₀‖²_M + Σ_f v_f² ‖(H u)_f‖ + λ ε vᵀ L v + λ/(4ε) ‖1 − v‖²_{M_F}` (Rowe et al. 2024, eq. (41)) in turns over `u` and
+/// `v`, with `ε` halved down, and makes segments from `v`: see [`SegmentMethod`].
+///
+/// # Errors
+/// [`MeshError::NoPositions`], [`MeshError::NoFaces`], arguments of the wrong shape or range, [`crate::Error::Cancelled`], and the errors of
+/// the solver.
+pub fn segment(
+    mesh: &Mesh,
+    values: Option<&Columns>,
+    options: &SegmentOptions,
+    progress: &Progress,
+) -> Result<Segmentation> {
+    options.check(mesh, values)?;
+    let settings = Settings { announce: false, ..options.solve.settings()? };
+    options.solve.run(|| match &options.faces {
+        None => whole(mesh, values, options, &settings, progress),
+        Some(faces) => part::segment_part(mesh, values, faces, options, |mesh, values, options| {
+            whole(mesh, values, options, &settings, progress)
+        }),
+    })
+}
+
+/// Segments all faces.
+fn whole(
+    mesh: &Mesh,
+    values: Option<&Columns>,
+    options: &SegmentOptions,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Segmentation> {
+    let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
+    let unit = options.scale.unit(mesh.connectivity(), positions, mesh.edge_lengths());
+    if !(unit > 0.0 && unit.is_finite()) {
+        return Err(MeshError::NoFaces.into());
+    }
+    let surface = Surface::new(mesh.connectivity(), positions, unit, options.edge_costs(mesh));
+    if surface.areas.iter().all(|area| *area <= 0.0) {
+        return Err(MeshError::NoFaces.into());
+    }
+    let signal = values.map(Signal::of);
+    let start = signal.as_ref().map_or_else(|| Columns::from_points(&surface.positions), |s| s.normalised.clone());
+    let degrees = values.map_or(1, |v| v.n_columns);
+    let noise = noise_level(&surface, &start, degrees);
+    let found = Functional {
+        surface: &surface,
+        values: &start,
+        length_weight: options.length_weight,
+        face_costs: &options.face_costs(&surface.costs),
+        fidelity: options.starting_fidelity(),
+        noise: options.fidelity.is_none().then_some(noise),
+        epsilons: options.epsilons(LEAST_EPSILON * surface.mean_edge),
+        inner_tolerance: options.inner_tolerance,
+        solver: options.solve.solver,
+        settings: *settings,
+    }
+    .minimise(progress)?;
+    let fitted = Fitted {
+        surface: &surface,
+        start: &start,
+        is_shape: values.is_none(),
+        noise,
+        indicator: &found.indicator,
+        options,
+        progress,
+    };
+    let Finished { hierarchy, n_segments } = fitted.segments()?;
+    let labels = hierarchy.labels_at(n_segments)?;
+    let unscaled = |columns: &Columns| match &signal {
+        Some(signal) => signal.restored(columns),
+        None => Columns { data: columns.data.iter().map(|x| unit * x).collect(), ..columns.clone() },
+    };
+    Ok(Segmentation {
+        boundary_edges: boundary_edges(mesh, &labels),
+        labels,
+        n_segments,
+        indicator: found.indicator,
+        values: unscaled(&found.values),
+        hierarchy,
+        noise: noise * signal.as_ref().map_or(unit, |s| s.range),
+        fidelity: found.fidelity,
+        alternations: found.alternations,
+        status: found.status,
+    })
+}
+
+/// The vertices of the edges between faces of different labels, −1 not counted as one.
+fn boundary_edges(mesh: &Mesh, labels: &[i32]) -> Vec<[u32; 2]> {
+    let connectivity = mesh.connectivity();
+    let between = |h: usize| {
+        connectivity.mate(h).is_some_and(|mate| {
+            let (a, b) = (labels[h / 3], labels[mate / 3]);
+            a != b && a >= 0 && b >= 0
+        })
+    };
+    connectivity.edges().filter(|&h| between(h)).map(|h| [connectivity.tail(h), connectivity.head(h)]).collect()
+}
+
+/// A signal shifted and scaled so that its widest column has a range of 1: weights then mean the same for every signal.
+struct Signal {
+    normalised: Columns,
+    low: Vec<f64>,
+    range: f64,
+}
+
+impl Signal {
+    fn of(values: &Columns) -> Self {
+        let ends = |c: usize| {
+            let column = values.column(c).iter();
+            column.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &x| [low.min(x), high.max(x)])
+        };
+        let ends: Vec<[f64; 2]> = (0..values.n_columns).map(ends).collect();
+        let low: Vec<f64> = ends.iter().map(|[low, _]| *low).collect();
+        let range = ends.iter().fold(0.0_f64, |range, [low, high]| range.max(high - low));
+        let range = if range > 0.0 { range } else { 1.0 };
+        let mut normalised = values.clone();
+        for (c, low) in low.iter().enumerate() {
+            normalised.column_mut(c).iter_mut().for_each(|x| *x = (*x - low) / range);
+        }
+        Self { normalised, low, range }
+    }
+
+    fn restored(&self, columns: &Columns) -> Columns {
+        let mut restored = columns.clone();
+        for (c, low) in self.low.iter().enumerate() {
+            restored.column_mut(c).iter_mut().for_each(|x| *x = *x * self.range + low);
+        }
+        restored
+    }
+}
+
+/// The unit in which the weights of a segmentation are meant unless the caller says otherwise.
+pub(super) const DEFAULT_SCALE: Scale = Scale::Extent;

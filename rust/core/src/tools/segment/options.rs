@@ -1,0 +1,164 @@
+//! How to segment.
+
+use super::DEFAULT_SCALE;
+use crate::mesh::Mesh;
+use crate::solve::{Columns, MAX_JOINT_COLUMNS};
+use crate::tools::options::{check_range, check_weights};
+use crate::tools::{Scale, SolveOptions};
+use crate::{Error, Result};
+
+/// The paper's `α`, which is right for data without noise.
+const CLEAN_FIDELITY: f64 = 1000.0;
+
+/// How segments are made from the indicator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SegmentMethod {
+    /// Watershed by persistence, merging across borders that bend by less than the length weight, and border faces moved to
+    /// the segment that they fit best.
+    #[default]
+    Fitted,
+    /// Cuts below a threshold, and small pieces merged by majority (Rowe et al. 2024, supplement E).
+    Paper,
+}
+
+/// How to segment.
+#[derive(Debug, Clone)]
+pub struct SegmentOptions {
+    /// How segments are made from the indicator.
+    pub method: SegmentMethod,
+    /// `λ`, what a border costs per length. A crease that bends by more (radians; for other signals the jump of the slope, with the
+    /// signal's range and the shape's size as 1) is worth a border.
+    pub length_weight: f64,
+    /// `α`. Without it as the noise found in the signal wants it; for [`SegmentMethod::Paper`] 1000.
+    pub fidelity: Option<f64>,
+    /// `ε` at the start.
+    pub epsilon_start: f64,
+    /// `ε` at the end; [`SegmentMethod::Fitted`] stops where the mesh is not fine enough for less.
+    pub epsilon_end: f64,
+    /// The mean squared change of the indicator at which `ε` is halved.
+    pub inner_tolerance: f64,
+    /// For [`SegmentMethod::Paper`]: edges with a lower indicator are cut.
+    pub cut_threshold: f64,
+    /// Segments of fewer faces are merged.
+    pub min_faces: usize,
+    /// How many segments are wanted; as many as the length weight makes where `None`.
+    pub n_segments: Option<usize>,
+    /// The unit of length of the weights.
+    pub scale: Scale,
+    /// What borders cost in each face, 1 neutral, smaller where they are welcome.
+    pub face_weights: Option<Vec<f64>>,
+    /// What borders cost along each edge, one row a face, column `i` opposite corner `i`; the mean of both faces' entries counts.
+    pub edge_weights: Option<Vec<[f64; 3]>>,
+    /// The faces to segment; all where `None`.
+    pub faces: Option<Vec<bool>>,
+    /// The solver; the default stops on residuals.
+    pub solve: SolveOptions,
+}
+
+impl Default for SegmentOptions {
+    fn default() -> Self {
+        Self {
+            method: SegmentMethod::Fitted,
+            length_weight: 0.5,
+            fidelity: None,
+            epsilon_start: 0.1,
+            epsilon_end: 0.001,
+            inner_tolerance: 1e-5,
+            cut_threshold: 0.6,
+            min_faces: 20,
+            n_segments: None,
+            scale: DEFAULT_SCALE,
+            face_weights: None,
+            edge_weights: None,
+            faces: None,
+            solve: SolveOptions { tolerance: None, ..SolveOptions::default() },
+        }
+    }
+}
+
+impl SegmentOptions {
+    pub(super) fn check(&self, mesh: &Mesh, values: Option<&Columns>) -> Result<()> {
+        let (n, m) = (mesh.connectivity().n_vertices(), mesh.connectivity().n_faces());
+        let positive = [
+            ("length_weight", Some(self.length_weight)),
+            ("fidelity", self.fidelity),
+            ("epsilon_start", Some(self.epsilon_start)),
+            ("epsilon_end", Some(self.epsilon_end)),
+            ("inner_tolerance", Some(self.inner_tolerance)),
+        ];
+        for (name, value) in positive {
+            if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
+                return Err(Error::argument(name, format!("is {value}; it must be positive")));
+            }
+        }
+        if self.epsilon_end > self.epsilon_start {
+            let problem = format!("is {}, more than epsilon_start, {}", self.epsilon_end, self.epsilon_start);
+            return Err(Error::argument("epsilon_end", problem));
+        }
+        check_range("cut_threshold", self.cut_threshold, 0.0, 1.0)?;
+        check_weights("face_weights", self.face_weights.as_ref(), m, "face")?;
+        if let Some(weights) = &self.edge_weights {
+            if weights.len() != m {
+                let problem = format!("has {} rows, expected one per face: {m}", weights.len());
+                return Err(Error::argument("edge_weights", problem));
+            }
+            check_weights("edge_weights", Some(&weights.as_flattened().to_vec()), 3 * m, "halfedge")?;
+        }
+        if self.n_segments == Some(0) {
+            return Err(Error::argument("n_segments", "is 0; ask for at least one segment"));
+        }
+        match &self.faces {
+            Some(faces) if faces.len() != m => {
+                let problem = format!("has {} entries, expected one per face: {m}", faces.len());
+                return Err(Error::argument("faces", problem));
+            }
+            Some(faces) if !faces.contains(&true) => {
+                return Err(Error::argument("faces", "names no face; give at least one, or None for all"));
+            }
+            _ => {}
+        }
+        let Some(values) = values else { return Ok(()) };
+        values.check("values", n)?;
+        if values.n_columns > MAX_JOINT_COLUMNS {
+            let problem = format!("has {} columns, at most {MAX_JOINT_COLUMNS} are possible", values.n_columns);
+            return Err(Error::argument("values", problem));
+        }
+        Ok(())
+    }
+
+    /// `α` to start with.
+    pub(super) fn starting_fidelity(&self) -> f64 {
+        self.fidelity.unwrap_or(CLEAN_FIDELITY)
+    }
+
+    /// `ε` halved down to the end, or to `least` where that is more.
+    pub(super) fn epsilons(&self, least: f64) -> Vec<f64> {
+        let end = match self.method {
+            SegmentMethod::Paper => self.epsilon_end,
+            SegmentMethod::Fitted => self.epsilon_end.max(least),
+        };
+        let halved = std::iter::successors(Some(self.epsilon_start), |epsilon| Some(0.5 * epsilon));
+        let mut epsilons: Vec<f64> = halved.take_while(|epsilon| *epsilon >= end * (1.0 - 1e-9)).collect();
+        if epsilons.is_empty() {
+            epsilons.push(end);
+        }
+        epsilons
+    }
+
+    /// What a border along each halfedge costs per length, the same for both halfedges of an edge.
+    pub(super) fn edge_costs(&self, mesh: &Mesh) -> Vec<[f64; 3]> {
+        let connectivity = mesh.connectivity();
+        let own = |h: usize| {
+            self.edge_weights.as_ref().map_or(1.0, |w| w[h / 3][h % 3])
+                * self.face_weights.as_ref().map_or(1.0, |w| w[h / 3])
+        };
+        let cost = |h: usize| connectivity.twin(h).map_or_else(|| own(h), |twin| 0.5 * (own(h) + own(twin)));
+        (0..connectivity.n_faces()).map(|f| [0, 1, 2].map(|i| cost(3 * f + i))).collect()
+    }
+
+    /// What borders cost in each face: as much as along its cheapest edge.
+    pub(super) fn face_costs(&self, edge_costs: &[[f64; 3]]) -> Vec<f64> {
+        let cheapest = |costs: &[f64; 3]| costs.iter().copied().fold(f64::INFINITY, f64::min);
+        edge_costs.iter().map(cheapest).map(|cost| cost.max(1e-3)).collect()
+    }
+}

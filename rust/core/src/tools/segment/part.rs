@@ -1,0 +1,68 @@
+//! Segmenting some faces only.
+
+use super::{SegmentOptions, Segmentation};
+use crate::error::MeshError;
+use crate::mesh::Mesh;
+use crate::solve::Columns;
+use crate::Result;
+
+/// Runs `segment` on the mesh of the faces in `mask` and puts its result into the whole one: other faces have the label −1 and
+/// the indicator 1, other vertices keep their values.
+///
+/// # Errors
+/// [`MeshError::NoPositions`], and what `segment` returns.
+pub(super) fn segment_part(
+    mesh: &Mesh,
+    values: Option<&Columns>,
+    mask: &[bool],
+    options: &SegmentOptions,
+    segment: impl FnOnce(&Mesh, Option<&Columns>, &SegmentOptions) -> Result<Segmentation>,
+) -> Result<Segmentation> {
+    let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
+    let all = mesh.connectivity().faces();
+    let faces: Vec<u32> = (0..all.len() as u32).filter(|&f| mask[f as usize]).collect();
+    let mut place = vec![u32::MAX; positions.len()];
+    let mut vertices = Vec::new();
+    for &v in faces.iter().flat_map(|&f| &all[f as usize]) {
+        if place[v as usize] == u32::MAX {
+            place[v as usize] = vertices.len() as u32;
+            vertices.push(v);
+        }
+    }
+    let part = Mesh::new(
+        vertices.iter().map(|&v| positions[v as usize]).collect(),
+        faces.iter().map(|&f| all[f as usize].map(|v| place[v as usize])).collect(),
+    )?;
+    let whole = values.cloned().unwrap_or_else(|| Columns::from_points(positions));
+    let some = |columns: &Columns| Columns {
+        n_rows: vertices.len(),
+        n_columns: columns.n_columns,
+        data: (0..columns.n_columns).flat_map(|c| vertices.iter().map(move |&v| columns.column(c)[v as usize])).collect(),
+    };
+    let options = SegmentOptions {
+        face_weights: options.face_weights.as_ref().map(|w| faces.iter().map(|&f| w[f as usize]).collect()),
+        edge_weights: options.edge_weights.as_ref().map(|w| faces.iter().map(|&f| w[f as usize]).collect()),
+        faces: None,
+        ..options.clone()
+    };
+    let found = segment(&part, values.map(some).as_ref(), &options)?;
+    let mut labels = vec![-1; all.len()];
+    let mut indicator = vec![1.0; all.len()];
+    for (i, &f) in faces.iter().enumerate() {
+        labels[f as usize] = found.labels[i];
+        indicator[f as usize] = found.indicator[i];
+    }
+    let mut filled = whole;
+    for c in 0..filled.n_columns {
+        let column = filled.column_mut(c);
+        vertices.iter().zip(found.values.column(c)).for_each(|(&v, x)| column[v as usize] = *x);
+    }
+    Ok(Segmentation {
+        labels,
+        indicator,
+        values: filled,
+        boundary_edges: found.boundary_edges.iter().map(|edge| edge.map(|v| vertices[v as usize])).collect(),
+        hierarchy: found.hierarchy.spread(&faces, all.len()),
+        ..found
+    })
+}

@@ -1,0 +1,224 @@
+//! Moving faces at borders to the segment that they fit best, with straight borders.
+//!
+//! Minimises `Σ_f misfit(f, label) + Σ_border edges length` over the labels of the faces at borders, face by face, as variational
+//! shape approximation does (Cohen-Steiner et al. 2004) with the length of the borders added (Potts 1952, Besag 1986).
+
+use std::collections::BTreeMap;
+
+use super::fit::{nearby, Patch, Plane};
+use super::surface::{pieces, Surface};
+use crate::progress::Progress;
+use crate::solve::Columns;
+use crate::Result;
+
+/// Rounds of fits, and sweeps over the faces with the fits of a round.
+const ROUNDS: usize = 6;
+const SWEEPS: usize = 12;
+
+/// A segment counts as plane if it is off its plane by no more than this many times the noise, or this part of an edge.
+const PLANE_NOISE: f64 = 1.5;
+const PLANE_EDGE: f64 = 0.02;
+
+/// A misfit of this part of an edge costs as much as noise of that size would: exact data have none.
+const LEAST_NOISE: f64 = 0.02;
+
+/// The most that one corner's misfit costs: a spike does not decide alone.
+const MOST_MISFIT: f64 = 12.0;
+
+/// What a mean edge of border costs, in the units of the misfit.
+const EDGE_COST: f64 = 1.0;
+
+/// What is fitted, and how exactly.
+pub(super) struct Refit<'a> {
+    pub surface: &'a Surface<'a>,
+    /// The signal, or nothing for the shape itself.
+    pub signal: Option<&'a Columns>,
+    /// Standard deviation of the noise of the signal, or of the positions along the normal.
+    pub noise: f64,
+    pub progress: &'a Progress,
+}
+
+/// The fits of one round.
+struct Fits<'a, 'b> {
+    refit: &'b Refit<'a>,
+    labels: Vec<u32>,
+    planes: BTreeMap<u32, Plane>,
+    /// The misfit of a face with a segment.
+    known: BTreeMap<(u32, u32), f64>,
+    seen: Vec<u32>,
+    stamp: u32,
+    deviation: f64,
+}
+
+impl Refit<'_> {
+    /// Moves faces until none wants to move; segments may vanish but not fall apart.
+    ///
+    /// # Errors
+    /// [`crate::Error::Cancelled`].
+    pub fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
+        for _ in 0..ROUNDS {
+            self.progress.check()?;
+            let before = labels.clone();
+            let mut fits = Fits::new(self, before.clone());
+            for _ in 0..SWEEPS {
+                if !self.sweep(&mut fits, labels) {
+                    break;
+                }
+            }
+            self.rejoin(labels);
+            if *labels == before {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// One pass over the faces at borders; whether any moved.
+    fn sweep(&self, fits: &mut Fits<'_, '_>, labels: &mut [u32]) -> bool {
+        let mut moved = false;
+        for f in 0..labels.len() {
+            if !self.surface.is_at_border(labels, f) {
+                continue;
+            }
+            let mut candidates = vec![labels[f]];
+            for (_, g) in self.surface.around(f) {
+                if !candidates.contains(&labels[g]) {
+                    candidates.push(labels[g]);
+                }
+            }
+            let mut best = (f64::INFINITY, labels[f]);
+            for label in candidates {
+                let cost = fits.misfit(f, label) + self.border_cost(labels, f, label);
+                if cost < best.0 - 1e-12 {
+                    best = (cost, label);
+                }
+            }
+            moved |= labels[f] != best.1;
+            labels[f] = best.1;
+        }
+        moved
+    }
+
+    fn border_cost(&self, labels: &[u32], f: usize, label: u32) -> f64 {
+        let edges = self.surface.around(f).filter(|&(_, g)| labels[g] != label);
+        let cost: f64 = edges.map(|(h, _)| self.surface.lengths[f][h % 3] * self.surface.costs[f][h % 3]).sum();
+        EDGE_COST * cost / self.surface.mean_edge.max(f64::MIN_POSITIVE)
+    }
+
+    /// Gives every piece of a segment but its largest to the neighbour with which it has the longest border.
+    pub fn rejoin(&self, labels: &mut [u32]) {
+        loop {
+            let (piece, count) = pieces(self.surface, labels);
+            let mut area = vec![0.0; count];
+            let mut owner = vec![0; count];
+            for f in 0..labels.len() {
+                area[piece[f] as usize] += self.surface.areas[f];
+                owner[piece[f] as usize] = labels[f];
+            }
+            let mut largest: BTreeMap<u32, usize> = BTreeMap::new();
+            for p in 0..count {
+                let held = largest.entry(owner[p]).or_insert(p);
+                if area[p] > area[*held] {
+                    *held = p;
+                }
+            }
+            let mut shared: BTreeMap<(u32, u32), f64> = BTreeMap::new();
+            for f in 0..labels.len() {
+                if largest[&labels[f]] == piece[f] as usize {
+                    continue;
+                }
+                for (h, g) in self.surface.around(f).filter(|&(_, g)| labels[g] != labels[f]) {
+                    *shared.entry((piece[f], labels[g])).or_default() += self.surface.lengths[f][h % 3];
+                }
+            }
+            let mut home: BTreeMap<u32, (f64, u32)> = BTreeMap::new();
+            for (&(p, label), &length) in &shared {
+                if home.get(&p).is_none_or(|held| length > held.0) {
+                    home.insert(p, (length, label));
+                }
+            }
+            if home.is_empty() {
+                return;
+            }
+            for (label, p) in labels.iter_mut().zip(&piece) {
+                if let Some((_, new)) = home.get(p) {
+                    *label = *new;
+                }
+            }
+        }
+    }
+}
+
+impl<'a, 'b> Fits<'a, 'b> {
+    fn new(refit: &'b Refit<'a>, labels: Vec<u32>) -> Self {
+        let surface = refit.surface;
+        let m = labels.len();
+        let mut planes = BTreeMap::new();
+        if refit.signal.is_none() {
+            let mut members: BTreeMap<u32, (Vec<u32>, Vec<u32>)> = BTreeMap::new();
+            for f in 0..m {
+                let entry = members.entry(labels[f]).or_default();
+                if !surface.is_at_border(&labels, f) {
+                    entry.0.push(f as u32);
+                }
+                entry.1.push(f as u32);
+            }
+            let flat = (PLANE_NOISE * refit.noise).max(PLANE_EDGE * surface.mean_edge);
+            for (label, (inside, all)) in members {
+                let plane = Plane::through(surface, if inside.is_empty() { &all } else { &inside });
+                if let Some(plane) = plane.filter(|plane| plane.spread <= flat) {
+                    planes.insert(label, plane);
+                }
+            }
+        }
+        let least = if refit.signal.is_none() { LEAST_NOISE * surface.mean_edge } else { LEAST_NOISE };
+        Self {
+            refit,
+            labels,
+            planes,
+            known: BTreeMap::new(),
+            seen: vec![0; m],
+            stamp: 0,
+            deviation: refit.noise.max(least),
+        }
+    }
+
+    /// The cost of face `f` in the segment `label`, as that was at the beginning of the round.
+    fn misfit(&mut self, f: usize, label: u32) -> f64 {
+        if let Some(known) = self.known.get(&(f as u32, label)) {
+            return *known;
+        }
+        let surface = self.refit.surface;
+        let corners = surface.connectivity.faces()[f].map(|v| v as usize);
+        let signal = self.refit.signal;
+        let distances = if let Some(plane) = self.planes.get(&label) {
+            Some(corners.map(|v| plane.distance(surface.positions[v])))
+        } else {
+            self.start(f, label).and_then(|start| {
+                self.stamp += 1;
+                let faces = nearby(surface, &self.labels, start, &mut self.seen, self.stamp);
+                let patch = Patch::fit(surface, &faces, signal)?;
+                Some(corners.map(|v| patch.misfit(surface, v, signal)))
+            })
+        };
+        let cost = distances.map_or(3.0 * MOST_MISFIT, |distances| {
+            distances.iter().map(|d| (0.5 * (d / self.deviation).powi(2)).min(MOST_MISFIT)).sum()
+        });
+        self.known.insert((f as u32, label), cost);
+        cost
+    }
+
+    /// The face nearest to `f` that was in the segment: itself, or within three edges.
+    fn start(&self, f: usize, label: u32) -> Option<usize> {
+        let mut ring = vec![f];
+        for _ in 0..4 {
+            if let Some(&start) = ring.iter().find(|&&g| self.labels[g] == label) {
+                return Some(start);
+            }
+            let next: Vec<usize> =
+                ring.iter().flat_map(|&g| self.refit.surface.around(g).map(|(_, g)| g)).collect();
+            ring = next;
+        }
+        None
+    }
+}

@@ -1,0 +1,131 @@
+//! What all parts of the segmentation know of the surface: sizes in the chosen unit, neighbours, frames.
+
+use crate::mesh::{edge_lengths, triangle, Connectivity};
+use crate::operators::mollify;
+
+/// No face.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// The surface in the unit of the segmentation.
+pub(super) struct Surface<'a> {
+    pub connectivity: &'a Connectivity,
+    /// Positions of the vertices.
+    pub positions: Vec<[f64; 3]>,
+    /// Mollified edge lengths.
+    pub lengths: Vec<[f64; 3]>,
+    /// Areas of the faces.
+    pub areas: Vec<f64>,
+    /// Centroids of the faces.
+    pub centroids: Vec<[f64; 3]>,
+    /// The face across each halfedge, or [`NONE`].
+    pub neighbours: Vec<[u32; 3]>,
+    /// What a border along each halfedge costs per length, 1 where nothing was asked for.
+    pub costs: Vec<[f64; 3]>,
+    /// Mean length of the edges.
+    pub mean_edge: f64,
+}
+
+impl<'a> Surface<'a> {
+    /// The surface with all lengths divided by `unit`.
+    pub fn new(connectivity: &'a Connectivity, positions: &[[f64; 3]], unit: f64, costs: Vec<[f64; 3]>) -> Self {
+        let positions: Vec<[f64; 3]> = positions.iter().map(|p| p.map(|x| x / unit)).collect();
+        let mut lengths = edge_lengths(connectivity.faces(), &positions);
+        mollify(connectivity, &mut lengths);
+        let areas = lengths.iter().map(|&l| triangle::area(l)).collect();
+        let centroid = |face: &[u32; 3]| {
+            std::array::from_fn(|c| face.iter().map(|&v| positions[v as usize][c]).sum::<f64>() / 3.0)
+        };
+        let neighbours = (0..connectivity.n_faces())
+            .map(|f| [0, 1, 2].map(|i| connectivity.twin(3 * f + i).map_or(NONE, |twin| (twin / 3) as u32)))
+            .collect();
+        let (sum, count) =
+            connectivity.edges().fold((0.0, 0_usize), |(sum, count), h| (sum + lengths[h / 3][h % 3], count + 1));
+        Self {
+            centroids: connectivity.faces().iter().map(centroid).collect(),
+            connectivity,
+            positions,
+            areas,
+            neighbours,
+            costs,
+            mean_edge: sum / count.max(1) as f64,
+            lengths,
+        }
+    }
+
+    /// Number of faces.
+    pub fn n_faces(&self) -> usize {
+        self.areas.len()
+    }
+
+    /// The faces next to `f`, each with the halfedge of `f` that leads there.
+    pub fn around(&self, f: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.neighbours[f].iter().enumerate().filter(|(_, g)| **g != NONE).map(move |(i, g)| (3 * f + i, *g as usize))
+    }
+
+    /// Whether a neighbour of `f` has another label.
+    pub fn is_at_border(&self, labels: &[u32], f: usize) -> bool {
+        self.around(f).any(|(_, g)| labels[g] != labels[f])
+    }
+
+    /// The vector area of face `f`: its normal times its area.
+    pub fn vector_area(&self, f: usize) -> [f64; 3] {
+        let [a, b, c] = self.connectivity.faces()[f].map(|v| self.positions[v as usize]);
+        let (u, v) = (subtract(b, a), subtract(c, a));
+        [
+            0.5 * (u[1] * v[2] - u[2] * v[1]),
+            0.5 * (u[2] * v[0] - u[0] * v[2]),
+            0.5 * (u[0] * v[1] - u[1] * v[0]),
+        ]
+    }
+}
+
+/// `a − b`.
+pub(super) fn subtract(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// `a · b`.
+pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Labels renumbered from 0 in the order of their first faces, and how many there are.
+pub(super) fn contiguous(labels: &[u32]) -> (Vec<u32>, usize) {
+    let mut names = vec![NONE; labels.iter().map(|&l| l as usize + 1).max().unwrap_or(0)];
+    let mut count = 0;
+    let renamed = labels
+        .iter()
+        .map(|&label| {
+            let name = &mut names[label as usize];
+            if *name == NONE {
+                *name = count;
+                count += 1;
+            }
+            *name
+        })
+        .collect();
+    (renamed, count as usize)
+}
+
+/// The connected pieces of equal labels, numbered in the order of their first faces, and how many there are.
+pub(super) fn pieces(surface: &Surface<'_>, labels: &[u32]) -> (Vec<u32>, usize) {
+    let mut piece = vec![NONE; labels.len()];
+    let (mut count, mut stack) = (0, Vec::new());
+    for start in 0..labels.len() {
+        if piece[start] != NONE {
+            continue;
+        }
+        piece[start] = count;
+        stack.push(start);
+        while let Some(f) = stack.pop() {
+            for (_, g) in surface.around(f) {
+                if piece[g] == NONE && labels[g] == labels[f] {
+                    piece[g] = count;
+                    stack.push(g);
+                }
+            }
+        }
+        count += 1;
+    }
+    (piece, count as usize)
+}

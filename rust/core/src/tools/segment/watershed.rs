@@ -1,0 +1,54 @@
+//! Watershed by persistence on the dual graph (Edelsbrunner, Letscher and Zomorodian 2002; Couprie and Bertrand 1997).
+
+use super::surface::{contiguous, Surface, NONE};
+
+/// Floods the faces from the maxima of `indicator` downwards; two basins stay apart only if the pass between them lies deeper than
+/// `persistence` under the lower of their maxima. Returns a label for every face, from 0, and how many there are.
+pub(super) fn watershed(surface: &Surface<'_>, indicator: &[f64], persistence: f64) -> (Vec<u32>, usize) {
+    let m = surface.n_faces();
+    let mut order: Vec<u32> = (0..m as u32).collect();
+    order.sort_by(|&a, &b| indicator[b as usize].total_cmp(&indicator[a as usize]).then(a.cmp(&b)));
+    // A basin is named by its highest face, which is the root of its tree.
+    let mut parent = vec![NONE; m];
+    let mut basins: Vec<u32> = Vec::with_capacity(3);
+    for &face in &order {
+        let f = face as usize;
+        basins.clear();
+        // The neighbour that lies highest decides where the face goes when basins stay apart.
+        let mut best: Option<(f64, u32)> = None;
+        for (_, g) in surface.around(f) {
+            if parent[g] == NONE {
+                continue;
+            }
+            let root = root(&mut parent, g as u32);
+            if best.is_none_or(|(height, _)| indicator[g] > height) {
+                best = Some((indicator[g], root));
+            }
+            if !basins.contains(&root) {
+                basins.push(root);
+            }
+        }
+        let Some((_, home)) = best else {
+            parent[f] = face;
+            continue;
+        };
+        basins.sort_by(|&a, &b| indicator[b as usize].total_cmp(&indicator[a as usize]).then(a.cmp(&b)));
+        let highest = basins[0];
+        for &basin in &basins[1..] {
+            if indicator[basin as usize] - indicator[f] < persistence {
+                parent[basin as usize] = highest;
+            }
+        }
+        parent[f] = root(&mut parent, home);
+    }
+    let roots: Vec<u32> = (0..m as u32).map(|f| root(&mut parent, f)).collect();
+    contiguous(&roots)
+}
+
+fn root(parent: &mut [u32], mut f: u32) -> u32 {
+    while parent[f as usize] != f {
+        parent[f as usize] = parent[parent[f as usize] as usize];
+        f = parent[f as usize];
+    }
+    f
+}
