@@ -1,6 +1,7 @@
 """Shapes whose parts are known: what a segmentation should find, with noise and at random rotations.
 
-A `Part` has the vertices, the faces and the part of every face. Parts are the planes and the smoothly curved sides of a shape.
+A `Part` has the vertices, the faces and the part of every face. Parts are the planes and the smoothly curved
+sides of a shape.
 """
 
 from __future__ import annotations
@@ -60,7 +61,7 @@ def face_pairs(faces: Indices) -> tuple[Indices, Indices, Indices]:
 
 
 def pieces(count: int, first: Indices, second: Indices) -> Indices:
-    """The connected pieces of `count` things joined in pairs, numbered from 0 in the order of their first thing."""
+    """The connected pieces of `count` things joined in pairs, numbered from 0 as they begin."""
     label = np.arange(count)
     while True:
         low = label.copy()
@@ -108,7 +109,7 @@ def cylinder(level: int) -> Part:
 
 
 def fan(level: int) -> Part:
-    """A fan-like machine part: a sector of a stepped disk with a pocket; planes, cones and cylinders, convex and concave."""
+    """A fan-like machine part, a sector of a stepped disk with a pocket: planes, cones and cylinders."""
     cells = [(i, j, 0) for i in range(4) for j in range(3)]
     cells += [(i, j, 1) for i in (0, 1) for j in range(3)] + [(2, 1, 1)]
     cells.remove((3, 2, 0))
@@ -135,7 +136,7 @@ LEVELS = (0, 1, 2)
 
 
 def adjusted_rand_index(first: Indices, second: Indices) -> float:
-    """How far two labellings agree: 1 if they are the same, 0 on average by chance (Hubert and Arabie 1985)."""
+    """How far two labellings agree: 1 if they are the same, 0 by chance (Hubert and Arabie 1985)."""
     pairs = lambda counts: (counts * (counts - 1.0) / 2.0).sum()  # noqa: E731
     joint = np.unique(np.stack([first, second]), axis=1, return_counts=True)[1]
     together = pairs(joint)

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::surface::{Surface, NONE};
 use crate::mesh::triangle;
+use crate::mesh::vector::distance;
 use crate::solve::{Columns, MAX_JOINT_COLUMNS};
 
 /// How far, in mean edges, the gradient is averaged on either side; each tenth of an edge of noise makes it one longer.
@@ -17,11 +18,16 @@ const MOST_REACH: f64 = 5.0;
 /// A step in the values counts as two bends, up and down over one edge; a step of positions would be a crack, which a mesh has not.
 const BENDS_OF_A_STEP: f64 = 2.0;
 
-/// A function on the surface, face by face.
+/// What bends across borders, face by face: the gradients of a function, or the normals of the surface.
+///
+/// Normals of a shape and gradients of its coordinates jump by the same length, but vector areas add up to what their outline has
+/// and forget the noise inside; unfolded gradients do not know a fold from its mirror image.
 pub(super) struct Signal {
     n_columns: usize,
-    /// Gradients of all columns in the frame of [`triangle::layout`].
+    /// For each face and column, the gradient in the frame of [`triangle::layout`]; for a shape the normal, as two rows that do not
+    /// turn with frames.
     gradients: Vec<[f64; 2]>,
+    is_shape: bool,
     /// Means over the faces.
     means: Vec<f64>,
     layouts: Vec<[[f64; 2]; 3]>,
@@ -51,11 +57,29 @@ pub(super) struct Border {
 }
 
 impl Signal {
-    /// `values` on the surface, with `noise` of that standard deviation; `continuous` for positions, which have no steps.
-    pub fn new(surface: &Surface<'_>, values: &Columns, noise: f64, continuous: bool) -> Self {
+    /// The shape itself, with `noise` of that standard deviation along the normals.
+    pub fn of_shape(surface: &Surface<'_>, noise: f64) -> Self {
+        let gradients = (0..surface.n_faces()).flat_map(|f| {
+            let [x, y, z] = surface.vector_area(f).map(|x| x / surface.areas[f].max(f64::MIN_POSITIVE));
+            [[x, y], [z, 0.0]]
+        });
+        Self {
+            n_columns: 2,
+            gradients: gradients.collect(),
+            is_shape: true,
+            means: vec![0.0; 2 * surface.n_faces()],
+            layouts: layouts(surface),
+            reach: reach(surface, noise),
+            step: 0.0,
+            noise,
+        }
+    }
+
+    /// `values` on the surface, with `noise` of that standard deviation.
+    pub fn of_values(surface: &Surface<'_>, values: &Columns, noise: f64) -> Self {
         let k = values.n_columns;
         let m = surface.n_faces();
-        let layouts: Vec<_> = surface.lengths.iter().map(|&l| triangle::layout(l)).collect();
+        let layouts = layouts(surface);
         let (mut gradients, mut means) = (Vec::with_capacity(k * m), Vec::with_capacity(k * m));
         for (face, p) in surface.connectivity.faces().iter().zip(&layouts) {
             for c in 0..k {
@@ -67,10 +91,8 @@ impl Signal {
                 means.push((a + b + d) / 3.0);
             }
         }
-        // For positions the noise is a length; for other signals the slope that it makes takes the place of one.
-        let reach = (REACH + REACH_OF_NOISE * noise / surface.mean_edge).min(MOST_REACH) * surface.mean_edge;
-        let step = if continuous { 0.0 } else { BENDS_OF_A_STEP / surface.mean_edge };
-        Self { n_columns: k, gradients, means, layouts, reach, step, noise }
+        let (reach, step) = (reach(surface, noise), BENDS_OF_A_STEP / surface.mean_edge);
+        Self { n_columns: k, gradients, is_shape: false, means, layouts, reach, step, noise }
     }
 
     /// The borders between the segments, sorted by their labels.
@@ -101,6 +123,15 @@ impl Signal {
             })
             .collect()
     }
+}
+
+fn layouts(surface: &Surface<'_>) -> Vec<[[f64; 2]; 3]> {
+    surface.lengths.iter().map(|&l| triangle::layout(l)).collect()
+}
+
+/// How far gradients are averaged: noise of values of range 1 makes slopes like noise of positions does.
+fn reach(surface: &Surface<'_>, noise: f64) -> f64 {
+    (REACH + REACH_OF_NOISE * noise / surface.mean_edge).min(MOST_REACH) * surface.mean_edge
 }
 
 /// A rigid motion of the plane: rotation as a complex number, then a shift.
@@ -177,8 +208,11 @@ impl Walk<'_> {
         let rotation = times([0.0, 1.0], [along[0], -along[1]]);
         let middle = times(rotation, [0.5 * (tail[0] + head[0]), 0.5 * (tail[1] + head[1])]);
         let home = Motion { rotation, shift: [-middle[0], -middle[1]] };
-        let inner = self.side(f, home, marks);
-        let outer = self.side(g, self.across(h, home), marks);
+        let [from, to] =
+            [surface.connectivity.tail(h), surface.connectivity.head(h)].map(|v| surface.positions[v as usize]);
+        let place = [0, 1, 2].map(|c| 0.5 * (from[c] + to[c]));
+        let inner = self.side(f, home, place, marks);
+        let outer = self.side(g, self.across(h, home), place, marks);
         let (a, b) = (self.labels[f], self.labels[g]);
         let cost = surface.costs[f][h % 3].max(1e-3);
         Bend { labels: [a.min(b), a.max(b)], length, cost, bend: self.jump(&inner, &outer) }
@@ -202,7 +236,7 @@ impl Walk<'_> {
 
     /// Averages over the faces with the label of `start` near the origin. The faces at the border itself may lie on the wrong side
     /// of it: they count only where there is nothing else.
-    fn side(&self, start: usize, motion: Motion, marks: &mut Marks) -> Side {
+    fn side(&self, start: usize, motion: Motion, place: [f64; 3], marks: &mut Marks) -> Side {
         let mut side = Side::EMPTY;
         let reach = self.signal.reach;
         let label = self.labels[start];
@@ -216,15 +250,13 @@ impl Walk<'_> {
             while next < marks.queue.len() {
                 let (f, motion) = marks.queue[next];
                 next += 1;
-                let q = self.signal.layouts[f];
-                let third = [0, 1].map(|c| (q[0][c] + q[1][c] + q[2][c]) / 3.0);
-                let center = motion.apply(third);
-                let distance = center[0].hypot(center[1]);
-                if f != start && distance > 2.0 * reach {
+                let center = self.center(f, motion, place);
+                let away = center[0].hypot(center[1]);
+                if f != start && away > 2.0 * reach {
                     continue;
                 }
                 if !(skip_border && self.at_border[f]) {
-                    self.add(&mut side, f, motion, center, distance <= reach);
+                    self.add(&mut side, f, motion, center, away <= reach);
                 }
                 for (h, g) in self.surface.around(f) {
                     if self.labels[g] == label && marks.stamps[g] != marks.stamp {
@@ -249,6 +281,16 @@ impl Walk<'_> {
         DOUBT * columns * self.signal.noise * (face / inner.area + face / outer.area).sqrt()
     }
 
+    /// Where the centroid of face `f` is in the frame of the edge; for shapes its distance in space from the middle of the edge,
+    /// `place`, since unfolded noise makes ways longer.
+    fn center(&self, f: usize, motion: Motion, place: [f64; 3]) -> [f64; 2] {
+        if self.signal.is_shape {
+            return [distance(self.surface.centroids[f], place), 0.0];
+        }
+        let q = self.signal.layouts[f];
+        motion.apply([0, 1].map(|c| (q[0][c] + q[1][c] + q[2][c]) / 3.0))
+    }
+
     fn add(&self, side: &mut Side, f: usize, motion: Motion, center: [f64; 2], near: bool) {
         let (area, k) = (self.surface.areas[f], self.signal.n_columns);
         side.far_area += area;
@@ -260,12 +302,13 @@ impl Walk<'_> {
             side.center[1] += area * center[1];
         }
         for c in 0..k {
-            let gradient = times(motion.rotation, self.signal.gradients[k * f + c]);
-            for d in 0..2 {
-                side.far_gradient[c][d] += area * gradient[d];
-                side.far_x_gradient[c][d] += area * center[0] * gradient[d];
+            let gradient = self.signal.gradients[k * f + c];
+            let gradient = if self.signal.is_shape { gradient } else { times(motion.rotation, gradient) };
+            for (d, slope) in gradient.into_iter().enumerate() {
+                side.far_gradient[c][d] += area * slope;
+                side.far_x_gradient[c][d] += area * center[0] * slope;
                 if near {
-                    side.gradient[c][d] += area * gradient[d];
+                    side.gradient[c][d] += area * slope;
                 }
             }
             if near {
@@ -314,7 +357,8 @@ impl Side {
         let mean_x = self.far_x / self.far_area;
         let variance = self.far_xx / self.far_area - mean_x * mean_x;
         let bent = [0, 1].map(|d| {
-            let covariance = self.far_x_gradient[c][d] / self.far_area - mean_x * self.far_gradient[c][d] / self.far_area;
+            let covariance =
+                self.far_x_gradient[c][d] / self.far_area - mean_x * self.far_gradient[c][d] / self.far_area;
             // A side of one row of faces says nothing about curvature.
             if variance > 1e-3 * mean_x * mean_x {
                 covariance / variance * center[0]

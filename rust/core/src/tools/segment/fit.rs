@@ -1,6 +1,7 @@
 //! What a segment would look like at a face if it went on there: a plane, or a quadratic function fitted to its faces nearby.
 
-use super::surface::{dot, subtract, Surface};
+use super::surface::Surface;
+use crate::mesh::vector::{cross, dot, norm, scale, sub, unit};
 use crate::solve::eigen::symmetric_eigen;
 use crate::solve::Columns;
 
@@ -40,7 +41,7 @@ impl Plane {
         for &f in faces {
             let weight = surface.areas[f as usize] / (3.0 * area);
             for v in surface.connectivity.faces()[f as usize] {
-                let d = subtract(surface.positions[v as usize], center);
+                let d = sub(surface.positions[v as usize], center);
                 (0..3).for_each(|i| (0..3).for_each(|j| moments[i][j] += weight * d[i] * d[j]));
             }
         }
@@ -50,7 +51,7 @@ impl Plane {
 
     /// The distance of `p`.
     pub fn distance(&self, p: [f64; 3]) -> f64 {
-        dot(self.normal, subtract(p, self.center)).abs()
+        dot(self.normal, sub(p, self.center)).abs()
     }
 }
 
@@ -77,11 +78,10 @@ impl Patch {
                 origin[c] += a * surface.centroids[f as usize][c];
             });
         }
-        let length = dot(normal, normal).sqrt();
-        if area <= 0.0 || length <= 0.0 {
+        if area <= 0.0 || norm(normal) <= 0.0 {
             return None;
         }
-        let axes = frame(normal.map(|n| n / length));
+        let axes = frame(unit(normal));
         let origin = origin.map(|c| c / area);
         let mut patch = Self { origin, axes, scale: area.sqrt(), coefficients: Vec::new() };
         let columns = signal.map_or(1, |s| s.n_columns);
@@ -110,7 +110,7 @@ impl Patch {
 
     /// The terms at `p`, and its height, in units of the patch's size.
     fn terms(&self, p: [f64; 3]) -> ([f64; TERMS], f64) {
-        let d = subtract(p, self.origin);
+        let d = sub(p, self.origin);
         let [s, t, height] = self.axes.map(|axis| dot(axis, d) / self.scale);
         ([1.0, s, t, s * s, s * t, t * t], height)
     }
@@ -122,7 +122,8 @@ impl Patch {
         match signal {
             None => {
                 let c = &self.coefficients[0];
-                let slope = [c[1] + 2.0 * c[3] * terms[1] + c[4] * terms[2], c[2] + c[4] * terms[1] + 2.0 * c[5] * terms[2]];
+                let slope =
+                    [c[1] + 2.0 * c[3] * terms[1] + c[4] * terms[2], c[2] + c[4] * terms[1] + 2.0 * c[5] * terms[2]];
                 let steepness = (1.0 + slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
                 self.scale * (height - at(c)).abs() / steepness
             }
@@ -140,15 +141,8 @@ fn frame(normal: [f64; 3]) -> [[f64; 3]; 3] {
     let mut axis = [0.0; 3];
     axis[least] = 1.0;
     let across = dot(axis, normal);
-    let s = [0, 1, 2].map(|c| axis[c] - across * normal[c]);
-    let length = dot(s, s).sqrt();
-    let s = s.map(|x| x / length);
-    let t = [
-        normal[1] * s[2] - normal[2] * s[1],
-        normal[2] * s[0] - normal[0] * s[2],
-        normal[0] * s[1] - normal[1] * s[0],
-    ];
-    [s, t, normal]
+    let s = unit(sub(axis, scale(normal, across)));
+    [s, cross(normal, s), normal]
 }
 
 /// Solves a small positive definite system by Cholesky's factorisation.
@@ -174,13 +168,7 @@ fn solve(mut a: [[f64; TERMS]; TERMS], mut b: [f64; TERMS]) -> [f64; TERMS] {
 
 /// The faces of the segment of `start` that are nearest to it in steps over edges, those at the border left out if there are
 /// others; `seen` marks faces by `stamp`.
-pub(super) fn nearby(
-    surface: &Surface<'_>,
-    labels: &[u32],
-    start: usize,
-    seen: &mut [u32],
-    stamp: u32,
-) -> Vec<u32> {
+pub(super) fn nearby(surface: &Surface<'_>, labels: &[u32], start: usize, seen: &mut [u32], stamp: u32) -> Vec<u32> {
     let label = labels[start];
     let mut queue = vec![start as u32];
     let mut inside = Vec::with_capacity(NEARBY);
@@ -212,8 +200,9 @@ mod tests {
 
     #[test]
     fn a_small_system_is_solved() {
-        let a: [[f64; TERMS]; TERMS] =
-            std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 8.0 } else { 1.0 / (1.0 + i as f64 + j as f64) }));
+        let a: [[f64; TERMS]; TERMS] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| if i == j { 8.0 } else { 1.0 / (1.0 + i as f64 + j as f64) })
+        });
         let x: [f64; TERMS] = std::array::from_fn(|i| i as f64 - 2.5);
         let b = std::array::from_fn(|i| (0..TERMS).map(|j| a[i][j] * x[j]).sum());
         let found = solve(a, b);

@@ -14,7 +14,7 @@ use crate::Result;
 
 /// Two basins of the indicator stay apart if the pass between them lies deeper than this. Low: borders that are none are found by
 /// their bend later.
-const PERSISTENCE: f64 = 0.1;
+const PERSISTENCE: f64 = 0.03;
 
 /// A border stands if it bends by more than this share of the length weight.
 const BEND: f64 = 0.6;
@@ -48,7 +48,11 @@ impl Fitted<'_> {
     /// [`crate::Error::Cancelled`].
     pub fn segments(&self) -> Result<Finished> {
         self.report(0.9, "segments");
-        let signal = Signal::new(self.surface, self.start, self.noise, self.is_shape);
+        let signal = if self.is_shape {
+            Signal::of_shape(self.surface, self.noise)
+        } else {
+            Signal::of_values(self.surface, self.start, self.noise)
+        };
         let merging = Merging { surface: self.surface, signal: &signal, groups: None, progress: self.progress };
         let leaves = match self.options.method {
             SegmentMethod::Paper => {

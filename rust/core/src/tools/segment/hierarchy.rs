@@ -79,7 +79,8 @@ mod tests {
 
     #[test]
     fn takes_as_many_merges_as_it_needs() {
-        let merges = [(0, 1, 0.3), (2, 3, 0.2), (0, 2, 0.5)].map(|(kept, gone, strength)| Merge { kept, gone, strength });
+        let merges =
+            [(0, 1, 0.3), (2, 3, 0.2), (0, 2, 0.5)].map(|(kept, gone, strength)| Merge { kept, gone, strength });
         let hierarchy = Hierarchy::new(vec![0, 1, 2, 3, 0], 4, &merges);
         assert_eq!(hierarchy.range(), [4, 1]);
         assert_eq!(hierarchy.strengths(), [0.3, 0.3, 0.5]);

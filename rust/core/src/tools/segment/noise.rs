@@ -23,7 +23,8 @@ pub(super) fn noise_level(surface: &Surface<'_>, values: &Columns, degrees: usiz
             continue;
         }
         let jump = Hinge::new(&surface.lengths, &surface.areas, h, twin).jump();
-        let vertices = [connectivity.tail(h), connectivity.head(h), connectivity.opposite(h), connectivity.opposite(twin)];
+        let vertices =
+            [connectivity.tail(h), connectivity.head(h), connectivity.opposite(h), connectivity.opposite(twin)];
         let squared: f64 = (0..values.n_columns)
             .map(|c| {
                 let column = values.column(c);

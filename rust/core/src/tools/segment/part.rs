@@ -37,7 +37,9 @@ pub(super) fn segment_part(
     let some = |columns: &Columns| Columns {
         n_rows: vertices.len(),
         n_columns: columns.n_columns,
-        data: (0..columns.n_columns).flat_map(|c| vertices.iter().map(move |&v| columns.column(c)[v as usize])).collect(),
+        data: (0..columns.n_columns)
+            .flat_map(|c| vertices.iter().map(move |&v| columns.column(c)[v as usize]))
+            .collect(),
     };
     let options = SegmentOptions {
         face_weights: options.face_weights.as_ref().map(|w| faces.iter().map(|&f| w[f as usize]).collect()),

@@ -215,8 +215,7 @@ impl<'a, 'b> Fits<'a, 'b> {
             if let Some(&start) = ring.iter().find(|&&g| self.labels[g] == label) {
                 return Some(start);
             }
-            let next: Vec<usize> =
-                ring.iter().flat_map(|&g| self.refit.surface.around(g).map(|(_, g)| g)).collect();
+            let next: Vec<usize> = ring.iter().flat_map(|&g| self.refit.surface.around(g).map(|(_, g)| g)).collect();
             ring = next;
         }
         None

@@ -1,5 +1,6 @@
 //! What all parts of the segmentation know of the surface: sizes in the chosen unit, neighbours, frames.
 
+use crate::mesh::vector::area_vector;
 use crate::mesh::{edge_lengths, triangle, Connectivity};
 use crate::operators::mollify;
 
@@ -69,24 +70,8 @@ impl<'a> Surface<'a> {
 
     /// The vector area of face `f`: its normal times its area.
     pub fn vector_area(&self, f: usize) -> [f64; 3] {
-        let [a, b, c] = self.connectivity.faces()[f].map(|v| self.positions[v as usize]);
-        let (u, v) = (subtract(b, a), subtract(c, a));
-        [
-            0.5 * (u[1] * v[2] - u[2] * v[1]),
-            0.5 * (u[2] * v[0] - u[0] * v[2]),
-            0.5 * (u[0] * v[1] - u[1] * v[0]),
-        ]
+        area_vector(self.connectivity.faces()[f].map(|v| self.positions[v as usize]))
     }
-}
-
-/// `a − b`.
-pub(super) fn subtract(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-/// `a · b`.
-pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// Labels renumbered from 0 in the order of their first faces, and how many there are.
