@@ -21,7 +21,7 @@ import bpy
 from . import files, selection
 from .batch_options import TOOLS, parser, settings_from
 from .console import ProgressBar
-from .tools.run import RefusedError, Run
+from .tools.run import NO_RESULT, RefusedError, Run
 
 COMMAND = "ridgeform"
 POLL_SECONDS = 0.05
@@ -105,18 +105,22 @@ def _run_file(source: Path, tool: type[Run], settings: object) -> Run:
 
 
 def _record_of(run: Run) -> dict[str, object]:
-    done = [entry for entry in run.summary if entry["energy_after"] is not None]
-    befores = [entry["energy_before"] for entry in done]
+    done = [entry for entry in run.summary if entry["status"] not in NO_RESULT]
     warnings = [f'"{entry["name"]}": {note}' for entry in run.summary for note in entry["warnings"]]
     return {
         "vertices": sum(entry["vertices"] for entry in done),
         "faces": sum(entry["faces"] for entry in done),
-        "energy_before": None if None in befores else sum(befores),
-        "energy_after": sum(entry["energy_after"] for entry in done),
-        "gap": max((entry["gap"] for entry in done), default=None),
+        "energy_before": _total(done, "energy_before"),
+        "energy_after": _total(done, "energy_after"),
+        "gap": max((entry["gap"] for entry in done if entry["gap"] is not None), default=None),
         "warnings": warnings + run.skipped,
         "meshes": run.summary,
     }
+
+
+def _total(entries: Sequence[dict[str, object]], key: str) -> float | None:
+    values = [entry[key] for entry in entries]
+    return None if None in values else sum(values)
 
 
 def _target(source: Path, options: argparse.Namespace) -> Path:
@@ -160,9 +164,16 @@ def _sentence(record: dict[str, object]) -> str:
         return f"{record['file']}: failed: {record['error']}"
     notes = "".join(f"\n  note: {note}" for note in record["warnings"])
     where = f"{record['file']} → {record['output']}"
-    before = "" if record["energy_before"] is None else f"{record['energy_before']:.4g} → "
-    energies = f"energy {before}{record['energy_after']:.4g}, gap {record['gap']:.1g}"
-    return f"{where}: {record['vertices']} vertices, {energies}, {record['seconds']:.1f} s{notes}"
+    parts = [f"{record['vertices']} vertices"]
+    if record["energy_after"] is not None:
+        before = "" if record["energy_before"] is None else f"{record['energy_before']:.4g} → "
+        parts.append(f"energy {before}{record['energy_after']:.4g}")
+    if record["gap"] is not None:
+        parts.append(f"gap {record['gap']:.1g}")
+    segments = [entry["segments"] for entry in record["meshes"] if "segments" in entry]
+    if segments:
+        parts.append(f"{sum(segments)} segments")
+    return f"{where}: {', '.join(parts)}, {record['seconds']:.1f} s{notes}"
 
 
 _command = None

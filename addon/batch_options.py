@@ -9,11 +9,13 @@ from pathlib import Path
 
 from . import files
 from .attribute_settings import ENERGIES, DenoiseSettings, InterpolateSettings
+from .segment_settings import OUTPUTS, SegmentSettings
 from .settings import StylizeSettings
 from .shared_settings import defaults_of, setting_names
 from .tools.denoise import Denoising
 from .tools.interpolate import Interpolation
 from .tools.run import Run
+from .tools.segment import Segmenting
 from .tools.stylize import Stylization
 
 
@@ -58,7 +60,17 @@ def _translated(options: argparse.Namespace) -> dict[str, object]:
         given["known"] = options.known.upper()
     if words.get("material"):
         given["display"] = "MATERIAL"
+    if words.get("segments") is not None:
+        given |= {"use_count": True, "count": options.segments}
+    if words.get("make"):
+        given["outputs"] = {_output_word(word) for word in options.make}
+    if options.tool == "segment" and options.attribute is not None:
+        given["source"] = "ATTRIBUTE"
     return given
+
+
+def _output_word(word: str) -> str:
+    return word.upper().replace("-", "_")
 
 
 def _suffix(text: str) -> str:
@@ -145,9 +157,38 @@ def _add_interpolate(child: argparse.ArgumentParser, defaults: object) -> None:
     _add_attribute(child, defaults)
 
 
+def _add_segment(child: argparse.ArgumentParser, defaults: object) -> None:
+    add = child.add_argument
+    words = [name.lower().replace("_", "-") for name, *_ in OUTPUTS]
+    add("--segments", type=int, metavar="N", help="how many segments there shall be")
+    add("--length-weight", type=float, help=f"what a border costs for its length ({defaults.length_weight})")
+    add("--attribute", metavar="NAME", help="segment this attribute, colour or vertex group, not the shape")
+    add(
+        "--make", action="append", choices=words, help="what is made of segments; may be repeated (materials)"
+    )
+    add("--min-faces", type=int, help=f"join segments of fewer triangles ({defaults.min_faces})")
+    add("--method", choices=("fitted", "paper"), help=f"how borders are found ({defaults.method})")
+    add("--cut-threshold", type=float, help=f"with --method paper, 0 to 1 ({defaults.cut_threshold})")
+    add("--fidelity", type=float, help="fidelity weight of the paper (from the noise of the mesh)")
+    add("--epsilon-start", type=float, help=f"first width of borders ({defaults.epsilon_start})")
+    add("--epsilon-end", type=float, help=f"last width of borders ({defaults.epsilon_end})")
+    scales = ("extent", "bounding_box", "area", "max_edge")
+    add("--scale", choices=scales, help=f"unit of the widths ({defaults.scale})")
+    add("--ridge-group", metavar="NAME", help="vertex group painted where borders should be")
+    add("--avoid-ridges", action="store_true", default=None, help="keep borders away from what is painted")
+    add("--solver", choices=("auto", "fast", "clarabel"), help="solver (auto)")
+    add("--max-iterations", type=int, help="most solver iterations; 0: left to the solver")
+
+
 TOOLS = {
     "stylize": BatchTool(
         Stylization, StylizeSettings, "make meshes piecewise flat, with crisp ridges", _add_stylize
+    ),
+    "segment": BatchTool(
+        Segmenting,
+        SegmentSettings,
+        "divide meshes into the parts that a person would name: material slots and more",
+        _add_segment,
     ),
     "denoise-attribute": BatchTool(
         Denoising,

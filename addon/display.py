@@ -50,6 +50,13 @@ def show(
     return notes
 
 
+def show_materials() -> None:
+    """Have Solid shading show the colours of materials."""
+    for space in _spaces():
+        if space.shading.type == "SOLID":
+            space.shading.color_type = "MATERIAL"
+
+
 def _scalar(values: np.ndarray) -> np.ndarray:
     """One number (n,) for each row of values (n, k): a vector's length."""
     return values[:, 0] if values.shape[1] == 1 else np.linalg.norm(values, axis=1)

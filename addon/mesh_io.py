@@ -82,6 +82,15 @@ def selected_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
     return selected & ~hidden
 
 
+def selected_faces(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Which faces (f,) bool are selected and visible."""
+    selected = np.empty(len(mesh.polygons), bool)
+    hidden = np.empty(len(mesh.polygons), bool)
+    mesh.polygons.foreach_get("select", selected)
+    mesh.polygons.foreach_get("hide", hidden)
+    return selected & ~hidden
+
+
 def group_weights(obj: bpy.types.Object, name: str) -> np.ndarray:
     """The weights (n,) float32 of a vertex group, 0 outside it; `KeyError` if there is no such group."""
     index = obj.vertex_groups[name].index

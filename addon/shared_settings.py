@@ -35,7 +35,28 @@ class RidgeSettings:
     )
 
 
-class SolverSettings:
+class SolverChoice:
+    """What solves, and for how long at most."""
+
+    solver: EnumProperty(
+        name="Solver",
+        description="What solves the problem",
+        items=(
+            ("auto", "Automatic", "Chosen by the problem"),
+            ("fast", "Fast", "The specialised first-order solver"),
+            ("clarabel", "Clarabel", "The general interior-point solver: slow and accurate"),
+        ),
+        default="auto",
+    )
+    max_iterations: IntProperty(
+        name="Iterations",
+        description="The most iterations of the solver. 0 leaves it to the solver",
+        default=0,
+        min=0,
+    )
+
+
+class SolverSettings(SolverChoice):
     """The choices of the paper that rarely change, and the solver."""
 
     coupling: EnumProperty(
@@ -64,22 +85,6 @@ class SolverSettings:
         name="Intrinsic Delaunay",
         description="Compute on the intrinsic Delaunay triangulation. Helps with long, thin triangles",
         default=False,
-    )
-    solver: EnumProperty(
-        name="Solver",
-        description="What solves the problem",
-        items=(
-            ("auto", "Automatic", "Chosen by the problem"),
-            ("fast", "Fast", "The specialised first-order solver"),
-            ("clarabel", "Clarabel", "The general interior-point solver: slow and accurate"),
-        ),
-        default="auto",
-    )
-    max_iterations: IntProperty(
-        name="Iterations",
-        description="The most iterations of the solver. 0 leaves it to the solver",
-        default=0,
-        min=0,
     )
 
 

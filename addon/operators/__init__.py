@@ -3,10 +3,12 @@
 
 import bpy
 
-from . import attributes, modal, stylize
+from ..tools.segment import forget
+from . import attributes, modal, segment, stylize
 
 _CLASSES = (
     stylize.RIDGEFORM_OT_stylize,
+    segment.RIDGEFORM_OT_segment,
     attributes.RIDGEFORM_OT_denoise_attribute,
     attributes.RIDGEFORM_OT_interpolate_attribute,
     attributes.RIDGEFORM_OT_vibration_modes,
@@ -24,5 +26,6 @@ def register() -> None:
 def unregister() -> None:
     """Unregister all operators; a job that runs is cancelled first."""
     modal.unregister()
+    forget()
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)

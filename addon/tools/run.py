@@ -16,6 +16,9 @@ from ..selection import MOVES
 from ..welding import Weld, weld_seams
 
 NOT_BEGUN = "not begun"
+FAILED = "failed"
+NO_RESULT = {NOT_BEGUN, FAILED}
+"""What a summary says the status of a mesh is that has no result."""
 
 
 class RefusedError(Exception):
@@ -114,7 +117,7 @@ class Run(ABC):
 
     def report(self) -> str:
         """What happened, in one line, with what was skipped and why."""
-        done = [entry for entry in self.summary if entry["status"] not in {NOT_BEGUN, "failed"}]
+        done = [entry for entry in self.summary if entry["status"] not in NO_RESULT]
         notes = [f'"{entry["name"]}": {note}' for entry in self.summary for note in entry["warnings"]]
         idle = [f'"{entry["name"]}" was not begun' for entry in self.summary if entry["status"] == NOT_BEGUN]
         return "; ".join([self.headline(done), *notes, *idle, *self.skipped, *self.errors])
@@ -130,7 +133,7 @@ class Run(ABC):
             "energy_after": None,
             "gap": None,
             "steps": 0,
-            "status": NOT_BEGUN if error is None else "failed",
+            "status": NOT_BEGUN if error is None else FAILED,
             "seconds": part.task.seconds,
             "warnings": list(part.warnings),
             "error": None if error is None else str(error),

@@ -8,6 +8,7 @@ from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 
 from ..attribute_settings import DenoiseSettings, InterpolateSettings
+from ..segment_settings import SegmentSettings
 from ..settings import StylizeSettings
 from ..shared_settings import setting_names
 
@@ -33,6 +34,13 @@ class RIDGEFORM_MT_stylize_presets(_PresetMenu, bpy.types.Menu):  # noqa: N801
     preset_subdir = "ridgeform/stylize"
 
 
+class RIDGEFORM_MT_segment_presets(_PresetMenu, bpy.types.Menu):  # noqa: N801
+    """The list of presets of segmenting."""
+
+    bl_label = "Segment Presets"
+    preset_subdir = "ridgeform/segment"
+
+
 class RIDGEFORM_MT_denoise_presets(_PresetMenu, bpy.types.Menu):  # noqa: N801
     """The list of presets of denoising."""
 
@@ -56,6 +64,17 @@ class RIDGEFORM_OT_stylize_preset_add(AddPresetBase, bpy.types.Operator):  # noq
     preset_subdir = "ridgeform/stylize"
     preset_defines = ["settings = bpy.context.scene.ridgeform_stylize"]
     preset_values = _preset_values(StylizeSettings)
+
+
+class RIDGEFORM_OT_segment_preset_add(AddPresetBase, bpy.types.Operator):  # noqa: N801
+    """Save the settings of the panel as a preset, or remove one"""
+
+    bl_idname = "ridgeform.segment_preset_add"
+    bl_label = "Add Segment Preset"
+    preset_menu = "RIDGEFORM_MT_segment_presets"
+    preset_subdir = "ridgeform/segment"
+    preset_defines = ["settings = bpy.context.scene.ridgeform_segment"]
+    preset_values = _preset_values(SegmentSettings)
 
 
 class RIDGEFORM_OT_denoise_preset_add(AddPresetBase, bpy.types.Operator):  # noqa: N801
@@ -89,6 +108,15 @@ class RIDGEFORM_PT_stylize_presets(PresetPanel, bpy.types.Panel):  # noqa: N801
     preset_add_operator = "ridgeform.stylize_preset_add"
 
 
+class RIDGEFORM_PT_segment_presets(PresetPanel, bpy.types.Panel):  # noqa: N801
+    """The popover behind the presets button of segmenting."""
+
+    bl_label = "Segment Presets"
+    preset_subdir = "ridgeform/segment"
+    preset_operator = "script.execute_preset"
+    preset_add_operator = "ridgeform.segment_preset_add"
+
+
 class RIDGEFORM_PT_denoise_presets(PresetPanel, bpy.types.Panel):  # noqa: N801
     """The popover behind the presets button of denoising."""
 
@@ -109,12 +137,15 @@ class RIDGEFORM_PT_interpolate_presets(PresetPanel, bpy.types.Panel):  # noqa: N
 
 _CLASSES = (
     RIDGEFORM_MT_stylize_presets,
+    RIDGEFORM_MT_segment_presets,
     RIDGEFORM_MT_denoise_presets,
     RIDGEFORM_MT_interpolate_presets,
     RIDGEFORM_OT_stylize_preset_add,
+    RIDGEFORM_OT_segment_preset_add,
     RIDGEFORM_OT_denoise_preset_add,
     RIDGEFORM_OT_interpolate_preset_add,
     RIDGEFORM_PT_stylize_presets,
+    RIDGEFORM_PT_segment_presets,
     RIDGEFORM_PT_denoise_presets,
     RIDGEFORM_PT_interpolate_presets,
 )

@@ -169,6 +169,33 @@ def test_attributes_of_files(tmp_path, capfd, command, options, name):
     assert len(obj.data.materials) == ("--material" in options)
 
 
+def test_segments_of_files(tmp_path, capfd):
+    kit.empty_scene()
+    kit.bumpy_box(cuts=6, noise=0.01)
+    source, target = tmp_path / "box.blend", tmp_path / "out.blend"
+    files.write_file(source)
+    options = ("--make", "materials", "--make", "seams", "--length-weight", "0.6")
+    code, (record,) = run_tool(capfd, "segment", source, "-o", target, *options)
+    assert code == 0, record
+    assert (record["energy_after"], record["gap"]) == (None, None)
+    (entry,) = record["meshes"]
+    assert entry["segments"] == 6
+    assert entry["possible"][0] <= 6 <= entry["possible"][1]
+    (obj,) = files.read_file(target)
+    assert len(obj.data.materials) == 6
+    assert sum(edge.use_seam for edge in obj.data.edges) == 12 * 7
+    code, (record,) = run_tool(
+        capfd, "segment", source, "-o", target, "--segments", "3", "--make", "face-sets"
+    )
+    assert record["meshes"][0]["segments"] == 3
+    (obj,) = files.read_file(target)
+    assert len(obj.data.materials) == 0
+    batch.flush_output()
+    capfd.readouterr()
+    assert batch.main(["segment", str(source), "-o", str(target)]) == 0
+    assert "vertices, 6 segments, " in capfd.readouterr().out
+
+
 def test_an_attribute_that_is_not_there_is_an_error_of_its_file(tmp_path, capfd):
     source = warmed(tmp_path)
     code, (record,) = run_tool(

@@ -12,6 +12,7 @@ from bl_ext.user_default.ridgeform.attribute_settings import (
     InterpolateSettings,
     ModesSettings,
 )
+from bl_ext.user_default.ridgeform.segment_settings import SegmentSettings
 from bl_ext.user_default.ridgeform.settings import StylizeSettings, default_settings, fidelity_of
 from bl_ext.user_default.ridgeform.shared_settings import defaults_of, setting_names
 
@@ -20,6 +21,12 @@ CLASSES = (
     "RIDGEFORM_OT_denoise_attribute",
     "RIDGEFORM_OT_interpolate_attribute",
     "RIDGEFORM_OT_vibration_modes",
+    "RIDGEFORM_OT_segment",
+    "RIDGEFORM_OT_segment_preset_add",
+    "RIDGEFORM_MT_segment_presets",
+    "RIDGEFORM_PT_segment",
+    "RIDGEFORM_PT_segment_expert",
+    "RIDGEFORM_PT_segment_presets",
     "RIDGEFORM_OT_show_attribute",
     "RIDGEFORM_OT_stylize_preset_add",
     "RIDGEFORM_OT_denoise_preset_add",
@@ -45,6 +52,7 @@ TOOLS = {
     "stylize": ("ridgeform_stylize", StylizeSettings),
     "denoise_attribute": ("ridgeform_denoise", DenoiseSettings),
     "interpolate_attribute": ("ridgeform_interpolate", InterpolateSettings),
+    "segment": ("ridgeform_segment", SegmentSettings),
     "vibration_modes": ("ridgeform_modes", ModesSettings),
 }
 MENUS = ("VIEW3D_MT_object", "VIEW3D_MT_edit_mesh")
@@ -116,6 +124,20 @@ def test_shipped_presets_of_the_attribute_panels(tool):
         seen.add(tuple(getattr(settings, name) for name in kinds if hasattr(settings, name)))
     assert len(seen) == len(list(Path(folder).glob("*.py"))) >= 3
     assert {entry[0] for entry in seen} == {"l1_hessian", "l2_curved_hessian"}
+
+
+def test_shipped_presets_of_segmenting():
+    (folder,) = bpy.utils.preset_paths("ridgeform/segment")
+    settings = bpy.context.scene.ridgeform_segment
+    seen = set()
+    for path in sorted(Path(folder).glob("*.py")):
+        settings.length_weight, settings.method, settings.attribute = 9.0, "paper", "mine"
+        menu = "RIDGEFORM_MT_segment_presets"
+        assert bpy.ops.script.execute_preset(filepath=str(path), menu_idname=menu) == {"FINISHED"}
+        assert settings.attribute == "mine"
+        assert settings.use_fidelity == (settings.method == "paper") == (path.stem == "Paper_2024")
+        seen.add((settings.method, round(settings.length_weight, 6)))
+    assert len(seen) == 4
 
 
 def test_button_takes_the_settings_of_the_panel():

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Segments as objects of their own."""
+
+import bpy
+import numpy as np
+
+from . import layers, slots
+
+
+def separate(obj: bpy.types.Object, labels: np.ndarray) -> list[bpy.types.Object]:
+    """Make an object of each segment; the first stays, and faces without a segment stay with it.
+
+    All that lies on the mesh goes along; own material slots that a part does not use go. Returns all parts.
+    """
+    context = bpy.context
+    active, chosen = context.view_layer.objects.active, list(context.selected_objects)
+    parts = [obj]
+    _select_only(obj)
+    try:
+        for segment in np.unique(labels[labels >= 0])[1:].tolist():
+            now = layers.read_ints(obj.data, layers.SEGMENT, "FACE", -1)
+            _select_faces(obj.data, now == segment)
+            before = set(context.scene.objects)
+            bpy.ops.object.mode_set(mode="EDIT")
+            bpy.ops.mesh.separate(type="SELECTED")
+            bpy.ops.object.mode_set(mode="OBJECT")
+            (made,) = set(context.scene.objects) - before
+            made.name = made.data.name = f"{obj.name} {segment + 1}"
+            parts.append(made)
+            _select_only(obj)
+    finally:
+        for item in [*chosen, *parts]:
+            item.select_set(True)
+        context.view_layer.objects.active = active
+    for part in parts:
+        index = np.zeros(len(part.data.polygons), np.int32)
+        part.data.polygons.foreach_get("material_index", index)
+        slots.remove_unused(part.data, index)
+    return parts
+
+
+def _select_only(obj: bpy.types.Object) -> None:
+    for other in bpy.context.selected_objects:
+        other.select_set(False)
+    obj.select_set(True)
+    bpy.context.view_layer.objects.active = obj
+
+
+def _select_faces(mesh: bpy.types.Mesh, chosen: np.ndarray) -> None:
+    bpy.context.tool_settings.mesh_select_mode = (False, False, True)
+    mesh.vertices.foreach_set("select", np.zeros(len(mesh.vertices), bool))
+    mesh.edges.foreach_set("select", np.zeros(len(mesh.edges), bool))
+    mesh.polygons.foreach_set("hide", np.zeros(len(mesh.polygons), bool))
+    mesh.polygons.foreach_set("select", chosen)
+    mesh.update()
