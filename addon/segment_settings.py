@@ -90,7 +90,7 @@ class SegmentSettings(RidgeSettings, SolverChoice):
     min_faces: IntProperty(
         name="Least Faces",
         description="Segments of fewer triangles are joined to a neighbour",
-        default=20,
+        default=4,
         min=0,
         soft_max=200,
     )
