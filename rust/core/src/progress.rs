@@ -31,16 +31,16 @@ struct State {
 }
 
 #[derive(Debug, Default)]
-struct Shared {
+struct Wishes {
     cancel: AtomicBool,
     finish: AtomicBool,
-    state: Mutex<State>,
 }
 
 /// A handle shared between a running call and whoever watches it; clones share one state.
 #[derive(Debug, Clone, Default)]
 pub struct Progress {
-    shared: Arc<Shared>,
+    wishes: Arc<Wishes>,
+    state: Arc<Mutex<State>>,
 }
 
 impl Progress {
@@ -50,26 +50,32 @@ impl Progress {
         Self::default()
     }
 
+    /// A handle for a part of the call: it hears the same wishes, and what is published through it nobody sees.
+    #[must_use]
+    pub fn quiet(&self) -> Self {
+        Self { wishes: Arc::clone(&self.wishes), state: Arc::default() }
+    }
+
     /// Ask the running call to stop and return [`Error::Cancelled`].
     pub fn cancel(&self) {
-        self.shared.cancel.store(true, Ordering::Relaxed);
+        self.wishes.cancel.store(true, Ordering::Relaxed);
     }
 
     /// Ask the running call to stop and return what it has reached.
     pub fn finish(&self) {
-        self.shared.finish.store(true, Ordering::Relaxed);
+        self.wishes.finish.store(true, Ordering::Relaxed);
     }
 
     /// Whether [`Progress::cancel`] was called.
     #[must_use]
     pub fn is_cancelled(&self) -> bool {
-        self.shared.cancel.load(Ordering::Relaxed)
+        self.wishes.cancel.load(Ordering::Relaxed)
     }
 
     /// Whether [`Progress::finish`] was called.
     #[must_use]
     pub fn is_finishing(&self) -> bool {
-        self.shared.finish.load(Ordering::Relaxed)
+        self.wishes.finish.load(Ordering::Relaxed)
     }
 
     /// # Errors
@@ -117,6 +123,6 @@ impl Progress {
 
     fn state(&self) -> MutexGuard<'_, State> {
         // A poisoned lock only means that a watcher panicked while reading: the state itself is plain data.
-        self.shared.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+        self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
     }
 }

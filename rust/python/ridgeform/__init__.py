@@ -1,18 +1,20 @@
 """Ridgeform: the L1 surface Hessian as a modeler's tool.
 
-Make a `Mesh` from arrays, then call a function per problem: `stylize` turns it piecewise flat,
-`segment` finds the parts that it is made of, `denoise` and
+Make a `Mesh` from arrays, then call a function per problem: `stylize` turns it piecewise flat, `segment` finds
+the parts that it is made of, `fill_holes` closes holes so that the ridges around them go on, `denoise` and
 `interpolate` find functions on it with sparse second derivatives, `vibration_modes` those of least energy,
-`diffusion_curves` the few curves that redraw a painted surface, and
-`hessian` and its companions are the operators behind them. Arrays of any numeric dtype and memory order go
-in; fresh C-contiguous `float64` and `int32` arrays come out. Long calls release the interpreter lock, report
-to a `Progress`, and hear Ctrl-C. Every failure is a `RidgeformError`.
+`diffusion_curves` the few curves that redraw a painted surface, and `hessian` and its companions are the
+operators behind them. Arrays of any numeric dtype and memory order go in; fresh C-contiguous `float64` and
+`int32` arrays come out. Long calls release the interpreter lock, report to a `Progress`, and hear Ctrl-C.
+Every failure is a `RidgeformError`.
 
 Source: Rowe, Jacobson and Stein, Sharpening and Sparsifying with Surface Hessians, SIGGRAPH Asia 2024.
 """
 
 from ._native import (
     DiffusionCurves,
+    Filled,
+    FilledHole,
     Hole,
     Mesh,
     MeshReport,
@@ -28,6 +30,7 @@ from ._native import (
     denoise,
     diffusion_curves,
     energy,
+    fill_holes,
     find_holes,
     hessian,
     hessian_norm,
@@ -45,6 +48,8 @@ __all__ = [
     "ArgumentError",
     "Cancelled",
     "DiffusionCurves",
+    "Filled",
+    "FilledHole",
     "Hole",
     "Mesh",
     "MeshError",
@@ -63,6 +68,7 @@ __all__ = [
     "denoise",
     "diffusion_curves",
     "energy",
+    "fill_holes",
     "find_holes",
     "hessian",
     "hessian_norm",

@@ -1,5 +1,6 @@
 """Types of the compiled module; the documentation is in its docstrings: `help(ridgeform.stylize)`."""
 
+from collections.abc import Sequence
 from typing import Any, Final, Literal, Self, TypeAlias, final
 
 import numpy as np
@@ -17,7 +18,7 @@ Energy: TypeAlias = Literal[
     "l1_hessian_stein2018",
     "l1_edge_laplacian",
 ]
-Scale: TypeAlias = Literal["max_edge", "bounding_box", "area"]
+Scale: TypeAlias = Literal["max_edge", "bounding_box", "area", "extent"]
 Solver: TypeAlias = Literal["auto", "fast", "clarabel", "clarabel-qdldl", "clarabel-faer"]
 # A SciPy sparse matrix has no type here: the wheel does not depend on SciPy.
 AnyMatrix: TypeAlias = SparseMatrix | ArrayLike | Any
@@ -194,6 +195,38 @@ class Redrawn:
     @property
     def corners(self) -> Floats: ...
 
+@final
+class Filled:
+    @property
+    def vertices(self) -> Floats: ...
+    @property
+    def faces(self) -> Indices: ...
+    @property
+    def patch(self) -> Indices: ...
+    @property
+    def holes(self) -> list[FilledHole]: ...
+    @property
+    def ridges(self) -> Indices: ...
+    @property
+    def status(self) -> Literal["converged", "finished", "stopped"]: ...
+
+@final
+class FilledHole:
+    @property
+    def boundary(self) -> Indices: ...
+    @property
+    def status(self) -> Literal["converged", "finished", "stopped", "refused"]: ...
+    @property
+    def reason(self) -> str | None: ...
+    @property
+    def sharpness(self) -> float: ...
+    @property
+    def energy(self) -> tuple[float, float]: ...
+    @property
+    def gap(self) -> float: ...
+    @property
+    def iterations(self) -> int: ...
+
 def hessian(mesh: Mesh, *, dual: Dual = "barycentric") -> SparseMatrix: ...
 def hessian_norm(mesh: Mesh, values: ArrayLike, *, dual: Dual = "barycentric") -> Floats: ...
 def energy(
@@ -338,3 +371,23 @@ def redraw(
     sides: ArrayLike | None = None,
     progress: Progress | None = None,
 ) -> Redrawn: ...
+def fill_holes(
+    mesh: Mesh,
+    *,
+    loops: Sequence[int] | Sequence[ArrayLike] | None = None,
+    max_edges: int | None = None,
+    outer: bool = False,
+    edge_length: float | None = None,
+    iterations: int = 50,
+    fidelity: float = 50.0,
+    sharpness: float | Literal["auto"] = "auto",
+    coupling: Coupling = "joint",
+    scale: Scale = "max_edge",
+    dual: Dual = "barycentric",
+    solver: Solver = "auto",
+    tolerance: float | None = None,
+    max_iterations: int | None = None,
+    memory_limit: int | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Filled: ...

@@ -9,6 +9,7 @@ mod denoise;
 mod diffusion_curves;
 mod doorway;
 mod errors;
+mod fill_holes;
 mod holes;
 mod interpolate;
 mod matrix;
@@ -37,6 +38,8 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<stylize::Stylized>()?;
     module.add_class::<diffusion_curves::DiffusionCurves>()?;
     module.add_class::<diffusion_curves::Redrawn>()?;
+    module.add_class::<fill_holes::Filled>()?;
+    module.add_class::<fill_holes::FilledHole>()?;
     module.add_function(wrap_pyfunction!(operators::hessian, module)?)?;
     module.add_function(wrap_pyfunction!(operators::hessian_norm, module)?)?;
     module.add_function(wrap_pyfunction!(operators::energy, module)?)?;
@@ -52,5 +55,6 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(stylize::stylize, module)?)?;
     module.add_function(wrap_pyfunction!(diffusion_curves::diffusion_curves, module)?)?;
     module.add_function(wrap_pyfunction!(diffusion_curves::redraw, module)?)?;
+    module.add_function(wrap_pyfunction!(fill_holes::fill_holes, module)?)?;
     Ok(())
 }

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use ridgeform_core::operators::{Dual, Energy};
 use ridgeform_core::solve::{Coupling, Solver};
-use ridgeform_core::tools::{EnergyOptions, SolveOptions};
+use ridgeform_core::tools::{EnergyOptions, Scale, SolveOptions};
 
 use crate::arrays::finite_floats;
 use crate::errors::argument;
@@ -47,6 +47,20 @@ pub fn dual(py: Python<'_>, given: &str) -> PyResult<Dual> {
 /// `ArgumentError` for an unknown word.
 pub fn coupling(py: Python<'_>, given: &str) -> PyResult<Coupling> {
     choice(py, "coupling", given, &[("joint", Coupling::Joint), ("separate", Coupling::Separate)])
+}
+
+/// `scale=`.
+///
+/// # Errors
+/// `ArgumentError` for an unknown word.
+pub fn scale(py: Python<'_>, given: &str) -> PyResult<Scale> {
+    let scales = [
+        ("max_edge", Scale::MaxEdge),
+        ("bounding_box", Scale::BoundingBox),
+        ("area", Scale::Area),
+        ("extent", Scale::Extent),
+    ];
+    choice(py, "scale", given, &scales)
 }
 
 /// `solver=`, `tolerance=`, `max_iterations=`, `memory_limit=` and `threads=`.

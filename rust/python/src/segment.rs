@@ -2,7 +2,7 @@
 
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
-use ridgeform_core::tools::{self, Hierarchy, Scale, SegmentMethod};
+use ridgeform_core::tools::{self, Hierarchy, SegmentMethod};
 
 use crate::columns::{self, Values};
 use crate::mesh::Mesh;
@@ -157,12 +157,6 @@ pub fn segment(
 ) -> PyResult<Segmentation> {
     let (n, m) = (mesh.n_vertices(), mesh.n_faces());
     let signal = values.map(|given| columns::read("values", given, n, "vertex")).transpose()?;
-    let scales = [
-        ("extent", Scale::Extent),
-        ("bounding_box", Scale::BoundingBox),
-        ("area", Scale::Area),
-        ("max_edge", Scale::MaxEdge),
-    ];
     let methods = [("fitted", SegmentMethod::Fitted), ("paper", SegmentMethod::Paper)];
     let rows = |given: &Bound<'_, PyAny>| arrays::finite_floats("edge_weights", given)?.rows::<3>(py, "edge_weights");
     let options = tools::SegmentOptions {
@@ -175,7 +169,7 @@ pub fn segment(
         cut_threshold,
         min_faces: options::at_least(py, "min_faces", min_faces, 0)?,
         n_segments: n_segments.map(|count| options::at_least(py, "n_segments", count, 1)).transpose()?,
-        scale: options::choice(py, "scale", scale, &scales)?,
+        scale: options::scale(py, scale)?,
         face_weights: options::weights("face_weights", face_weights, m, "face")?,
         edge_weights: edge_weights.map(rows).transpose()?,
         faces: faces.map(|given| arrays::mask("faces", given, m, "face")).transpose()?,

@@ -47,7 +47,8 @@ impl Stylized {
 /// fidelity : float > 0, how strongly a step holds on to the shape, in the unit that `scale` sets; larger changes less
 /// sharpness : 0 (the paper's energy) to 1 (most angular): reweighting from step to step, w_f ∝ (curvature + 0.1)^(-sharpness)
 /// coupling : "joint" (one norm for the three coordinates, independent of the axes) or "separate" (the paper's)
-/// scale : "max_edge" (the longest edge is 1: the paper's unit) "bounding_box" (the longest side is 1) or "area" (the surface is 1)
+/// scale : "max_edge" (the longest edge is 1: the paper's unit), "bounding_box" (the longest side is 1), "area" (the surface is 1)
+///     or "extent" (a cube has its side, whatever its rotation)
 /// fixed : vertices that stay where they are: (n,) booleans or (j,) indices
 /// strength : (n,) array, 0 (stay) to 1 (full effect)
 /// ridge_weights : (m,) array > 0, 1 is neutral, smaller makes ridges cheaper there
@@ -98,17 +99,12 @@ pub fn stylize(
     progress: Option<&Bound<'_, Progress>>,
 ) -> PyResult<Stylized> {
     let (n, m) = (mesh.n_vertices(), mesh.n_faces());
-    let scales = [
-        ("max_edge", tools::Scale::MaxEdge),
-        ("bounding_box", tools::Scale::BoundingBox),
-        ("area", tools::Scale::Area),
-    ];
     let options = tools::StylizeOptions {
         iterations: options::at_least(py, "iterations", iterations, 0)?,
         fidelity,
         sharpness,
         coupling: options::coupling(py, coupling)?,
-        scale: options::choice(py, "scale", scale, &scales)?,
+        scale: options::scale(py, scale)?,
         fixed: fixed.map(|given| arrays::mask("fixed", given, n, "vertex")).transpose()?,
         strength: options::weights("strength", strength, n, "vertex")?,
         ridge_weights: options::weights("ridge_weights", ridge_weights, m, "face")?,

@@ -4,6 +4,7 @@
 mod denoise;
 mod diffusion_curves;
 mod energy_options;
+mod fill_holes;
 mod interpolate;
 mod modes;
 mod options;
@@ -17,6 +18,7 @@ mod unseen;
 pub use denoise::{denoise, DenoiseOptions};
 pub use diffusion_curves::{diffusion_curves, redraw, ColoredCurves, DiffusionCurves, DiffusionCurvesOptions, Redrawn};
 pub use energy_options::EnergyOptions;
+pub use fill_holes::{fill_holes, FillHolesOptions, Filled, FilledHole, HoleStatus, LoopChoice, Sharpness};
 pub use interpolate::interpolate;
 pub use modes::{vibration_modes, ModeOptions, Modes};
 pub use options::SolveOptions;

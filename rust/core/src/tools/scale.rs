@@ -6,7 +6,7 @@ use crate::mesh::{edge_lengths, triangle, Connectivity};
 const SIDE_OF_EXTENT: f64 = 1.549_193_338_482_966_8;
 
 /// The unit of length: energies grow with length, fidelity terms with its fourth power.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Scale {
     /// The longest edge (Rowe et al. 2024, section 7.3).
     #[default]
@@ -18,6 +18,8 @@ pub enum Scale {
     /// The side of the cube whose surface is as far from its centre, root mean square: nearer to the bounding box than the area
     /// is, and independent of rotations.
     Extent,
+    /// This length, whatever the shape.
+    Length(f64),
 }
 
 impl Scale {
@@ -28,6 +30,7 @@ impl Scale {
             Self::BoundingBox => longest_side(connectivity, points),
             Self::Area => lengths.iter().map(|&l| triangle::area(l)).sum::<f64>().sqrt(),
             Self::Extent => SIDE_OF_EXTENT * extent(connectivity, points).0,
+            Self::Length(length) => length,
         }
     }
 }

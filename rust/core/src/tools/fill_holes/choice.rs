@@ -1,0 +1,82 @@
+//! Which holes to fill, and their first patches.
+
+use std::collections::HashSet;
+
+use super::FillHolesOptions;
+use crate::error::{MeshError, Refusal};
+use crate::hole_filling::{fill_loops, find_holes, FillOptions, Patch};
+use crate::mesh::Mesh;
+use crate::progress::Progress;
+use crate::{Error, Result};
+
+/// A boundary loop to fill.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum LoopChoice {
+    /// By its place in [`crate::mesh::boundary_loops`].
+    Index(usize),
+    /// By the vertices around it, in either direction.
+    Vertices(Vec<u32>),
+}
+
+/// A loop, and why it cannot be filled, if so.
+pub(super) type Chosen = (Vec<u32>, Option<Refusal>);
+
+/// The loops that `options` ask for.
+pub(super) fn choose(mesh: &Mesh, options: &FillHolesOptions) -> Result<Vec<Chosen>> {
+    let holes = find_holes(mesh)?;
+    let Some(choices) = &options.loops else {
+        let wanted = holes.into_iter().filter(|hole| {
+            (options.outer || !hole.is_outer_border) && options.max_edges.is_none_or(|most| hole.vertices.len() <= most)
+        });
+        return Ok(wanted.map(|hole| (hole.vertices, hole.refusal)).collect());
+    };
+    let choose = |choice: &LoopChoice| match choice {
+        LoopChoice::Vertices(vertices) => Ok((vertices.clone(), None)),
+        LoopChoice::Index(index) => {
+            let problem = || format!("names loop {index}, but the mesh has {} boundary loops", holes.len());
+            let hole = holes.get(*index).ok_or_else(|| Error::argument("loops", problem()))?;
+            Ok((hole.vertices.clone(), hole.refusal))
+        }
+    };
+    choices.iter().map(choose).collect()
+}
+
+/// The patch of every loop; an empty one for those that cannot be filled, which is noted. Vertices that are no loop at all are
+/// an error.
+pub(super) fn triangulate(
+    mesh: &Mesh,
+    chosen: &mut [Chosen],
+    options: &FillOptions,
+    progress: &Progress,
+) -> Result<Vec<Patch>> {
+    loop {
+        let loops: Vec<Vec<u32>> =
+            chosen.iter().filter(|(_, refusal)| refusal.is_none()).map(|(vertices, _)| vertices.clone()).collect();
+        match fill_loops(mesh, &loops, options, progress) {
+            Ok(patches) => {
+                let mut patches = patches.into_iter();
+                let next = |(_, refusal): &Chosen| match refusal {
+                    None => patches.next().unwrap_or_default(),
+                    Some(_) => Patch::default(),
+                };
+                return Ok(chosen.iter().map(next).collect());
+            }
+            Err(Error::Mesh(MeshError::Unfillable { vertex, n_edges, reason })) if reason != Refusal::NotALoop => {
+                let culprit = chosen.iter_mut().find(|(vertices, refusal)| {
+                    refusal.is_none() && vertices.len() == n_edges && vertices.first() == Some(&vertex)
+                });
+                let Some((_, refusal)) = culprit else {
+                    return Err(MeshError::Unfillable { vertex, n_edges, reason }.into());
+                };
+                *refusal = Some(reason);
+            }
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+/// The vertices that lie on several of the loops: between two of them, two patches could make the same edge.
+pub(super) fn on_several(chosen: &[Chosen]) -> HashSet<u32> {
+    let mut seen = HashSet::new();
+    chosen.iter().flat_map(|(vertices, _)| vertices).copied().filter(|&v| !seen.insert(v)).collect()
+}

@@ -1,0 +1,66 @@
+//! Moves that fold nothing: the vertices of faces that would turn over or become slivers move less far.
+
+use super::region::Region;
+use super::surface::angle;
+use crate::mesh::vector::{area_vector, between, dot, norm, quality, Point};
+
+/// Faces may turn by so much in one move: a chamfer that becomes part of a ridge turns by half the ridge's angle.
+const LEAST_COSINE: f64 = 0.5;
+
+/// A face must keep this quality, or three quarters of its own where it had less.
+const LEAST_QUALITY: f64 = 0.15;
+const KEPT: f64 = 0.75;
+
+/// A dihedral angle above this (137 degrees) must not grow.
+const FOLD: f64 = 2.4;
+
+/// How often the steps at a bad face are halved before they are taken back.
+const HALVINGS: usize = 4;
+
+/// Moves the free vertices towards `goal` as far as the faces around them stay in order, and returns the longest move.
+pub(super) fn move_guarded(region: &mut Region, goal: &[Point]) -> f64 {
+    let old = region.mesh.positions().to_vec();
+    let mut part: Vec<f64> = region.fixed.iter().map(|&fixed| if fixed { 0.0 } else { 1.0 }).collect();
+    let faces: Vec<(u32, [u32; 3])> = region.mesh.faces().filter(|&(f, _)| region.touches_patch(f)).collect();
+    let before: Vec<(Point, f64)> =
+        faces.iter().map(|&(_, face)| region.mesh.corners(face)).map(|c| (area_vector(c), quality(c))).collect();
+    for round in 0.. {
+        for v in region.free().collect::<Vec<_>>() {
+            let i = v as usize;
+            region.mesh.set_position(v, between(old[i], goal[i], part[i]));
+        }
+        let mut bad = vec![false; old.len()];
+        let mut any = false;
+        for (&(f, face), &(area, shape)) in faces.iter().zip(&before) {
+            let corners = region.mesh.corners(face);
+            let new = area_vector(corners);
+            let turned = norm(area) > 0.0 && dot(new, area) < LEAST_COSINE * norm(new) * norm(area);
+            let thin = quality(corners) < LEAST_QUALITY.min(KEPT * shape);
+            if (turned || thin || folds(region, &old, f, face)) && face.iter().any(|&v| part[v as usize] > 0.0) {
+                face.iter().for_each(|&v| bad[v as usize] = true);
+                any = true;
+            }
+        }
+        if !any {
+            break;
+        }
+        for (part, _) in part.iter_mut().zip(&bad).filter(|(_, bad)| **bad) {
+            *part = if round < HALVINGS { 0.5 * *part } else { 0.0 };
+        }
+    }
+    let moved = |(&a, &b): (&Point, &Point)| crate::mesh::vector::distance(a, b);
+    old.iter().zip(region.mesh.positions()).map(moved).fold(0.0, f64::max)
+}
+
+/// Whether a dihedral angle at face `f` is too large and was smaller before.
+fn folds(region: &Region, old: &[Point], f: u32, face: [u32; 3]) -> bool {
+    let mesh = &region.mesh;
+    let here = mesh.area_vector(f);
+    (0..3).any(|i| {
+        let Some(wings) = mesh.wings(face[i], face[(i + 1) % 3]) else { return false };
+        let other = if wings.faces[0] == f { wings.faces[1] } else { wings.faces[0] };
+        let now = angle(here, mesh.area_vector(other));
+        let was = |g: u32| mesh.face(g).map_or([0.0; 3], |face| area_vector(face.map(|v| old[v as usize])));
+        now > FOLD && now > angle(was(f), was(other))
+    })
+}

@@ -1,0 +1,267 @@
+//! Hole filling that brings ridges back (Rowe et al. 2024, section 7.4.2, and beyond it).
+//!
+//! Each hole is a problem of its own ([`region`]): the patch and a few rings around it. The patch starts as the minimiser of a
+//! quadratic energy ([`start`]). Where the surface around is smooth ([`decide`]) that is the result. Where it has ridges,
+//! cycles of three follow: the L1 flow flattens ([`flow`]), edges flip along the ridges ([`flips`]), vertices snap
+//! onto the planes around them and their intersections ([`snap`]). No move folds the surface ([`guard`]).
+
+mod choice;
+mod decide;
+mod flips;
+mod flow;
+mod guard;
+mod region;
+mod restore;
+mod snap;
+mod start;
+mod surface;
+
+pub use choice::LoopChoice;
+
+use std::collections::HashSet;
+
+use super::options::check_range;
+use super::{Scale, SolveOptions};
+use crate::error::{MeshError, Refusal};
+use crate::hole_filling::{FillOptions, Patch};
+use crate::mesh::vector::Point;
+use crate::mesh::Mesh;
+use crate::operators::Dual;
+use crate::progress::{Progress, Report};
+use crate::solve::Coupling;
+use crate::{Error, Result};
+use region::{Neighbourhoods, Region};
+use restore::{restore, Restored};
+
+/// The flow's stencil takes two rings; planes are fitted over five.
+const RINGS: usize = 5;
+
+/// Patch edges bent by more than this (radians) are ridges: 30 degrees, as Blender's own "smooth by angle".
+const RIDGE: f64 = std::f64::consts::PI / 6.0;
+
+/// How sharp the ridges of patches get.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Sharpness {
+    /// Per hole: as sharp as can be where there are ridges around it, smooth where there are none.
+    #[default]
+    Auto,
+    /// 0: the flow of the paper, without flips and snapping; towards 1: ever sharper.
+    Value(f64),
+}
+
+/// How to fill holes.
+#[derive(Debug, Clone)]
+pub struct FillHolesOptions {
+    /// Which loops; `None` for all that can be filled.
+    pub loops: Option<Vec<LoopChoice>>,
+    /// Of all loops, only those with at most so many edges.
+    pub max_edges: Option<usize>,
+    /// Of all loops, also the outer borders of open sheets.
+    pub outer: bool,
+    /// Edge length in the patches; that of the rim where `None`.
+    pub edge_length: Option<f64>,
+    /// Steps of the flow at most; 0 leaves the smooth patch.
+    pub iterations: usize,
+    /// `η`: a larger one moves less per step.
+    pub fidelity: f64,
+    /// How sharp.
+    pub sharpness: Sharpness,
+    /// Joint norms are invariant under rotations; separate ones are those of the paper.
+    pub coupling: Coupling,
+    /// The unit of `fidelity`, measured on the patch.
+    pub scale: Scale,
+    /// Dual edges of the operator.
+    pub dual: Dual,
+    /// The solver; the default stops on residuals.
+    pub solve: SolveOptions,
+}
+
+impl Default for FillHolesOptions {
+    fn default() -> Self {
+        Self {
+            loops: None,
+            max_edges: None,
+            outer: false,
+            edge_length: None,
+            iterations: 50,
+            fidelity: 50.0,
+            sharpness: Sharpness::Auto,
+            coupling: Coupling::Joint,
+            scale: Scale::MaxEdge,
+            dual: Dual::Barycentric,
+            solve: SolveOptions { tolerance: None, ..SolveOptions::default() },
+        }
+    }
+}
+
+/// How the filling of one hole ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HoleStatus {
+    /// The patch no longer moves, or is the smooth one.
+    Converged,
+    /// All steps were done.
+    Finished,
+    /// The caller asked to finish early; the patch is what was reached.
+    Stopped,
+    /// It cannot be filled.
+    Refused(Refusal),
+}
+
+impl HoleStatus {
+    /// The name that users see.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Converged => "converged",
+            Self::Finished => "finished",
+            Self::Stopped => "stopped",
+            Self::Refused(_) => "refused",
+        }
+    }
+}
+
+/// One hole and how it was filled.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FilledHole {
+    /// The vertices around it.
+    pub boundary: Vec<u32>,
+    /// How it ended.
+    pub status: HoleStatus,
+    /// The sharpness used; 0 where it is smooth.
+    pub sharpness: f64,
+    /// `E_H` of the coordinates of the patch and its surroundings, before and after the flow; zeros if there was none.
+    pub energy: [f64; 2],
+    /// The relative duality gap of the flow's last step.
+    pub gap: f64,
+    /// Steps of the flow.
+    pub iterations: usize,
+}
+
+/// A mesh with its holes filled.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Filled {
+    /// The input's vertices, unchanged, then those of the patches.
+    pub vertices: Vec<Point>,
+    /// The input's faces, unchanged, then those of the patches.
+    pub faces: Vec<[u32; 3]>,
+    /// For each face the entry of `holes` that it fills, or -1.
+    pub patch: Vec<i32>,
+    /// The holes that were chosen.
+    pub holes: Vec<FilledHole>,
+    /// How the holes ended: stopped if one was, else finished if one was, else converged.
+    pub status: HoleStatus,
+    /// The edges of sharp patches that are bent by more than 30 degrees, smaller vertex first, sorted.
+    pub ridges: Vec<[u32; 2]>,
+}
+
+/// Fills holes so that the ridges around them go on.
+///
+/// # Errors
+/// [`MeshError::NoPositions`], [`MeshError::Unfillable`] for vertices that are no boundary loop, arguments out of range, the errors of
+/// the solver, [`Error::Cancelled`].
+pub fn fill_holes(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) -> Result<Filled> {
+    check(options)?;
+    options.solve.settings()?;
+    options.solve.run(|| fill(mesh, options, progress))
+}
+
+fn check(options: &FillHolesOptions) -> Result<()> {
+    if !(options.fidelity > 0.0 && options.fidelity.is_finite()) {
+        return Err(Error::argument("fidelity", format!("is {}; it must be positive", options.fidelity)));
+    }
+    if let Some(length) = options.edge_length.filter(|l| !(*l > 0.0 && l.is_finite())) {
+        return Err(Error::argument("edge_length", format!("is {length}; it must be positive, or None for the rim's")));
+    }
+    match options.sharpness {
+        Sharpness::Auto => Ok(()),
+        Sharpness::Value(sharpness) => check_range("sharpness", sharpness, 0.0, 1.0),
+    }
+}
+
+fn fill(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) -> Result<Filled> {
+    let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
+    report(progress, 0.0, "triangulating", 0, None);
+    let geometry = FillOptions { edge_length: options.edge_length, ..FillOptions::default() };
+    let mut chosen = choice::choose(mesh, options)?;
+    let patches = choice::triangulate(mesh, &mut chosen, &geometry, progress)?;
+    let mut filled = Filled {
+        vertices: positions.to_vec(),
+        faces: mesh.connectivity().faces().to_vec(),
+        patch: vec![-1; mesh.connectivity().n_faces()],
+        holes: Vec::with_capacity(chosen.len()),
+        status: HoleStatus::Converged,
+        ridges: Vec::new(),
+    };
+    let near = Neighbourhoods::new(mesh.connectivity());
+    let shared = choice::on_several(&chosen);
+    let total = patches.iter().map(|patch| patch.faces.len()).sum::<usize>().max(1) as f64;
+    let mut done = 0.0;
+    for ((boundary, refusal), patch) in chosen.into_iter().zip(patches) {
+        let share = patch.faces.len() as f64 / total;
+        let outcome = match refusal {
+            Some(reason) => Err(reason),
+            None => {
+                let watch = |part: f64, steps, energy| report(progress, done + share * part, "filling", steps, energy);
+                let hole = filled.holes.len() as i32;
+                Ok(fill_one(mesh, &near, &shared, &patch, hole, &mut filled, options, progress, &watch)?)
+            }
+        };
+        done += share;
+        filled.holes.push(match outcome {
+            Ok(Restored { sharpness, status, energy, gap, iterations }) => {
+                FilledHole { boundary, status, sharpness, energy, gap, iterations }
+            }
+            Err(reason) => FilledHole {
+                boundary,
+                status: HoleStatus::Refused(reason),
+                sharpness: 0.0,
+                energy: [0.0; 2],
+                gap: 0.0,
+                iterations: 0,
+            },
+        });
+    }
+    let ended = |status| filled.holes.iter().any(|hole| hole.status == status);
+    if let Some(status) = [HoleStatus::Stopped, HoleStatus::Finished].into_iter().find(|&status| ended(status)) {
+        filled.status = status;
+    }
+    filled.ridges.sort_unstable();
+    filled.ridges.dedup();
+    report(progress, 1.0, "filling", 0, None);
+    Ok(filled)
+}
+
+/// Restores one patch and appends it.
+#[allow(clippy::too_many_arguments)]
+fn fill_one(
+    mesh: &Mesh,
+    near: &Neighbourhoods<'_>,
+    shared: &HashSet<u32>,
+    patch: &Patch,
+    hole: i32,
+    filled: &mut Filled,
+    options: &FillHolesOptions,
+    progress: &Progress,
+    watch: &dyn Fn(f64, usize, Option<f64>),
+) -> Result<Restored> {
+    let first_new = filled.vertices.len() as u32;
+    let mut region = Region::new(mesh, near, &patch.vertices, first_new, &patch.faces, RINGS)?;
+    region.forbid_edges_among(shared);
+    let restored = restore(&mut region, options, progress, &mut |region, part, steps, energy| {
+        let (vertices, faces) = region.patch();
+        progress.set_surface(vertices, faces);
+        watch(part, steps, energy);
+    })?;
+    filled.vertices.extend(region.free().map(|v| region.mesh.position(v)));
+    let patch_faces = (region.n_outer as u32..region.mesh.n_faces() as u32).filter_map(|f| region.mesh.face(f));
+    filled.faces.extend(patch_faces.map(|face| face.map(|v| region.vertices[v as usize])));
+    filled.patch.resize(filled.faces.len(), hole);
+    if restored.sharpness > 0.0 {
+        filled.ridges.extend(surface::ridges(&region, RIDGE));
+    }
+    Ok(restored)
+}
+
+fn report(progress: &Progress, fraction: f64, stage: &str, iteration: usize, energy: Option<f64>) {
+    progress.report(Report { fraction, stage: stage.into(), iteration, energy, gap: None });
+}

@@ -1,0 +1,122 @@
+//! Snapping: vertices near a ridge move onto the intersection of the planes around them.
+
+use super::guard::move_guarded;
+use super::region::Region;
+use super::surface::Surface;
+use crate::mesh::vector::{add, distance, dot, norm, scale, sub, Point};
+
+/// What snapping is done with.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Snapping {
+    /// Vertices with a dihedral angle above this (radians) move.
+    pub threshold: f64,
+    /// Planes are those of the faces within so many rings.
+    pub rings: usize,
+    /// The width of the Gaussian that weighs them, in edge lengths.
+    pub width: f64,
+    /// The dihedral angle at which a face is no longer trusted.
+    pub doubt: f64,
+    /// Eigenvalues under this part of the largest are dropped.
+    pub drop: f64,
+    /// A vertex moves at most so many edge lengths.
+    pub reach: f64,
+    /// How far a vertex goes towards the middle of its neighbours, in the directions that no plane determines.
+    pub relaxation: f64,
+}
+
+impl Snapping {
+    /// Over five rings: faces that lie on their planes already pull in those that do not yet.
+    pub(super) const WIDE: Self =
+        Self { threshold: 0.1, rings: 5, width: 2.5, doubt: 0.5, drop: 0.05, reach: 1.0, relaxation: 0.5 };
+}
+
+/// Moves every free vertex where the planes around it say where, and to the middle of its neighbours where they do not;
+/// returns the longest move.
+///
+/// Where a dihedral angle at the vertex is above the threshold, the pseudo-inverse of the quadric (Garland and Heckbert 1997) of
+/// the planes takes it onto a plane, onto the line of two, into the corner of three. In the directions that the planes
+/// leave free, it goes to the centroid of its neighbours: ridges and plane parts keep their triangles in shape.
+pub(super) fn snap(region: &mut Region, how: &Snapping) -> f64 {
+    let surface = Surface::of(region);
+    let mut goal = region.mesh.positions().to_vec();
+    for v in region.free() {
+        goal[v as usize] = add(goal[v as usize], step(region, &surface, v, how));
+    }
+    move_guarded(region, &goal)
+}
+
+fn step(region: &Region, surface: &Surface, v: u32, how: &Snapping) -> Point {
+    let mesh = &region.mesh;
+    let at = mesh.position(v);
+    let neighbours = mesh.neighbours(v);
+    let count = neighbours.len().max(1) as f64;
+    let edge = neighbours.iter().map(|&w| distance(at, mesh.position(w))).sum::<f64>() / count;
+    let (mut quadric, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
+    let near_ridge = surface.vertex_angles[v as usize] > how.threshold;
+    let rings = if near_ridge { how.rings } else { 1 };
+    for f in mesh.faces_within(&[v], rings).into_iter().map(|f| f as usize) {
+        let Some(face) = mesh.face(f as u32) else { continue };
+        let normal = surface.normals[f];
+        let away = distance(surface.centres[f], at) / (how.width * edge);
+        let confidence = 1.0 / (0.01 + (surface.face_angles[f] / how.doubt).powi(4));
+        let weight = surface.areas[f] * (-0.5 * away * away).exp() * confidence;
+        let offset = dot(normal, sub(mesh.position(face[0]), at));
+        for i in 0..3 {
+            right[i] += weight * offset * normal[i];
+            for j in 0..3 {
+                quadric[i][j] += weight * normal[i] * normal[j];
+            }
+        }
+    }
+    let (values, vectors) = eigen(quadric);
+    let largest = values.iter().fold(0.0, |a: f64, &x| a.max(x));
+    let mut step = [0.0; 3];
+    let centroid = neighbours.iter().fold([0.0; 3], |sum, &w| add(sum, scale(mesh.position(w), 1.0 / count)));
+    let mut slide = scale(sub(centroid, at), how.relaxation);
+    for (value, vector) in values.into_iter().zip(vectors) {
+        if value > how.drop * largest {
+            if near_ridge {
+                step = add(step, scale(vector, dot(vector, right) / value));
+            }
+            slide = sub(slide, scale(vector, dot(vector, slide)));
+        }
+    }
+    let length = norm(step);
+    if length > how.reach * edge {
+        step = scale(step, how.reach * edge / length);
+    }
+    add(step, slide)
+}
+
+/// Eigenvalues and unit eigenvectors of a symmetric matrix, by Jacobi rotations.
+pub(super) fn eigen(mut a: [[f64; 3]; 3]) -> ([f64; 3], [Point; 3]) {
+    let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    for _ in 0..30 {
+        let off = a[0][1].abs() + a[0][2].abs() + a[1][2].abs();
+        if off <= 1e-300 || off <= 1e-15 * (a[0][0].abs() + a[1][1].abs() + a[2][2].abs()) {
+            break;
+        }
+        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+            if a[p][q] == 0.0 {
+                continue;
+            }
+            let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
+            let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+            let c = 1.0 / (t * t + 1.0).sqrt();
+            let s = t * c;
+            for k in 0..3 {
+                let (x, y) = (a[k][p], a[k][q]);
+                (a[k][p], a[k][q]) = (c * x - s * y, s * x + c * y);
+            }
+            for k in 0..3 {
+                let (x, y) = (a[p][k], a[q][k]);
+                (a[p][k], a[q][k]) = (c * x - s * y, s * x + c * y);
+            }
+            for row in &mut v {
+                let (x, y) = (row[p], row[q]);
+                (row[p], row[q]) = (c * x - s * y, s * x + c * y);
+            }
+        }
+    }
+    ([a[0][0], a[1][1], a[2][2]], [0, 1, 2].map(|j| [v[0][j], v[1][j], v[2][j]]))
+}

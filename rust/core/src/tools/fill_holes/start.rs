@@ -1,0 +1,30 @@
+//! Where the flow starts: the smooth patch.
+
+use super::region::Region;
+use crate::operators::{Dual, Energy, EnergyForm};
+use crate::progress::Progress;
+use crate::solve::{quadratic, Columns, Coupling, Problem, Settings};
+use crate::Result;
+
+/// Moves the patch to the minimiser of a quadratic energy of its coordinates, everything around it fixed, `rounds` times:
+/// the energy is that of the surface before each round.
+pub(super) fn smooth(region: &mut Region, energy: Energy, rounds: usize, progress: &Progress) -> Result<()> {
+    let settings = Settings { announce: false, ..Settings::default() };
+    for _ in 0..rounds {
+        progress.check()?;
+        let mesh = region.to_mesh()?;
+        let form = EnergyForm::new(energy, &mesh, None, Dual::default())?;
+        let problem = Problem {
+            operator: &form.operator,
+            weights: form.weights,
+            fidelity: vec![0.0; region.fixed.len()],
+            target: Columns::from_points(region.mesh.positions()),
+            fixed: region.fixed.clone(),
+            linear_constraints: None,
+            coupling: Coupling::Joint,
+        };
+        let solution = quadratic::minimise(&problem, &settings, progress)?;
+        region.move_to(&solution.values.to_points()?);
+    }
+    Ok(())
+}

@@ -1,0 +1,71 @@
+//! Normals, areas and dihedral angles of a region as it is now.
+
+use super::region::Region;
+use crate::mesh::vector::{area_vector, centroid, cross, dot, norm, scale, Point};
+use crate::remesh::editable::{key, Wings};
+
+/// The angle between two directions of any length, in radians.
+pub(super) fn angle(a: Point, b: Point) -> f64 {
+    norm(cross(a, b)).atan2(dot(a, b))
+}
+
+/// What snapping and the decision look at.
+pub(super) struct Surface {
+    /// The unit normal of every face; zero where it has no area.
+    pub normals: Vec<Point>,
+    /// The area of every face.
+    pub areas: Vec<f64>,
+    /// The barycentre of every face.
+    pub centres: Vec<Point>,
+    /// The largest dihedral angle (0 where flat) at the edges of every face.
+    pub face_angles: Vec<f64>,
+    /// The largest dihedral angle at the edges of every vertex.
+    pub vertex_angles: Vec<f64>,
+}
+
+impl Surface {
+    pub(super) fn of(region: &Region) -> Self {
+        let mesh = &region.mesh;
+        let corners: Vec<_> = mesh.faces().map(|(_, face)| mesh.corners(face)).collect();
+        let vectors: Vec<Point> = corners.iter().map(|&c| area_vector(c)).collect();
+        let areas: Vec<f64> = vectors.iter().map(|&a| norm(a)).collect();
+        let normal = |(a, &area): (&Point, &f64)| if area > 0.0 { scale(*a, 1.0 / area) } else { [0.0; 3] };
+        let mut surface = Self {
+            normals: vectors.iter().zip(&areas).map(normal).collect(),
+            centres: corners.into_iter().map(centroid).collect(),
+            face_angles: vec![0.0; areas.len()],
+            vertex_angles: vec![0.0; mesh.n_vertices()],
+            areas,
+        };
+        for [a, b] in mesh.edges() {
+            let Some(Wings { faces, .. }) = mesh.wings(a, b) else { continue };
+            let theta = surface.dihedral(faces);
+            for f in faces {
+                let largest = &mut surface.face_angles[f as usize];
+                *largest = largest.max(theta);
+            }
+            for v in [a, b] {
+                let largest = &mut surface.vertex_angles[v as usize];
+                *largest = largest.max(theta);
+            }
+        }
+        surface
+    }
+
+    /// The dihedral angle between two faces, 0 where they are coplanar.
+    pub(super) fn dihedral(&self, [f, g]: [u32; 2]) -> f64 {
+        angle(self.normals[f as usize], self.normals[g as usize])
+    }
+}
+
+/// The edges at the patch that are bent by more than `least` radians, by vertices of the whole mesh, smaller first.
+pub(super) fn ridges(region: &Region, least: f64) -> Vec<[u32; 2]> {
+    let surface = Surface::of(region);
+    let mesh = &region.mesh;
+    let bent = |&[a, b]: &[u32; 2]| {
+        let faces = mesh.wings(a, b).map(|wings| wings.faces);
+        faces.is_some_and(|faces| faces.iter().any(|&f| region.is_patch(f)) && surface.dihedral(faces) > least)
+    };
+    let named = |[a, b]: [u32; 2]| key(region.vertices[a as usize], region.vertices[b as usize]);
+    mesh.edges().into_iter().filter(bent).map(named).collect()
+}

@@ -1,0 +1,204 @@
+//! `fill_holes`: patches that continue the surface around a hole, ridges included.
+
+use numpy::{IntoPyArray, PyArray1, PyArray2};
+use pyo3::prelude::*;
+use ridgeform_core::tools::{self, HoleStatus, LoopChoice, Sharpness};
+
+use crate::errors::argument;
+use crate::mesh::Mesh;
+use crate::progress::{handle, Progress};
+use crate::{arrays, doorway, options};
+
+/// What `fill_holes` returns: the mesh with its patches, and how each hole went.
+#[pyclass(frozen, get_all, module = "ridgeform")]
+pub struct Filled {
+    /// The vertices, (n',3) float64: the input's first, bit by bit, then those of the patches, hole by hole.
+    vertices: Py<PyArray2<f64>>,
+    /// The faces, (m',3) int32: the input's first, unchanged, then those of the patches, oriented as the faces around.
+    faces: Py<PyArray2<i32>>,
+    /// For every face the entry of `holes` that it fills, or -1 for the input's, (m',) int32.
+    patch: Py<PyArray1<i32>>,
+    /// What became of every hole that was chosen, a list of FilledHole.
+    holes: Vec<Py<FilledHole>>,
+    /// The edges of sharp patches, rim included, that are bent by more than 30 degrees, (k,2) int32, smaller vertex first.
+    ridges: Py<PyArray2<i32>>,
+    /// "stopped" (`Progress.finish` was called), "finished" (a hole took all iterations) or "converged" (all patches rest).
+    status: &'static str,
+}
+
+#[pymethods]
+impl Filled {
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let refused = self.holes.iter().filter(|hole| hole.get().status == "refused").count();
+        let sharp = self.holes.iter().filter(|hole| hole.get().sharpness > 0.0).count();
+        let (filled, edges) = (self.holes.len() - refused, self.ridges.bind(py).as_any().len().unwrap_or(0));
+        format!(
+            "<ridgeform.Filled: {filled} holes filled, {sharp} of them sharp ({edges} ridge edges), {refused} refused>"
+        )
+    }
+}
+
+/// What became of one hole.
+#[pyclass(frozen, get_all, module = "ridgeform")]
+pub struct FilledHole {
+    /// The vertices around it, (k,) int32.
+    boundary: Py<PyArray1<i32>>,
+    /// "converged" (the patch no longer moves, or is the smooth one), "finished" (all iterations done), "stopped"
+    /// (`Progress.finish` was called) or "refused" (left open, see `reason`).
+    status: &'static str,
+    /// Why it was refused, or None.
+    reason: Option<String>,
+    /// The sharpness used; 0 where the hole was filled smoothly.
+    sharpness: f64,
+    /// The L1 Hessian energy of the coordinates of patch and surroundings before and after the flow; zeros without one.
+    energy: (f64, f64),
+    /// The certified relative duality gap of the flow's last step.
+    gap: f64,
+    /// Steps of the flow done.
+    iterations: usize,
+}
+
+#[pymethods]
+impl FilledHole {
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let edges = self.boundary.bind(py).as_any().len().unwrap_or(0);
+        let how = if self.sharpness > 0.0 { "sharp" } else { "smooth" };
+        format!("<ridgeform.FilledHole: {edges} edges, {how}, {} after {} steps>", self.status, self.iterations)
+    }
+}
+
+/// Fill holes so that the surface around them goes on, ridges included.
+///
+/// Every hole is triangulated (Liepa 2003) and remeshed at the resolution of its rim. The patch starts as the smooth one. Where the
+/// surface around the hole has ridges, the L1 Hessian flow, edge flips along the ridges and snapping of vertices onto the
+/// planes around them bring the ridges back. Everything outside the patches stays as it is, and costs nothing.
+///
+/// Parameters
+/// ----------
+/// mesh : Mesh with positions
+/// loops : None for all holes; or a list of indices into `boundary_loops(mesh)`, or of arrays of the vertices around a hole
+/// max_edges : with loops=None, only holes of at most so many edges
+/// outer : with loops=None, also close the outer borders of open sheets
+/// edge_length : float > 0, of the patches; None continues that of the rim
+/// iterations : steps of the flow at most, ≥ 0; 0 leaves the smooth patch
+/// fidelity : float > 0, how strongly a step holds on to the shape, in the unit that `scale` sets
+/// sharpness : "auto" (per hole: sharp where there are ridges around it, else smooth), or 0 (the paper's flow, without flips
+///     and snapping) to 1 (most angular)
+/// coupling : "joint" (independent of the axes) or "separate" (the paper's)
+/// scale : "max_edge", "bounding_box", "area" or "extent" of the patch is 1
+/// dual : "barycentric", "circumcentric" or "circumcentric_or_barycentric"
+/// solver : "auto", "fast", "clarabel", "clarabel-qdldl" or "clarabel-faer"
+/// tolerance : certified relative gap of every step; None stops on residuals and reports the gap reached
+/// max_iterations : at most so many solver iterations in a step, or None
+/// memory_limit : bytes that the factor of the linear system may take, or None
+/// threads : int or None
+/// progress : Progress or None; its snapshot_surface() shows the patch in work
+///
+/// Returns
+/// -------
+/// Filled
+///
+/// Raises
+/// ------
+/// ArgumentError, MeshError (no positions; vertices in `loops` that are no boundary loop), SolveError, Cancelled. Holes that cannot be
+/// filled are left open and reported in `Filled.holes`.
+///
+/// References
+/// ----------
+/// Rowe et al. 2024, section 7.4.2; Liepa 2003; Botsch and Kobbelt 2004.
+#[pyfunction]
+#[pyo3(signature = (mesh, *, loops=None, max_edges=None, outer=false, edge_length=None, iterations=50, fidelity=50.0,
+    sharpness=None, coupling="joint", scale="max_edge", dual="barycentric", solver="auto", tolerance=None,
+    max_iterations=None, memory_limit=None, threads=None, progress=None))]
+#[allow(clippy::too_many_arguments)]
+pub fn fill_holes(
+    py: Python<'_>,
+    mesh: &Mesh,
+    loops: Option<&Bound<'_, PyAny>>,
+    max_edges: Option<i64>,
+    outer: bool,
+    edge_length: Option<f64>,
+    iterations: i64,
+    fidelity: f64,
+    sharpness: Option<&Bound<'_, PyAny>>,
+    coupling: &str,
+    scale: &str,
+    dual: &str,
+    solver: &str,
+    tolerance: Option<f64>,
+    max_iterations: Option<i64>,
+    memory_limit: Option<i64>,
+    threads: Option<i64>,
+    progress: Option<&Bound<'_, Progress>>,
+) -> PyResult<Filled> {
+    let options = tools::FillHolesOptions {
+        loops: loops.map(|given| read_loops(given, mesh.n_vertices())).transpose()?,
+        max_edges: max_edges.map(|count| options::at_least(py, "max_edges", count, 3)).transpose()?,
+        outer,
+        edge_length,
+        iterations: options::at_least(py, "iterations", iterations, 0)?,
+        fidelity,
+        sharpness: read_sharpness(py, sharpness)?,
+        coupling: options::coupling(py, coupling)?,
+        scale: options::scale(py, scale)?,
+        dual: options::dual(py, dual)?,
+        solve: options::solve(py, solver, tolerance, max_iterations, memory_limit, threads)?,
+    };
+    let progress = handle(progress);
+    let result = doorway::call(py, &progress, || tools::fill_holes(mesh.inner(), &options, &progress))?;
+    let holes = result.holes.iter().map(|hole| Py::new(py, filled_hole(py, hole)));
+    Ok(Filled {
+        vertices: arrays::float_rows(py, &result.vertices).unbind(),
+        faces: arrays::index_rows(py, &result.faces).unbind(),
+        holes: holes.collect::<PyResult<_>>()?,
+        ridges: arrays::index_rows(py, &result.ridges).unbind(),
+        status: result.status.name(),
+        patch: result.patch.into_pyarray(py).unbind(),
+    })
+}
+
+fn filled_hole(py: Python<'_>, hole: &tools::FilledHole) -> FilledHole {
+    let reason = match hole.status {
+        HoleStatus::Refused(reason) => Some(reason.to_string()),
+        _ => None,
+    };
+    FilledHole {
+        boundary: arrays::index_array(py, &hole.boundary).unbind(),
+        status: hole.status.name(),
+        reason,
+        sharpness: hole.sharpness,
+        energy: hole.energy.into(),
+        gap: hole.gap,
+        iterations: hole.iterations,
+    }
+}
+
+/// `sharpness=`: the word "auto" (also the default) or a number.
+fn read_sharpness(py: Python<'_>, given: Option<&Bound<'_, PyAny>>) -> PyResult<Sharpness> {
+    let Some(given) = given else { return Ok(Sharpness::Auto) };
+    if let Ok(word) = given.extract::<String>() {
+        return options::choice(py, "sharpness", &word, &[("auto", Sharpness::Auto)]);
+    }
+    given
+        .extract()
+        .map(Sharpness::Value)
+        .map_err(|_| argument(py, "sharpness", format!("expected \"auto\" or a number between 0 and 1, got {given}")))
+}
+
+/// `loops=`: indices of loops, or arrays of vertices.
+fn read_loops(given: &Bound<'_, PyAny>, n_vertices: usize) -> PyResult<Vec<LoopChoice>> {
+    let py = given.py();
+    let refuse = || argument(py, "loops", "expected a list of loop indices or of arrays of vertex indices");
+    let read = |item: Bound<'_, PyAny>| {
+        if item.hasattr("__len__")? && item.len().is_ok() {
+            let vertices = arrays::indices("loops", &item, n_vertices, "vertex")?;
+            return Ok(LoopChoice::Vertices(vertices.into_iter().map(|v| v as u32).collect()));
+        }
+        let index = arrays::integers("loops", &item)?;
+        match index.data.as_slice() {
+            [index] => Ok(LoopChoice::Index(options::at_least(py, "loops", *index, 0)?)),
+            _ => Err(refuse()),
+        }
+    };
+    given.try_iter().map_err(|_| refuse())?.map(|item| read(item?)).collect()
+}
