@@ -38,7 +38,7 @@ impl Filled {
     }
 }
 
-/// What became of one hole.
+/// What became of one hole: how sharp it was filled, how its flow ended, or why it was left open.
 #[pyclass(frozen, get_all, module = "ridgeform")]
 pub struct FilledHole {
     /// The vertices around it, (k,) int32.
@@ -109,7 +109,10 @@ impl FilledHole {
 #[pyfunction]
 #[pyo3(signature = (mesh, *, loops=None, max_edges=None, outer=false, edge_length=None, iterations=50, fidelity=50.0,
     sharpness=None, coupling="joint", scale="max_edge", dual="barycentric", solver="auto", tolerance=None,
-    max_iterations=None, memory_limit=None, threads=None, progress=None))]
+    max_iterations=None, memory_limit=None, threads=None, progress=None),
+    text_signature = "(mesh, *, loops=None, max_edges=None, outer=False, edge_length=None, iterations=50, fidelity=50.0, \
+    sharpness='auto', coupling='joint', scale='max_edge', dual='barycentric', solver='auto', tolerance=None, \
+    max_iterations=None, memory_limit=None, threads=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn fill_holes(
     py: Python<'_>,

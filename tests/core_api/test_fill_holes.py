@@ -1,0 +1,184 @@
+"""`fill_holes`: ridges go on, smooth surfaces stay smooth, and nothing outside the patches changes."""
+
+import numpy as np
+import pytest
+import ridgeform
+import shapes
+
+
+def without(vertices, faces, centre, radius):
+    """A mesh with a hole: the faces whose centre lies within `radius` of `centre` are gone."""
+    away = np.linalg.norm(vertices[faces].mean(axis=1) - centre, axis=1)
+    return ridgeform.Mesh(vertices, faces[away > radius])
+
+
+def turned_cube(n, centre, radius, seed=0):
+    """A cube of side 2 with a hole, turned at random, and the rotation."""
+    vertices, faces = shapes.cube(n, 2.0)
+    rotation = shapes.random_rotation(seed)
+    return without(vertices @ rotation.T, faces, rotation @ np.asarray(centre, float), radius), rotation
+
+
+def distance_to(points, vertices, faces):
+    """The distance of every point to a triangle mesh."""
+    a, b, c = (vertices[faces[:, i]] for i in range(3))
+    out = np.empty(len(points))
+    for i, p in enumerate(points):
+        best = np.full(len(faces), np.inf)
+        for start, end in ((a, b), (b, c), (c, a)):
+            along = end - start
+            t = np.clip(((p - start) * along).sum(1) / np.maximum((along**2).sum(1), 1e-300), 0, 1)
+            best = np.minimum(best, np.linalg.norm(start + t[:, None] * along - p, axis=1))
+        normal = np.cross(b - a, c - a)
+        square = np.maximum((normal**2).sum(1), 1e-300)
+        to = p - a
+        u = (np.cross(to, c - a) * normal).sum(1) / square
+        v = (np.cross(b - a, to) * normal).sum(1) / square
+        inside = (u >= 0) & (v >= 0) & (u + v <= 1)
+        best = np.where(inside, np.minimum(best, np.abs((to * normal).sum(1)) / np.sqrt(square)), best)
+        out[i] = best.min()
+    return out
+
+
+def patch_faces(filled):
+    return filled.faces[filled.patch >= 0]
+
+
+def check_invariants(mesh, filled):
+    """The input first and bit by bit; closed where it was filled, consistent, no degenerate face."""
+    n, m = mesh.n_vertices, mesh.n_faces
+    assert np.array_equal(filled.vertices[:n], mesh.vertices)
+    assert np.array_equal(filled.faces[:m], mesh.faces)
+    assert (filled.patch[:m] == -1).all()
+    assert (filled.patch[m:] >= 0).all()
+    assert filled.vertices.dtype == np.float64
+    assert filled.faces.dtype == filled.patch.dtype == np.int32
+    result = ridgeform.Mesh(filled.vertices, filled.faces).report
+    before = mesh.report
+    assert len(result.nonmanifold_edges) == len(before.nonmanifold_edges)
+    assert len(result.nonmanifold_vertices) <= len(before.nonmanifold_vertices)
+    assert len(result.degenerate_faces) == len(before.degenerate_faces)
+    assert len(result.duplicate_faces) == len(before.duplicate_faces)
+    assert len(result.unreferenced_vertices) == len(before.unreferenced_vertices)
+    refused = sum(hole.status == "refused" for hole in filled.holes)
+    assert result.n_boundary_loops == before.n_boundary_loops - len(filled.holes) + refused
+
+
+@pytest.mark.parametrize(("n", "radius", "seed"), [(12, 0.5, 0), (16, 0.4, 1), (16, 0.6, 2), (24, 0.5, 3)])
+def test_a_cubes_edge_comes_back(n, radius, seed):
+    mesh, rotation = turned_cube(n, [1, 1, 0.1], radius, seed)
+    filled = ridgeform.fill_holes(mesh)
+    check_invariants(mesh, filled)
+    (hole,) = filled.holes
+    assert hole.sharpness > 0
+    t = 0.1 + 0.9 * radius * np.linspace(-1, 1, 101)
+    ridge = np.column_stack([np.ones_like(t), np.ones_like(t), t]) @ rotation.T
+    assert distance_to(ridge, filled.vertices, patch_faces(filled)).mean() <= 0.001
+    ends = filled.vertices[filled.ridges] @ rotation
+    assert np.abs(ends[..., :2] - 1).max() < 0.02
+
+
+def test_a_sphere_stays_smooth():
+    vertices, faces = shapes.icosphere(4)
+    mesh = without(vertices, faces, np.array([0.3, 0.5, 0.81]), 0.45)
+    filled = ridgeform.fill_holes(mesh)
+    check_invariants(mesh, filled)
+    assert filled.holes[0].sharpness == 0
+    assert len(filled.ridges) == 0
+    assert filled.status == "converged"
+    assert np.abs(np.linalg.norm(filled.vertices[mesh.n_vertices :], axis=1) - 1).max() < 0.05
+
+
+def test_a_flat_hole_stays_flat():
+    vertices, faces = shapes.flat_lattice(20, 20)
+    mesh = without(vertices, faces, vertices.mean(axis=0), 4.0)
+    filled = ridgeform.fill_holes(mesh)
+    check_invariants(mesh, filled)
+    assert len(filled.holes) == 1
+    assert np.abs(filled.vertices[:, 2]).max() < 1e-9
+
+
+def test_the_outer_border_is_filled_only_when_asked_for():
+    vertices, faces = shapes.flat_lattice(12, 12)
+    mesh = without(vertices, faces, vertices.mean(axis=0), 3.0)
+    loops = ridgeform.boundary_loops(mesh)
+    assert len(loops) == 2
+    inner = int(np.argmin([len(loop) for loop in loops]))
+    assert len(ridgeform.fill_holes(mesh).holes) == 1
+    assert len(ridgeform.fill_holes(mesh, max_edges=3).holes) == 0
+    by_index = ridgeform.fill_holes(mesh, loops=[inner])
+    by_vertices = ridgeform.fill_holes(mesh, loops=[loops[inner][::-1]])
+    assert set(by_index.holes[0].boundary) == set(loops[inner])
+    np.testing.assert_allclose(
+        np.sort(by_index.vertices, axis=0), np.sort(by_vertices.vertices, axis=0), atol=1e-6
+    )
+
+
+def test_fills_scale_with_the_mesh():
+    mesh, _ = turned_cube(12, [1, 1, 0.1], 0.5)
+    # A power of two: no rounding, so that even ties are decided alike.
+    scaled = ridgeform.Mesh(1024 * mesh.vertices, mesh.faces)
+    plain, other = (ridgeform.fill_holes(m) for m in (mesh, scaled))
+    np.testing.assert_array_equal(plain.faces, other.faces)
+    np.testing.assert_allclose(other.vertices, 1024 * plain.vertices, rtol=0, atol=1e-9)
+
+
+def test_the_same_input_gives_the_same_bits():
+    mesh, _ = turned_cube(12, [1, 1, 0.1], 0.5)
+    first, second = (ridgeform.fill_holes(mesh, threads=k) for k in (1, 2))
+    assert np.array_equal(first.vertices, second.vertices)
+    assert np.array_equal(first.faces, second.faces)
+
+
+def test_several_holes_at_once():
+    vertices, faces = shapes.cube(16, 2.0)
+    centres = vertices[faces].mean(axis=1)
+    spots = np.array([[1, 1, 0.1], [-1, 0.2, 0.1], [-1, -1, -1]])
+    away = np.linalg.norm(centres[:, None] - spots, axis=2).min(axis=1)
+    mesh = ridgeform.Mesh(vertices, faces[away > 0.35])
+    filled = ridgeform.fill_holes(mesh)
+    check_invariants(mesh, filled)
+    assert len(filled.holes) == 3
+    assert sorted({*filled.patch}) == [-1, 0, 1, 2]
+
+
+def test_progress_shows_the_patch_and_can_stop_it():
+    mesh, _ = turned_cube(12, [1, 1, 0.1], 0.5)
+    progress = ridgeform.Progress()
+    progress.finish()
+    filled = ridgeform.fill_holes(mesh, progress=progress)
+    assert filled.status == "stopped"
+    check_invariants(mesh, filled)
+    vertices, faces = progress.snapshot_surface()
+    assert len(faces) == len(patch_faces(filled))
+    assert faces.max() == len(vertices) - 1
+    cancelled = ridgeform.Progress()
+    cancelled.cancel()
+    with pytest.raises(ridgeform.Cancelled):
+        ridgeform.fill_holes(mesh, progress=cancelled)
+
+
+@pytest.mark.parametrize(
+    ("keywords", "word"),
+    [
+        ({"fidelity": 0.0}, "fidelity"),
+        ({"sharpness": 2.0}, "sharpness"),
+        ({"sharpness": "much"}, "sharpness"),
+        ({"edge_length": -1.0}, "edge_length"),
+        ({"loops": [7]}, "loops"),
+        ({"loops": 3}, "loops"),
+        ({"loops": [[0, 1, 10**6]]}, "loops"),
+        ({"iterations": -1}, "iterations"),
+        ({"scale": "big"}, "scale"),
+    ],
+)
+def test_wrong_arguments_are_named(keywords, word):
+    mesh, _ = turned_cube(12, [1, 1, 0.1], 0.5)
+    with pytest.raises(ridgeform.ArgumentError, match=word):
+        ridgeform.fill_holes(mesh, **keywords)
+
+
+def test_vertices_that_are_no_loop_are_refused():
+    mesh, _ = turned_cube(12, [1, 1, 0.1], 0.5)
+    with pytest.raises(ridgeform.MeshError, match="boundary"):
+        ridgeform.fill_holes(mesh, loops=[[0, 1, 2]])
