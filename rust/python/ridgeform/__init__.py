@@ -1,12 +1,12 @@
 """Ridgeform: the L1 surface Hessian as a modeler's tool.
 
-Make a `Mesh` from arrays, then call a function per problem: `stylize` turns it piecewise flat, `segment` finds
-the parts that it is made of, `fill_holes` closes holes so that the ridges around them go on, `denoise` and
-`interpolate` find functions on it with sparse second derivatives, `vibration_modes` those of least energy,
-`diffusion_curves` the few curves that redraw a painted surface, and `hessian` and its companions are the
-operators behind them. Arrays of any numeric dtype and memory order go in; fresh C-contiguous `float64` and
-`int32` arrays come out. Long calls release the interpreter lock, report to a `Progress`, and hear Ctrl-C.
-Every failure is a `RidgeformError`.
+Make a `Mesh` from arrays, then call a function per problem: `stylize` turns it piecewise flat, `segment`
+finds the parts that it is made of, `fill_holes` closes holes so that the ridges around them go on,
+`denoise` and `interpolate` find functions on it with sparse second derivatives, `vibration_modes` those of
+least energy, `diffusion_curves` the few curves that redraw a painted surface, and `hessian` and its
+companions are the operators behind them. Arrays of any numeric dtype and memory order go in; fresh
+C-contiguous `float64` and `int32` arrays come out. Long calls release the interpreter lock, report to a
+`Progress`, and hear Ctrl-C. Every failure is a `RidgeformError`.
 
 Source: Rowe, Jacobson and Stein, Sharpening and Sparsifying with Surface Hessians, SIGGRAPH Asia 2024.
 """
