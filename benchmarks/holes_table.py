@@ -48,14 +48,14 @@ def _tools(results: Record) -> list[str]:
     return [tool for tool in NAMES if any(tool in case["tools"] for case in results["cases"])]
 
 
-def by_kind(results: Record, measure: str) -> str:
-    """One row for each kind of hole, `measure` is mean or rms."""
+def by_kind(results: Record, measure: str, filling: bool = False) -> str:
+    """One row for each kind of hole, `measure` is mean or rms; with `filling` never that of ridge points."""
     tools = _tools(results)
     rows = []
     for kind, about in KINDS.items():
         cases = [case for case in results["cases"] if case["kind"] == kind]
         if cases:
-            key = ("fill_" if about.smooth else "ridge_") + measure
+            key = ("fill_" if about.smooth or filling else "ridge_") + measure
             cells = [
                 _cell([case["tools"][tool] for case in cases if tool in case["tools"]], key) for tool in tools
             ]
@@ -163,6 +163,8 @@ def full(results: Record) -> str:
         by_kind(results, "mean"),
         "## Root of the mean square\n",
         by_kind(results, "rms"),
+        "## Mean distance of the filling to the true surface\n",
+        by_kind(results, "mean", filling=True),
     ]
     why = failures(results)
     if why:
