@@ -3,10 +3,10 @@
 Make a `Mesh` from arrays, then call a function per problem: `stylize` turns it piecewise flat, `segment`
 finds the parts that it is made of, `fill_holes` closes holes so that the ridges around them go on,
 `denoise` and `interpolate` find functions on it with sparse second derivatives, `vibration_modes` those of
-least energy, `diffusion_curves` the few curves that redraw a painted surface, and `hessian` and its
-companions are the operators behind them. Arrays of any numeric dtype and memory order go in; fresh
-C-contiguous `float64` and `int32` arrays come out. Long calls release the interpreter lock, report to a
-`Progress`, and hear Ctrl-C. Every failure is a `RidgeformError`.
+least energy, `diffusion_curves` the few curves that redraw a painted surface, and `remesh` evens out its
+triangles; `hessian` and its companions are the operators behind them. Arrays of any numeric dtype and
+memory order go in; fresh C-contiguous `float64` and `int32` arrays come out. Long calls release the
+interpreter lock, report to a `Progress`, and hear Ctrl-C. Every failure is a `RidgeformError`.
 
 Source: Rowe, Jacobson and Stein, Sharpening and Sparsifying with Surface Hessians, SIGGRAPH Asia 2024.
 """
@@ -20,6 +20,7 @@ from ._native import (
     MeshReport,
     Progress,
     Redrawn,
+    Remeshed,
     Segmentation,
     Solution,
     SparseMatrix,
@@ -37,6 +38,7 @@ from ._native import (
     interpolate,
     intrinsic_delaunay,
     redraw,
+    remesh,
     segment,
     stylize,
     vibration_modes,
@@ -56,6 +58,7 @@ __all__ = [
     "MeshReport",
     "Progress",
     "Redrawn",
+    "Remeshed",
     "RidgeformError",
     "Segmentation",
     "Solution",
@@ -75,6 +78,7 @@ __all__ = [
     "interpolate",
     "intrinsic_delaunay",
     "redraw",
+    "remesh",
     "segment",
     "stylize",
     "vibration_modes",

@@ -113,6 +113,21 @@ class Solution:
     def solver(self) -> str: ...
 
 @final
+class Remeshed:
+    @property
+    def vertices(self) -> Floats: ...
+    @property
+    def faces(self) -> Indices: ...
+    @property
+    def origin(self) -> Indices: ...
+    @property
+    def edge_length(self) -> float: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def status(self) -> Literal["finished", "stopped"]: ...
+
+@final
 class Segmentation:
     @property
     def labels(self) -> Indices: ...
@@ -392,3 +407,12 @@ def fill_holes(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Filled: ...
+def remesh(
+    mesh: Mesh,
+    *,
+    edge_length: float | None = None,
+    iterations: int = 10,
+    fixed: ArrayLike | None = None,
+    feature_angle: float | None = 45.0,
+    progress: Progress | None = None,
+) -> Remeshed: ...

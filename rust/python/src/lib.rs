@@ -18,6 +18,7 @@ mod modes;
 mod operators;
 mod options;
 mod progress;
+mod remesh;
 mod segment;
 mod solution;
 mod stylize;
@@ -36,6 +37,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<solution::Solution>()?;
     module.add_class::<holes::Hole>()?;
     module.add_class::<stylize::Stylized>()?;
+    module.add_class::<remesh::Remeshed>()?;
     module.add_class::<diffusion_curves::DiffusionCurves>()?;
     module.add_class::<diffusion_curves::Redrawn>()?;
     module.add_class::<fill_holes::Filled>()?;
@@ -53,6 +55,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(modes::vibration_modes, module)?)?;
     module.add_function(wrap_pyfunction!(segment::segment, module)?)?;
     module.add_function(wrap_pyfunction!(stylize::stylize, module)?)?;
+    module.add_function(wrap_pyfunction!(remesh::remesh, module)?)?;
     module.add_function(wrap_pyfunction!(diffusion_curves::diffusion_curves, module)?)?;
     module.add_function(wrap_pyfunction!(diffusion_curves::redraw, module)?)?;
     module.add_function(wrap_pyfunction!(fill_holes::fill_holes, module)?)?;

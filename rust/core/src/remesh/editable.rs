@@ -166,9 +166,15 @@ impl EditableMesh {
     /// All edges, smaller vertex first, ascending.
     #[must_use]
     pub fn edges(&self) -> Vec<[u32; 2]> {
-        let mut edges: Vec<_> = self.faces().flat_map(|(_, [a, b, c])| [key(a, b), key(b, c), key(c, a)]).collect();
-        edges.sort_unstable();
-        edges.dedup();
+        let mut edges = Vec::with_capacity(self.faces.len() * 3 / 2);
+        let mut larger = Vec::new();
+        for v in 0..self.positions.len() as u32 {
+            larger.clear();
+            larger.extend(self.faces_of(v).iter().flat_map(|&f| self.faces[f as usize]).filter(|&w| w > v));
+            larger.sort_unstable();
+            larger.dedup();
+            edges.extend(larger.iter().map(|&w| [v, w]));
+        }
         edges
     }
 
@@ -217,7 +223,9 @@ impl EditableMesh {
     /// Whether an edge at `v` has one face only.
     #[must_use]
     pub fn is_border(&self, v: u32) -> bool {
-        self.neighbours(v).iter().any(|&w| matches!(self.edge(v, w), Edge::Border(..)))
+        let around = |f: &u32| self.faces[*f as usize];
+        let count = |w: u32| self.faces_of(v).iter().filter(|f| around(f).contains(&w)).count();
+        self.faces_of(v).iter().flat_map(around).any(|w| w != v && count(w) == 1)
     }
 
     /// Whether the faces of `v` form one fan across interior edges; a vertex without faces has none.
