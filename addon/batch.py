@@ -173,6 +173,9 @@ def _sentence(record: dict[str, object]) -> str:
     segments = [entry["segments"] for entry in record["meshes"] if "segments" in entry]
     if segments:
         parts.append(f"{sum(segments)} segments")
+    holes = [entry["holes"] for entry in record["meshes"] if "holes" in entry]
+    if holes:
+        parts.append(f"{sum(holes)} holes filled")
     return f"{where}: {', '.join(parts)}, {record['seconds']:.1f} s{notes}"
 
 

@@ -9,10 +9,12 @@ from pathlib import Path
 
 from . import files
 from .attribute_settings import ENERGIES, DenoiseSettings, InterpolateSettings
+from .hole_settings import HoleSettings
 from .segment_settings import OUTPUTS, SegmentSettings
 from .settings import StylizeSettings
 from .shared_settings import defaults_of, setting_names
 from .tools.denoise import Denoising
+from .tools.fill_holes import HoleFilling
 from .tools.interpolate import Interpolation
 from .tools.run import Run
 from .tools.segment import Segmenting
@@ -37,7 +39,7 @@ def settings_from(options: argparse.Namespace) -> object:
         for name, value in vars(options).items()
         if value is not None and name in setting_names(settings) and name != "output"
     }
-    if options.fidelity is not None:
+    if options.fidelity is not None and "use_fidelity" in setting_names(settings):
         given["use_fidelity"] = True
     return defaults_of(settings, **(given | _translated(options)))
 
@@ -66,6 +68,10 @@ def _translated(options: argparse.Namespace) -> dict[str, object]:
         given["outputs"] = {_output_word(word) for word in options.make}
     if options.tool == "segment" and options.attribute is not None:
         given["source"] = "ATTRIBUTE"
+    if words.get("shape") is not None:
+        given["shape"] = options.shape.upper()
+    if words.get("one_material"):
+        given["material"] = "MAJORITY"
     return given
 
 
@@ -180,6 +186,24 @@ def _add_segment(child: argparse.ArgumentParser, defaults: object) -> None:
     add("--max-iterations", type=int, help="most solver iterations; 0: left to the solver")
 
 
+def _add_fill_holes(child: argparse.ArgumentParser, defaults: object) -> None:
+    add = child.add_argument
+    add("--max-edges", type=int, metavar="N", help="fill holes with at most N edges (0: of any size)")
+    add("--outer", action="store_true", default=None, help="fill the outer border of open sheets as well")
+    add(
+        "--shape",
+        choices=("auto", "sharp", "smooth"),
+        help=f"what patches look like ({defaults.shape.lower()})",
+    )
+    add("--sharpness", type=float, help=f"0 to 1, with --shape sharp ({defaults.sharpness})")
+    add("--edge-length", type=float, metavar="LENGTH", help="of edges in patches (that around the hole)")
+    add("--one-material", action="store_true", help="one material for a patch: that of most of its border")
+    add("--mark", action="append", choices=("sharp", "crease", "bevel"), help="mark ridges; may be repeated")
+    add("--iterations", type=int, metavar="STEPS", help=f"most flow steps ({defaults.iterations})")
+    add("--fidelity", type=float, help=f"fidelity weight of the paper ({defaults.fidelity:g})")
+    add("--coupling", choices=("joint", "separate"), help="norm over the coordinates (joint)")
+
+
 TOOLS = {
     "stylize": BatchTool(
         Stylization, StylizeSettings, "make meshes piecewise flat, with crisp ridges", _add_stylize
@@ -189,6 +213,9 @@ TOOLS = {
         SegmentSettings,
         "divide meshes into the parts that a person would name: material slots and more",
         _add_segment,
+    ),
+    "fill-holes": BatchTool(
+        HoleFilling, HoleSettings, "fill holes and bring back the ridges that end there", _add_fill_holes
     ),
     "denoise-attribute": BatchTool(
         Denoising,

@@ -26,6 +26,8 @@ class Task:
     error: Exception | None = None
     seconds: float = 0.0
     started: bool = False
+    cancelled: bool = False
+    """Whether the result is no longer wanted: for calls that do more than one call of the wheel."""
 
     def run(self) -> None:
         """Call, and keep the result or the error."""
@@ -86,6 +88,7 @@ class Job:
         """Ask the running task to stop without a result, and wait until it has."""
         self._stop.set()
         for task in self.tasks:
+            task.cancelled = True
             task.progress.cancel()
         self.join()
 

@@ -35,14 +35,14 @@ def object_mode() -> Iterator[None]:
 
 def triangles(mesh: bpy.types.Mesh) -> np.ndarray:
     """The loop triangles (m, 3) int32: vertices of the triangles that Blender draws for faces of any size."""
-    mesh.calc_loop_triangles()
-    corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
-    mesh.loop_triangles.foreach_get("vertices", corners)
-    return corners.reshape(-1, 3)
+    return _corner_array(mesh, ".corner_vert", "vertex_index")[triangle_corners(mesh)]
 
 
 def triangle_corners(mesh: bpy.types.Mesh) -> np.ndarray:
     """The corners (m, 3) int32 of the faces that the loop triangles use."""
+    if len(mesh.loops) == 3 * len(mesh.polygons):
+        return np.arange(len(mesh.loops), dtype=np.int32).reshape(-1, 3)
+    mesh.calc_loop_triangles()
     corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
     mesh.loop_triangles.foreach_get("loops", corners)
     return corners.reshape(-1, 3)
@@ -50,27 +50,55 @@ def triangle_corners(mesh: bpy.types.Mesh) -> np.ndarray:
 
 def triangle_faces(mesh: bpy.types.Mesh) -> np.ndarray:
     """The face (m,) int32 that each loop triangle is a part of."""
-    faces = np.empty(len(mesh.loop_triangles), np.int32)
-    mesh.loop_triangles.foreach_get("polygon_index", faces)
-    return faces
+    starts = _face_starts(mesh)
+    sizes = np.diff(starts, append=np.int32(len(mesh.loops)))
+    # Those of a face are two fewer than its corners, in the order of the faces.
+    return np.repeat(np.arange(len(starts), dtype=np.int32), sizes - 2)
 
 
 def edges(mesh: bpy.types.Mesh) -> np.ndarray:
     """The edges (k, 2) int32."""
     ends = np.empty(2 * len(mesh.edges), np.int32)
-    mesh.edges.foreach_get("vertices", ends)
+    attribute = mesh.attributes.get(".edge_verts")
+    if attribute is None:
+        mesh.edges.foreach_get("vertices", ends)
+    else:
+        attribute.data.foreach_get("value", ends)
     return ends.reshape(-1, 2)
 
 
 def face_corners(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """First corner of each face (f,), vertex of each corner (c,) and edge of each corner (c,), int32."""
+    vertices = _corner_array(mesh, ".corner_vert", "vertex_index")
+    return _face_starts(mesh), vertices, _corner_array(mesh, ".corner_edge", "edge_index")
+
+
+def border_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
+    """The vertices (k,) of the edges with one face, ascending."""
+    used = np.bincount(_corner_array(mesh, ".corner_edge", "edge_index"), minlength=len(mesh.edges))
+    return np.unique(edges(mesh)[used == 1])
+
+
+def _face_starts(mesh: bpy.types.Mesh) -> np.ndarray:
+    if len(mesh.loops) == 3 * len(mesh.polygons):
+        return np.arange(0, len(mesh.loops), 3, dtype=np.int32)
     starts = np.empty(len(mesh.polygons), np.int32)
     mesh.polygons.foreach_get("loop_start", starts)
-    vertices = np.empty(len(mesh.loops), np.int32)
-    mesh.loops.foreach_get("vertex_index", vertices)
-    corner_edges = np.empty(len(mesh.loops), np.int32)
-    mesh.loops.foreach_get("edge_index", corner_edges)
-    return starts, vertices, corner_edges
+    return starts
+
+
+def _corner_array(mesh: bpy.types.Mesh, name: str, prop: str) -> np.ndarray:
+    """An attribute (c,) int32 of the corners; in Edit Mode, where it is not there, by the corners' property.
+
+    The property takes several hundred times as long.
+    """
+    values = np.empty(len(mesh.loops), np.int32)
+    attribute = mesh.attributes.get(name)
+    if attribute is None:
+        mesh.loops.foreach_get(prop, values)
+    else:
+        attribute.data.foreach_get("value", values)
+    return values
 
 
 def selected_vertices(mesh: bpy.types.Mesh) -> np.ndarray:

@@ -22,11 +22,15 @@ ATTRIBUTE_KINDS = {
     "BYTE_COLOR": ("color", np.float32, 4),
     "INT32_2D": ("value", np.int32, 2),
     "QUATERNION": ("value", np.float32, 4),
+    "FLOAT4X4": ("value", np.float32, 16),
 }
-_MIXED = {"FLOAT", "FLOAT2", "FLOAT_VECTOR", "FLOAT_COLOR", "BYTE_COLOR"}
+MIXED = {"FLOAT", "FLOAT2", "FLOAT_VECTOR", "FLOAT_COLOR", "BYTE_COLOR"}
+"""Types whose values can be mixed; of others one is taken."""
 # Custom normals are stored relative to the faces that they were made for.
 _TOPOLOGY = {"position", "custom_normal", ".edge_verts", ".corner_vert", ".corner_edge"}
-_SEAMS = {".uv_seam", "uv_seam"}
+SEAMS = {".uv_seam", "uv_seam"}
+"""The edge attribute of UV seams, in older and newer versions of Blender."""
+_HIDDEN = SEAMS | {".sculpt_face_set", ".sculpt_mask"}
 ON_MARK = 0.15
 """A new edge takes a mark if ends and middle lie this close to marked edges, in parts of its length."""
 
@@ -80,10 +84,18 @@ class Triangulation:
 
 def read_layers(obj: bpy.types.Object) -> Layers:
     """Read all but coordinates and faces from the mesh of an object in Object Mode."""
-    mesh = obj.data
+    return Layers(
+        read_attributes(obj.data),
+        _read_groups(obj),
+        _active_layers(obj.data) | {"group": obj.vertex_groups.active_index},
+    )
+
+
+def read_attributes(mesh: bpy.types.Mesh) -> list[Layer]:
+    """The attributes of a mesh in Object Mode, without coordinates and faces and what is Blender's own."""
     attributes = []
     for attribute in mesh.attributes:
-        hidden = attribute.name.startswith(".") and attribute.name not in _SEAMS
+        hidden = attribute.name.startswith(".") and attribute.name not in _HIDDEN
         if hidden or attribute.name in _TOPOLOGY or attribute.data_type not in ATTRIBUTE_KINDS:
             continue
         prop, dtype, size = ATTRIBUTE_KINDS[attribute.data_type]
@@ -92,9 +104,7 @@ def read_layers(obj: bpy.types.Object) -> Layers:
         attributes.append(
             Layer(attribute.name, attribute.data_type, attribute.domain, values.reshape(-1, size))
         )
-    return Layers(
-        attributes, _read_groups(obj), _active_layers(mesh) | {"group": obj.vertex_groups.active_index}
-    )
+    return attributes
 
 
 def _read_groups(obj: bpy.types.Object) -> list[Group]:
@@ -197,7 +207,7 @@ def _edge_rows(mesh: bpy.types.Mesh, ends: np.ndarray) -> np.ndarray:
 
 def _mixed(layer: Layer, elements: np.ndarray, weights: np.ndarray) -> np.ndarray:
     values = layer.values[elements]
-    if layer.data_type in _MIXED:
+    if layer.data_type in MIXED:
         return np.einsum("ijk,ij->ik", values, weights).astype(layer.values.dtype)
     return values[np.arange(len(elements)), weights.argmax(axis=1)]
 

@@ -38,11 +38,14 @@ class Weld:
         return np.bincount(self.vertex, weights=values, minlength=len(self.first))
 
 
-def weld_seams(coordinates: np.ndarray, triangles: np.ndarray) -> Weld:
-    """Weld vertices on open borders whose coordinates (n, 3) are equal; all others keep their order."""
+def weld_seams(coordinates: np.ndarray, triangles: np.ndarray, border: np.ndarray | None = None) -> Weld:
+    """Weld vertices on open borders whose coordinates (n, 3) are equal; all others keep their order.
+
+    `border` (b,) are the vertices on open borders, if they are known.
+    """
     n = len(coordinates)
     representative = np.arange(n)
-    border = _border_vertices(triangles, n)
+    border = _border_vertices(triangles, n) if border is None else border
     if len(border):
         # Adding 0 turns -0 into 0, which is the same place.
         _, first, place = np.unique(coordinates[border] + 0.0, axis=0, return_index=True, return_inverse=True)

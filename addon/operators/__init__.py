@@ -4,11 +4,12 @@
 import bpy
 
 from ..tools.segment import forget
-from . import attributes, modal, segment, stylize
+from . import attributes, fill_holes, modal, segment, stylize
 
 _CLASSES = (
     stylize.RIDGEFORM_OT_stylize,
     segment.RIDGEFORM_OT_segment,
+    fill_holes.RIDGEFORM_OT_fill_holes,
     attributes.RIDGEFORM_OT_denoise_attribute,
     attributes.RIDGEFORM_OT_interpolate_attribute,
     attributes.RIDGEFORM_OT_vibration_modes,

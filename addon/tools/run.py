@@ -160,7 +160,7 @@ def welded(obj: bpy.types.Object, coordinates: np.ndarray) -> tuple[Weld, np.nda
             f'Vertex {broken[0]} of "{obj.name}" has a coordinate that is not a finite number '
             f"({len(broken)} in all): delete or move it"
         )
-    return weld_seams(coordinates, triangles), triangles
+    return weld_seams(coordinates, triangles, mesh_io.border_vertices(obj.data)), triangles
 
 
 def group_weights(obj: bpy.types.Object, name: str) -> np.ndarray:

@@ -8,6 +8,7 @@ def _draw(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
     self.layout.separator()
     self.layout.operator("ridgeform.stylize", icon="MOD_DECIM")
     self.layout.operator("ridgeform.segment", icon="MATERIAL")
+    self.layout.operator("ridgeform.fill_holes", icon="MESH_GRID")
     self.layout.operator("ridgeform.denoise_attribute", icon="MOD_SMOOTH")
     self.layout.operator("ridgeform.interpolate_attribute", icon="MOD_DATA_TRANSFER")
     self.layout.operator("ridgeform.vibration_modes", icon="MOD_WAVE")

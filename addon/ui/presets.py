@@ -8,6 +8,7 @@ from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 
 from ..attribute_settings import DenoiseSettings, InterpolateSettings
+from ..hole_settings import HoleSettings
 from ..segment_settings import SegmentSettings
 from ..settings import StylizeSettings
 from ..shared_settings import setting_names
@@ -55,6 +56,13 @@ class RIDGEFORM_MT_interpolate_presets(_PresetMenu, bpy.types.Menu):  # noqa: N8
     preset_subdir = "ridgeform/interpolate"
 
 
+class RIDGEFORM_MT_fill_holes_presets(_PresetMenu, bpy.types.Menu):  # noqa: N801
+    """The list of presets of filling holes."""
+
+    bl_label = "Fill Holes Presets"
+    preset_subdir = "ridgeform/fill_holes"
+
+
 class RIDGEFORM_OT_stylize_preset_add(AddPresetBase, bpy.types.Operator):  # noqa: N801
     """Save the settings of the panel as a preset, or remove one"""
 
@@ -99,6 +107,17 @@ class RIDGEFORM_OT_interpolate_preset_add(AddPresetBase, bpy.types.Operator):  #
     preset_values = _preset_values(InterpolateSettings)
 
 
+class RIDGEFORM_OT_fill_holes_preset_add(AddPresetBase, bpy.types.Operator):  # noqa: N801
+    """Save the settings of the panel as a preset, or remove one"""
+
+    bl_idname = "ridgeform.fill_holes_preset_add"
+    bl_label = "Add Fill Holes Preset"
+    preset_menu = "RIDGEFORM_MT_fill_holes_presets"
+    preset_subdir = "ridgeform/fill_holes"
+    preset_defines = ["settings = bpy.context.scene.ridgeform_holes"]
+    preset_values = _preset_values(HoleSettings)
+
+
 class RIDGEFORM_PT_stylize_presets(PresetPanel, bpy.types.Panel):  # noqa: N801
     """The popover behind the presets button of stylize."""
 
@@ -135,19 +154,31 @@ class RIDGEFORM_PT_interpolate_presets(PresetPanel, bpy.types.Panel):  # noqa: N
     preset_add_operator = "ridgeform.interpolate_preset_add"
 
 
+class RIDGEFORM_PT_fill_holes_presets(PresetPanel, bpy.types.Panel):  # noqa: N801
+    """The popover behind the presets button of filling holes."""
+
+    bl_label = "Fill Holes Presets"
+    preset_subdir = "ridgeform/fill_holes"
+    preset_operator = "script.execute_preset"
+    preset_add_operator = "ridgeform.fill_holes_preset_add"
+
+
 _CLASSES = (
     RIDGEFORM_MT_stylize_presets,
     RIDGEFORM_MT_segment_presets,
     RIDGEFORM_MT_denoise_presets,
     RIDGEFORM_MT_interpolate_presets,
+    RIDGEFORM_MT_fill_holes_presets,
     RIDGEFORM_OT_stylize_preset_add,
     RIDGEFORM_OT_segment_preset_add,
     RIDGEFORM_OT_denoise_preset_add,
     RIDGEFORM_OT_interpolate_preset_add,
+    RIDGEFORM_OT_fill_holes_preset_add,
     RIDGEFORM_PT_stylize_presets,
     RIDGEFORM_PT_segment_presets,
     RIDGEFORM_PT_denoise_presets,
     RIDGEFORM_PT_interpolate_presets,
+    RIDGEFORM_PT_fill_holes_presets,
 )
 
 

@@ -8,6 +8,7 @@ import json
 
 import addon_kit as kit
 import bpy
+import hole_kit
 import numpy as np
 import pytest
 from bl_ext.user_default.ridgeform import batch, files
@@ -194,6 +195,35 @@ def test_segments_of_files(tmp_path, capfd):
     capfd.readouterr()
     assert batch.main(["segment", str(source), "-o", str(target)]) == 0
     assert "vertices, 6 segments, " in capfd.readouterr().out
+
+
+def test_holes_of_files(tmp_path, capfd):
+    kit.empty_scene()
+    hole_kit.box(name="Open")
+    hole_kit.sheet()
+    kit.bumpy_box("Closed")
+    source, target = tmp_path / "open.blend", tmp_path / "filled.blend"
+    files.write_file(source)
+    shape = ("--shape", "sharp", "--sharpness", "0.75", "--one-material", "--mark", "sharp")
+    code, (record,) = run_tool(capfd, "fill-holes", source, "-o", target, "--max-edges", "40", *shape)
+    assert code == 0, record
+    entries = {entry["name"]: entry for entry in record["meshes"]}
+    assert set(entries) == {"Open", "Sheet"}
+    assert [entries[name]["holes"] for name in ("Open", "Sheet")] == [1, 1]
+    assert entries["Open"]["ridge_edges"] > 0
+    assert record["faces"] == sum(entry["faces"] for entry in entries.values())
+    assert '"Closed" has no holes' in record["warnings"]
+    assert any("outer border" in warning for warning in record["warnings"])
+    loaded = {obj.name: obj for obj in files.read_file(target)}
+    assert len(loaded["Open"].data.polygons) == entries["Open"]["faces"]
+    assert any(item.value for item in loaded["Open"].data.attributes["sharp_edge"].data)
+
+
+def test_a_file_without_holes_is_an_error(tmp_path, capfd):
+    (source,) = saved(tmp_path, ".ply")
+    code, (record,) = run_tool(capfd, "fill-holes", source, "-o", tmp_path / "out.ply")
+    assert code == 1
+    assert "has no holes" in record["error"]
 
 
 def test_an_attribute_that_is_not_there_is_an_error_of_its_file(tmp_path, capfd):

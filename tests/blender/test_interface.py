@@ -4,6 +4,7 @@ from pathlib import Path
 
 import addon_kit as kit
 import bpy
+import hole_kit
 import pytest
 from bl_ext.user_default import ridgeform as addon
 from bl_ext.user_default.ridgeform import job
@@ -12,6 +13,7 @@ from bl_ext.user_default.ridgeform.attribute_settings import (
     InterpolateSettings,
     ModesSettings,
 )
+from bl_ext.user_default.ridgeform.hole_settings import HoleSettings
 from bl_ext.user_default.ridgeform.segment_settings import SegmentSettings
 from bl_ext.user_default.ridgeform.settings import StylizeSettings, default_settings, fidelity_of
 from bl_ext.user_default.ridgeform.shared_settings import defaults_of, setting_names
@@ -47,6 +49,12 @@ CLASSES = (
     "RIDGEFORM_PT_interpolate_expert",
     "RIDGEFORM_PT_modes",
     "RIDGEFORM_PT_modes_expert",
+    "RIDGEFORM_OT_fill_holes",
+    "RIDGEFORM_OT_fill_holes_preset_add",
+    "RIDGEFORM_MT_fill_holes_presets",
+    "RIDGEFORM_PT_fill_holes",
+    "RIDGEFORM_PT_fill_holes_expert",
+    "RIDGEFORM_PT_fill_holes_presets",
 )
 TOOLS = {
     "stylize": ("ridgeform_stylize", StylizeSettings),
@@ -54,6 +62,7 @@ TOOLS = {
     "interpolate_attribute": ("ridgeform_interpolate", InterpolateSettings),
     "segment": ("ridgeform_segment", SegmentSettings),
     "vibration_modes": ("ridgeform_modes", ModesSettings),
+    "fill_holes": ("ridgeform_holes", HoleSettings),
 }
 MENUS = ("VIEW3D_MT_object", "VIEW3D_MT_edit_mesh")
 HANDLERS = ("load_pre", "undo_pre", "redo_pre")
@@ -138,6 +147,33 @@ def test_shipped_presets_of_segmenting():
         assert settings.use_fidelity == (settings.method == "paper") == (path.stem == "Paper_2024")
         seen.add((settings.method, round(settings.length_weight, 6)))
     assert len(seen) == 4
+
+
+def test_shipped_presets_of_fill_holes():
+    (folder,) = bpy.utils.preset_paths("ridgeform/fill_holes")
+    settings = bpy.context.scene.ridgeform_holes
+    seen = {}
+    for path in sorted(Path(folder).glob("*.py")):
+        settings.max_edges = 7
+        bpy.ops.script.execute_preset(filepath=str(path), menu_idname="RIDGEFORM_MT_fill_holes_presets")
+        seen[path.stem] = (settings.shape, frozenset(settings.marks))
+        assert settings.max_edges == 7
+    assert seen == {
+        "Automatic": ("AUTO", frozenset()),
+        "Hard_Ridges": ("SHARP", frozenset({"SHARP"})),
+        "Smooth": ("SMOOTH", frozenset()),
+    }
+
+
+def test_button_of_fill_holes_takes_the_settings_of_the_panel():
+    hole_kit.sheet()
+    bpy.context.scene.ridgeform_holes.edge_length = 0.02
+    bpy.ops.ridgeform.fill_holes("INVOKE_DEFAULT", from_panel=True)
+    fine = job.last_summary()[0]["faces_added"]
+    kit.empty_scene()
+    hole_kit.sheet()
+    bpy.ops.ridgeform.fill_holes("INVOKE_DEFAULT")
+    assert fine > 4 * job.last_summary()[0]["faces_added"]
 
 
 def test_button_takes_the_settings_of_the_panel():

@@ -2,6 +2,7 @@
 
 import addon_kit as kit
 import bpy
+import hole_kit
 import numpy as np
 import pytest
 from bl_ext.user_default.ridgeform import attribute_io, attribute_names
@@ -73,6 +74,20 @@ def test_undo_in_edit_mode(attribute):
     assert edited_state() == before
     bpy.ops.ed.redo()
     assert edited_state() == after
+
+
+def test_undo_opens_the_holes_again():
+    obj = hole_kit.box()
+    bpy.context.preferences.edit.use_global_undo = True
+    bpy.ops.ed.undo_push(message="before")
+    before = hole_kit.state(obj)
+    bpy.ops.ridgeform.fill_holes("EXEC_DEFAULT", True)
+    after = hole_kit.state(obj)
+    assert len(after["faces"]) > len(before["faces"])
+    bpy.ops.ed.undo()
+    assert hole_kit.state(bpy.data.objects["Box"]) == before
+    bpy.ops.ed.redo()
+    assert hole_kit.state(bpy.data.objects["Box"]) == after
 
 
 def edited_state():

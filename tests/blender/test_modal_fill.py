@@ -1,0 +1,86 @@
+"""The modal run of Fill Holes: the preview touches no mesh, Esc leaves every bit, Enter keeps."""
+
+import time
+
+import addon_kit as kit
+import bpy
+import hole_kit
+import pytest
+from bl_ext.user_default.ridgeform import job
+from bl_ext.user_default.ridgeform.hole_settings import HoleSettings
+from bl_ext.user_default.ridgeform.operators import modal
+from bl_ext.user_default.ridgeform.shared_settings import defaults_of
+from bl_ext.user_default.ridgeform.tools.fill_holes import HoleFilling
+from test_modal import PATIENCE, FakeContext, FakeOperator, event, poll_to_the_end
+
+
+@pytest.fixture(autouse=True)
+def none_left():
+    """No run is left over."""
+    yield
+    assert modal._running == []
+
+
+def start(obj, previewed=True):
+    run = HoleFilling([obj], defaults_of(HoleSettings, iterations=200, edge_length=0.02))
+    operator, context = FakeOperator(), FakeContext()
+    assert operator.begin_modal(context, run) == {"RUNNING_MODAL"}
+    end = time.monotonic() + PATIENCE
+    while previewed and run._overlay.n_triangles == 0:
+        assert time.monotonic() < end, "no preview"
+        assert operator.modal(context, event("TIMER")) == {"RUNNING_MODAL"}
+        time.sleep(0.002)
+    return run, operator, context
+
+
+def test_cancel_leaves_every_bit_and_takes_the_preview_away():
+    obj = hole_kit.box()
+    before = hole_kit.state(obj)
+    run, operator, context = start(obj)
+    assert hole_kit.state(obj) == before
+    assert operator.modal(context, event("ESC")) == {"CANCELLED"}
+    assert hole_kit.state(obj) == before
+    assert run._overlay.n_triangles == 0
+    assert not run.job.is_running
+
+
+def test_cancel_in_edit_mode():
+    obj = hole_kit.box()
+    hole = hole_kit.around_holes(obj)[0].vertices.tolist()
+    hole_kit.pick(obj, hole[:2])
+    bpy.ops.object.mode_set(mode="OBJECT")
+    before = hole_kit.state(obj)
+    bpy.ops.object.mode_set(mode="EDIT")
+    _, operator, context = start(obj)
+    assert obj.mode == "EDIT"
+    assert operator.modal(context, event("ESC")) == {"CANCELLED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert hole_kit.state(obj) == before
+
+
+def test_enter_keeps_what_is_there():
+    obj = hole_kit.box()
+    n_faces = len(obj.data.polygons)
+    run, operator, context = start(obj)
+    assert operator.modal(context, event("RET")) == {"RUNNING_MODAL"}
+    assert poll_to_the_end(operator, context) == {"FINISHED"}
+    (entry,) = job.last_summary()
+    assert entry["status"] == "stopped"
+    assert len(obj.data.polygons) == n_faces + entry["faces_added"]
+    assert run._overlay.n_triangles == 0
+    assert not obj.data.validate()
+
+
+def test_the_end_of_the_run_is_what_execute_gives():
+    obj = hole_kit.box()
+    settings = {"iterations": 200, "edge_length": 0.05}
+    run = HoleFilling([obj], defaults_of(HoleSettings, **settings))
+    operator, context = FakeOperator(), FakeContext()
+    operator.begin_modal(context, run)
+    assert poll_to_the_end(operator, context) == {"FINISHED"}
+    kit.empty_scene()
+    # The run above is over; the object of the same shape takes its place.
+    other = hole_kit.box()
+    other_before = len(other.data.polygons)
+    bpy.ops.ridgeform.fill_holes(**settings)
+    assert len(other.data.polygons) == other_before + job.last_summary()[0]["faces_added"]
