@@ -22,6 +22,8 @@ SHARPNESSES = (0.0, 0.5, 1.0)
 NOISE = 0.5
 NOISE_STRENGTH = 0.6
 BANDS = 10
+HOUSE_NOISE = 0.1
+SEGMENT_COUNTS = (5, None, 30)
 
 
 def stylized(vertices: np.ndarray, faces: np.ndarray, **changes: object) -> np.ndarray:
@@ -147,6 +149,34 @@ def attributes() -> None:
     pictures.sheet(PICTURES / "attributes.png", [row], captions=[captions], text_pixels=15)
 
 
+def segments() -> None:
+    """A house under noise, and the bust from one run in three numbers of segments."""
+    import pictures  # noqa: PLC0415
+    import ridgeform  # noqa: PLC0415
+    import shapes  # noqa: PLC0415
+
+    from addon.segment_settings import SegmentSettings, segment_options  # noqa: PLC0415
+    from addon.segmenting.slots import color_of  # noqa: PLC0415
+    from addon.shared_settings import defaults_of  # noqa: PLC0415
+
+    vertices, faces = shapes.house(4)
+    house = shapes.add_noise(vertices, faces, HOUSE_NOISE, seed=1), faces
+    row, captions = [], []
+    for (points, triangles), view, counts in (
+        (house, CUBE_VIEW, (None,)),
+        (source("bust"), BUST_VIEW, SEGMENT_COUNTS),
+    ):
+        options = segment_options(defaults_of(SegmentSettings))
+        found = ridgeform.segment(ridgeform.Mesh(points, triangles), **options)
+        print(found, flush=True)
+        for count in counts:
+            labels = found.labels if count is None else found.labels_at(count)
+            colors = np.array([color_of(number)[:3] for number in range(labels.max() + 1)])[labels]
+            row.append(pictures.render(points, triangles, view=view, size=(260, 340), color=colors))
+            captions.append(f"{labels.max() + 1} segments" + (" (default)" if count is None else ""))
+    pictures.sheet(PICTURES / "segments.png", [row], captions=[captions], text_pixels=15)
+
+
 DRAWN = {
     "hero": hero,
     "sliders_bust": lambda: sliders("bust", BUST_VIEW, (172, 236)),
@@ -154,6 +184,7 @@ DRAWN = {
     "density": density,
     "noisy_cube": noisy_cube,
     "attributes": attributes,
+    "segments": segments,
 }
 
 

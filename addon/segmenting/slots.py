@@ -10,7 +10,7 @@ MARK = "ridgeform_segment"
 """The custom property of materials that were made for segments."""
 GOLDEN = 0.618034
 """Hues this far apart on the circle stay apart for any number of them."""
-TONES = ((0.62, 0.85), (0.38, 0.95), (0.75, 0.6))
+TONES = ((0.52, 0.88), (0.34, 0.98), (0.55, 0.66))
 """Saturation and value in turns, so that hues that come near each other differ in these."""
 
 
