@@ -15,7 +15,17 @@ from workspace import ROOT, WHEEL_SITE, stop
 
 PICTURES = ROOT / "docs/pictures/gallery"
 PAGE = ROOT / "docs/gallery.md"
-FIGURES = ("modes", "scattered", "surfaces", "duals", "resolutions", "slivers", "missing", "heights")
+FIGURES = (
+    "modes",
+    "scattered",
+    "surfaces",
+    "duals",
+    "resolutions",
+    "slivers",
+    "missing",
+    "heights",
+    "filled",
+)
 
 
 def put_into_page(name: str, text: str) -> None:

@@ -177,6 +177,13 @@ def segments() -> None:
     pictures.sheet(PICTURES / "segments.png", [row], captions=[captions], text_pixels=15)
 
 
+def holes(name: str) -> None:
+    """A picture of the page on filling holes."""
+    import hole_pictures  # noqa: PLC0415
+
+    getattr(hole_pictures, name)(PICTURES / f"holes_{name}.png")
+
+
 DRAWN = {
     "hero": hero,
     "sliders_bust": lambda: sliders("bust", BUST_VIEW, (172, 236)),
@@ -185,6 +192,8 @@ DRAWN = {
     "noisy_cube": noisy_cube,
     "attributes": attributes,
     "segments": segments,
+    "holes_box": lambda: holes("box"),
+    "holes_checker": lambda: holes("checker"),
 }
 
 
