@@ -9,6 +9,8 @@ GROUP = "GROUP"
 """Stands for the data type of a vertex group."""
 USABLE = ("FLOAT", "FLOAT2", "FLOAT_VECTOR", "FLOAT_COLOR", "BYTE_COLOR")
 COLORS = ("FLOAT_COLOR", "BYTE_COLOR")
+FACE_NUMBERS = ("INT", "FACE")
+"""Type and domain of whole numbers on faces."""
 RESERVED = {"position": "use Stylize Flat to change the shape itself"}
 SHOWN = "ridgeform_shown"
 """The colour attribute in which results are shown."""
@@ -75,3 +77,17 @@ def search_names(_settings: object, context: object, _typed: str) -> list[str]:
     """What a search field offers."""
     obj = context.object
     return usable_names(obj) if obj is not None and obj.type == "MESH" else []
+
+
+def search_colors(_settings: object, context: object, _typed: str) -> list[str]:
+    """What a search field for colours offers."""
+    obj = context.object
+    return [item.name for item in obj.data.color_attributes] if obj is not None and obj.type == "MESH" else []
+
+
+def search_face_numbers(_settings: object, context: object, _typed: str) -> list[str]:
+    """What a search field for whole numbers on faces offers."""
+    obj = context.object
+    if obj is None or obj.type != "MESH":
+        return []
+    return [item.name for item in obj.data.attributes if (item.data_type, item.domain) == FACE_NUMBERS]

@@ -176,6 +176,10 @@ def _sentence(record: dict[str, object]) -> str:
     holes = [entry["holes"] for entry in record["meshes"] if "holes" in entry]
     if holes:
         parts.append(f"{sum(holes)} holes filled")
+    drawn = [entry for entry in record["meshes"] if "numbers_after" in entry]
+    if drawn:
+        after, before = (sum(entry[key] for entry in drawn) for key in ("numbers_after", "numbers_before"))
+        parts.append(f"{sum(entry['curves'] for entry in drawn)} curves, {after} numbers instead of {before}")
     return f"{where}: {', '.join(parts)}, {record['seconds']:.1f} s{notes}"
 
 

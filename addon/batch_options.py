@@ -9,11 +9,13 @@ from pathlib import Path
 
 from . import files
 from .attribute_settings import ENERGIES, DenoiseSettings, InterpolateSettings
+from .diffusion_settings import DiffusionSettings
 from .hole_settings import HoleSettings
 from .segment_settings import OUTPUTS, SegmentSettings
 from .settings import StylizeSettings
 from .shared_settings import defaults_of, setting_names
 from .tools.denoise import Denoising
+from .tools.diffusion_curves import DiffusionCurves
 from .tools.fill_holes import HoleFilling
 from .tools.interpolate import Interpolation
 from .tools.run import Run
@@ -44,34 +46,38 @@ def settings_from(options: argparse.Namespace) -> object:
     return defaults_of(settings, **(given | _translated(options)))
 
 
+_FLAGS = {
+    "shape_key": ("output", "SHAPE_KEY"),
+    "in_place": ("output", "IN_PLACE"),
+    "material": ("display", "MATERIAL"),
+    "one_material": ("material", "MAJORITY"),
+    "image": ("source", "IMAGE"),
+}
+"""Options that stand for one value of a setting of another name."""
+
+
 def _translated(options: argparse.Namespace) -> dict[str, object]:
     """The settings of those options that are not a setting by themselves."""
     words = vars(options)
     given: dict[str, object] = {}
     if words.get("reduce") is not None:
         given |= {"reduce": True, "reduce_ratio": options.reduce}
-    if words.get("shape_key"):
-        given["output"] = "SHAPE_KEY"
-    if words.get("in_place"):
-        given["output"] = "IN_PLACE"
+    for word, (name, value) in _FLAGS.items():
+        if words.get(word):
+            given[name] = value
+    for name in ("known", "regions", "shape"):
+        if words.get(name) is not None:
+            given[name] = words[name].upper()
     if words.get("mark"):
         given["marks"] = {kind.upper() for kind in options.mark}
     if words.get("mark_angle") is not None:
         given["mark_angle"] = math.radians(options.mark_angle)
-    if words.get("known") is not None:
-        given["known"] = options.known.upper()
-    if words.get("material"):
-        given["display"] = "MATERIAL"
     if words.get("segments") is not None:
         given |= {"use_count": True, "count": options.segments}
     if words.get("make"):
         given["outputs"] = {_output_word(word) for word in options.make}
     if options.tool == "segment" and options.attribute is not None:
         given["source"] = "ATTRIBUTE"
-    if words.get("shape") is not None:
-        given["shape"] = options.shape.upper()
-    if words.get("one_material"):
-        given["material"] = "MAJORITY"
     return given
 
 
@@ -204,6 +210,24 @@ def _add_fill_holes(child: argparse.ArgumentParser, defaults: object) -> None:
     add("--coupling", choices=("joint", "separate"), help="norm over the coordinates (joint)")
 
 
+def _add_diffusion_curves(child: argparse.ArgumentParser, defaults: object) -> None:
+    add = child.add_argument
+    add("--attribute", metavar="NAME", help="color attribute (the active one)")
+    add("--image", action="store_true", help="take the colors from the image of the active material")
+    words = ("colors", "materials", "attribute")
+    add("--regions", choices=words, help=f"what the regions are ({defaults.regions.lower()})")
+    add(
+        "--region-attribute",
+        metavar="NAME",
+        help="attribute of whole numbers on faces, for --regions attribute",
+    )
+    add("--count", type=int, help="number of regions; 0: as many as the colors call for")
+    add("--least-faces", type=int, help=f"least triangles of a region ({defaults.least_faces})")
+    add("--color-error", type=float, help=f"how much colors on curves may change ({defaults.color_error})")
+    add("--rims", action="store_true", default=None, help="the borders of open meshes are curves too")
+    add("--fidelity", type=float, help=f"fidelity weight of the paper ({defaults.fidelity:g})")
+
+
 TOOLS = {
     "stylize": BatchTool(
         Stylization, StylizeSettings, "make meshes piecewise flat, with crisp ridges", _add_stylize
@@ -228,6 +252,12 @@ TOOLS = {
         InterpolateSettings,
         "spread the known values of an attribute, colour or vertex group over the mesh",
         _add_interpolate,
+    ),
+    "diffusion-curves": BatchTool(
+        DiffusionCurves,
+        DiffusionSettings,
+        "find the few curves, with a color on each side, that redraw painted meshes",
+        _add_diffusion_curves,
     ),
 }
 """The tools by the word on the command line."""

@@ -25,6 +25,7 @@ FIGURES = (
     "missing",
     "heights",
     "filled",
+    "curves",
 )
 
 

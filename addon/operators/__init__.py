@@ -4,7 +4,7 @@
 import bpy
 
 from ..tools.segment import forget
-from . import attributes, fill_holes, modal, segment, stylize
+from . import attributes, diffusion, fill_holes, modal, segment, stylize
 
 _CLASSES = (
     stylize.RIDGEFORM_OT_stylize,
@@ -14,6 +14,9 @@ _CLASSES = (
     attributes.RIDGEFORM_OT_interpolate_attribute,
     attributes.RIDGEFORM_OT_vibration_modes,
     attributes.RIDGEFORM_OT_show_attribute,
+    diffusion.RIDGEFORM_OT_diffusion_curves,
+    diffusion.RIDGEFORM_OT_redraw_diffusion_curves,
+    diffusion.RIDGEFORM_OT_export_diffusion_svg,
 )
 
 

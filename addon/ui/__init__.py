@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sidebar tab, the menu entries and the presets."""
 
-from . import attribute_panel, hole_panel, menus, presets, segment_panel, stylize_panel
+from . import attribute_panel, diffusion_panel, hole_panel, menus, presets, segment_panel, stylize_panel
 
-_MODULES = (presets, stylize_panel, segment_panel, hole_panel, attribute_panel, menus)
+_MODULES = (presets, stylize_panel, segment_panel, hole_panel, attribute_panel, diffusion_panel, menus)
 
 
 def register() -> None:

@@ -13,6 +13,7 @@ from bl_ext.user_default.ridgeform.attribute_settings import (
     InterpolateSettings,
     ModesSettings,
 )
+from bl_ext.user_default.ridgeform.diffusion_settings import DiffusionSettings
 from bl_ext.user_default.ridgeform.hole_settings import HoleSettings
 from bl_ext.user_default.ridgeform.segment_settings import SegmentSettings
 from bl_ext.user_default.ridgeform.settings import StylizeSettings, default_settings, fidelity_of
@@ -30,6 +31,11 @@ CLASSES = (
     "RIDGEFORM_PT_segment_expert",
     "RIDGEFORM_PT_segment_presets",
     "RIDGEFORM_OT_show_attribute",
+    "RIDGEFORM_OT_diffusion_curves",
+    "RIDGEFORM_OT_redraw_diffusion_curves",
+    "RIDGEFORM_OT_export_diffusion_svg",
+    "RIDGEFORM_PT_diffusion",
+    "RIDGEFORM_PT_diffusion_expert",
     "RIDGEFORM_OT_stylize_preset_add",
     "RIDGEFORM_OT_denoise_preset_add",
     "RIDGEFORM_OT_interpolate_preset_add",
@@ -63,8 +69,9 @@ TOOLS = {
     "segment": ("ridgeform_segment", SegmentSettings),
     "vibration_modes": ("ridgeform_modes", ModesSettings),
     "fill_holes": ("ridgeform_holes", HoleSettings),
+    "diffusion_curves": ("ridgeform_diffusion", DiffusionSettings),
 }
-MENUS = ("VIEW3D_MT_object", "VIEW3D_MT_edit_mesh")
+MENUS = ("VIEW3D_MT_object", "VIEW3D_MT_edit_mesh", "TOPBAR_MT_file_export")
 HANDLERS = ("load_pre", "undo_pre", "redo_pre")
 
 

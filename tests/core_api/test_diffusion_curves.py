@@ -65,18 +65,34 @@ def test_the_colours_of_a_curve_minimise_27_on_each_side():
     found = ridgeform.diffusion_curves(mesh, colors, labels=labels, fidelity=fidelity, refine=False)
     area = ridgeform.voronoi_mass(mesh).sum()
     border = np.unique(found.edges)
-    # A vertex on the border is on one side: there it counts, on the other it is free.
+    # A vertex on the border is on one side, or a blend: there it counts, elsewhere it is free.
     for label, side in ((0, found.left), (1, found.right)):
         own = faces[labels == label]
         used, local = np.unique(own, return_inverse=True)
         part = ridgeform.Mesh(vertices[used], local.reshape(-1, 3))
         weights = fidelity / area * ridgeform.voronoi_mass(part)
-        here = labels[found.sides[used]] == label
+        here = (found.sides[used] >= 0) & (labels[found.sides[used]] == label)
         weights[np.isin(used, border) & ~here] = 0.0
         system = ridgeform.cotangent_laplacian(part).to_scipy() + sparse.diags(weights)
         expected = linalg.spsolve(system.tocsc(), weights[:, None] * colors[used])
         place = np.searchsorted(used, found.edges)
         np.testing.assert_allclose(side, expected[place], atol=1e-6)
+
+
+@pytest.mark.parametrize("count", [2, 5])
+def test_regions_are_found_by_their_colours(count):
+    vertices, faces = lattice(30)
+    place = (vertices[:, 0] - vertices[:, 0].min()) / np.ptp(vertices[:, 0])
+    region = np.minimum((count * place).astype(int), count - 1)
+    palette = np.random.default_rng(5).random((count, 3))
+    mesh = ridgeform.Mesh(vertices, faces)
+    found = ridgeform.diffusion_curves(mesh, palette[region])
+    assert found.labels.max() + 1 == count
+    assert found.psnr > 30
+    segments = ridgeform.segment(mesh, values=palette[region], length_weight=0.5, min_faces=20)
+    assert (found.labels == segments.labels).all()
+    fewer = ridgeform.diffusion_curves(mesh, palette[region], n_regions=count - 1)
+    assert fewer.labels.max() + 1 == count - 1
 
 
 def test_redrawing_edited_curves():

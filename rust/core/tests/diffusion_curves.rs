@@ -92,6 +92,27 @@ fn two_flat_colours_need_one_closed_curve_and_come_back_exactly() {
 }
 
 #[test]
+fn blends_on_the_border_belong_to_no_side() {
+    let shape = shapes::grid(12, 12);
+    // As an image gives them: the colours of the vertices on the border are half and half.
+    let (left, right) = ([0.9, 0.3, 0.1], [0.1, 0.4, 0.8]);
+    let blend = [0, 1, 2].map(|c| 0.5 * (left[c] + right[c]));
+    let colors = painted(&shape, |p| {
+        if p[0] == 6.0 {
+            blend
+        } else if p[0] < 6.0 {
+            left
+        } else {
+            right
+        }
+    });
+    let labels = labelled(&shape, |p| i32::from(p[0] > 6.0));
+    let found = run(&shape, &colors, &labels, DiffusionCurvesOptions::default());
+    assert!(found.error < 1e-20, "{}", found.error);
+    assert_eq!(found.sides.iter().filter(|side| side.is_none()).count(), 13);
+}
+
+#[test]
 fn curves_end_where_others_meet_them_and_at_the_rim() {
     let shape = shapes::grid(12, 12);
     let third = |p: [f64; 3]| if p[1] < 6.0 { 0 } else { i32::from(p[0] > 6.0) + 1 };

@@ -8,10 +8,10 @@ use ridgeform_core::Error;
 
 use crate::arrays::{self, finite_floats, shape_text};
 use crate::columns::{self, Values};
-use crate::doorway;
 use crate::errors::{self, argument};
 use crate::mesh::Mesh;
 use crate::progress::{handle, Progress};
+use crate::{doorway, options};
 
 /// What `diffusion_curves` returns: curves with a colour on each side, and the colours that they rebuild.
 #[pyclass(frozen, get_all, module = "ridgeform")]
@@ -29,11 +29,12 @@ pub struct DiffusionCurves {
     points: Py<PyArray1<i32>>,
     /// Its colour: the mean of the piece, (j,c) float64.
     point_colors: Py<PyAny>,
-    /// The rebuilt colours, (n,c) float64. A vertex on a curve has that of its side; one without faces 0.
+    /// The rebuilt colours, (n,c) float64. A vertex on a curve has that of its side, or the mean of its sides; one without
+    /// faces 0.
     colors: Py<PyAny>,
     /// The rebuilt colours at the corners of the faces, (m,3,c) float64: across a curve they jump.
     corners: Py<PyAny>,
-    /// The face whose side a vertex takes, (n,) int32; -1 for vertices without faces.
+    /// The face whose side a vertex takes, (n,) int32; -1 for vertices that blend their sides, and for those without faces.
     sides: Py<PyArray1<i32>>,
     /// The region of every face, (m,) int32.
     labels: Py<PyArray1<i32>>,
@@ -73,16 +74,18 @@ impl DiffusionCurves {
 
 /// The curves along the borders of regions, with a colour on each side, that rebuild a painted surface.
 ///
+/// The regions are those given, or else what `segment` finds with the colours as its signal and one norm for all channels.
 /// On each piece of the surface cut open along the borders, min uᵀ L u + fidelity (u - colors)ᵀ M (u - colors) is solved with the
 /// cotangent Laplacian L; its values at the borders are the colours of the curves, and `redraw` rebuilds the surface from them.
-/// A vertex on a border counts for the side whose colour is nearest. All colours stay within the range of those given, channel
+/// A vertex on a border counts for the side whose colour is nearest, and for none where it is nearer to their mean. All colours stay within the range of those given, channel
 /// by channel.
 ///
 /// Parameters
 /// ----------
 /// mesh : Mesh
 /// colors : (n,) or (n,c) array, a colour a vertex, usually between 0 and 1
-/// labels : (m,) array of whole numbers, the region of each face
+/// labels : (m,) array of whole numbers, the region of each face; None to find regions by their colours
+/// n_regions, length_weight, min_faces : for finding regions: `n_segments`, `length_weight` and `min_faces` of `segment`
 /// fidelity : float > 0; colours are smoothed over a length of 1 / √fidelity times the square root of the surface's area
 /// rims : the rims of an open mesh are curves too, with the colours of their one side
 /// refine : improve the colours of the curves by least squares until the rebuilt surface is closest to `colors`
@@ -101,13 +104,17 @@ impl DiffusionCurves {
 /// ----------
 /// Rowe et al. 2024, section 7.6, eqs. (26) and (27); Orzan et al. 2008.
 #[pyfunction]
-#[pyo3(signature = (mesh, colors, *, labels, fidelity=1e3, rims=false, refine=true, color_error=0.0, progress=None))]
+#[pyo3(signature = (mesh, colors, *, labels=None, n_regions=None, length_weight=0.5, min_faces=20, fidelity=1e3, rims=false,
+    refine=true, color_error=0.0, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn diffusion_curves(
     py: Python<'_>,
     mesh: &Mesh,
     colors: &Bound<'_, PyAny>,
-    labels: &Bound<'_, PyAny>,
+    labels: Option<&Bound<'_, PyAny>>,
+    n_regions: Option<i64>,
+    length_weight: f64,
+    min_faces: i64,
     fidelity: f64,
     rims: bool,
     refine: bool,
@@ -115,11 +122,22 @@ pub fn diffusion_curves(
     progress: Option<&Bound<'_, Progress>>,
 ) -> PyResult<DiffusionCurves> {
     let colors = columns::read("colors", colors, mesh.n_vertices(), "vertex")?;
-    let labels = read_labels(labels, mesh.n_faces())?;
+    let labels = labels.map(|given| read_labels(given, mesh.n_faces())).transpose()?;
+    let regions = tools::SegmentOptions {
+        n_segments: n_regions.map(|count| options::at_least(py, "n_regions", count, 1)).transpose()?,
+        length_weight,
+        min_faces: options::at_least(py, "min_faces", min_faces, 0)?,
+        ..tools::SegmentOptions::default()
+    };
     let options = tools::DiffusionCurvesOptions { fidelity, rims, refine, color_error };
     let progress = handle(progress);
-    let found = doorway::call(py, &progress, || {
-        tools::diffusion_curves(mesh.inner(), &colors.columns, &labels, &options, &progress)
+    let (labels, found) = doorway::call(py, &progress, || {
+        let labels = match labels {
+            Some(labels) => labels,
+            None => tools::segment(mesh.inner(), Some(&colors.columns), &regions, &progress)?.labels,
+        };
+        let found = tools::diffusion_curves(mesh.inner(), &colors.columns, &labels, &options, &progress)?;
+        Ok((labels, found))
     })?;
     let (single, k) = (colors.single, colors.columns.n_columns);
     let edges = found.curves.edges.len();

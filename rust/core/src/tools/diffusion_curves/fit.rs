@@ -24,7 +24,7 @@ pub(super) struct Task<'a> {
 /// Colours of the copies, and which of its copies each vertex takes its colour from.
 pub(super) struct Fit {
     pub values: Columns,
-    /// The copy whose side a vertex is on; nothing for vertices without faces.
+    /// The copy whose side a vertex is on; nothing for one that is a blend of its sides and for vertices without faces.
     pub owners: Vec<Option<u32>>,
     /// How much each copy's datum counts: its area, or nothing.
     weights: Vec<f64>,
@@ -33,8 +33,8 @@ pub(super) struct Fit {
 impl Task<'_> {
     /// Solves (27) on every piece of the cut surface.
     ///
-    /// A vertex on a curve has one colour, which belongs to one of its sides. A first fit leaves such vertices out and
-    /// tells, by the nearest colour, which side it is; the second fit uses it there and nowhere else.
+    /// A vertex on a curve has one colour, which belongs to one of its sides or is a blend of them. A first fit leaves such
+    /// vertices out and tells, by the nearest colour, which it is; the second fit uses it on its side and nowhere else.
     pub fn screened(&self, progress: &Progress) -> Result<Fit> {
         let copies = self.copies();
         let mut roots = pieces(self.cut);
@@ -42,12 +42,7 @@ impl Task<'_> {
         let target = self.target();
         let first = self.weights(&mut roots, single);
         let values = self.solve(&first, &target, progress)?;
-        let distance = |copy: u32| {
-            let term = |c: usize| values.column(c)[copy as usize] - target.column(c)[copy as usize];
-            (0..values.n_columns).map(|c| term(c).powi(2)).sum::<f64>()
-        };
-        let nearest = |copies: &Vec<u32>| copies.iter().copied().min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
-        let owners: Vec<Option<u32>> = copies.iter().map(nearest).collect();
+        let owners: Vec<Option<u32>> = copies.iter().map(|copies| owner(copies, &values, &target)).collect();
         let owned = |copy: usize| owners[self.cut.vertices[copy] as usize] == Some(copy as u32);
         let weights = self.weights(&mut roots, owned);
         let values = if weights == first { values } else { self.solve(&weights, &target, progress)? };
@@ -65,25 +60,22 @@ impl Task<'_> {
         Ok(values)
     }
 
-    /// Least squares over the colours of the fixed copies: `min Σ_i m_i (u_i − t_i)²` with the harmonic `u` through them, each
-    /// channel within the range of the data. The start is (27), and an early stop keeps of it what the data do not determine.
+    /// Least squares over the colours of the fixed copies: `min Σ_v m_v (c_v − t_v)²` for the colours `c` that the vertices take
+    /// from the harmonic function through them, each channel within the range of the data. The start is (27), and an
+    /// early stop keeps of it what the data do not determine.
     pub fn refined(&self, fit: &mut Fit, harmonic: &mut Harmonic<'_>, progress: &Progress) -> Result<()> {
-        let weights = &fit.weights;
-        let back = |values: &mut Columns, harmonic: &mut Harmonic<'_>| {
-            let n_columns = values.n_columns;
-            (0..n_columns).for_each(|c| values.column_mut(c).iter_mut().zip(weights).for_each(|(x, w)| *x *= w));
-            harmonic.transposed(values, progress)
-        };
+        let reading = Reading::new(self, &fit.owners);
         let mut rebuilt = fit.values.clone();
         harmonic.extend(&mut rebuilt, progress)?;
-        let target = self.target();
-        let data = target.data.iter().zip(&rebuilt.data).map(|(t, u)| t - u).collect();
-        let mut descent = Columns { data, ..target };
-        back(&mut descent, harmonic)?;
-        let bounds: Vec<[f64; 2]> = (0..target.n_columns).map(|c| range(self.colors.column(c))).collect();
+        let taken = reading.taken(&rebuilt);
+        let data = self.colors.data.iter().zip(&taken.data).map(|(t, u)| t - u).collect();
+        let mut descent = reading.given_back(Columns { data, ..taken });
+        harmonic.transposed(&mut descent, progress)?;
+        let bounds: Vec<[f64; 2]> = (0..taken.n_columns).map(|c| range(self.colors.column(c))).collect();
         bounded::minimise(&mut fit.values, &descent, &bounds, LIMITS, |columns| {
             harmonic.extend(columns, progress)?;
-            back(columns, harmonic)
+            *columns = reading.given_back(reading.taken(columns));
+            harmonic.transposed(columns, progress)
         })
     }
 
@@ -131,6 +123,66 @@ impl Task<'_> {
         (0..).zip(&self.cut.vertices).for_each(|(copy, &v)| copies[v as usize].push(copy));
         copies
     }
+}
+
+/// How vertices take their colours from copies: from one of them, or the mean of theirs; weighted by area.
+struct Reading<'a> {
+    vertices: &'a [u32],
+    /// What part of its vertex's colour a copy is.
+    parts: Vec<f64>,
+    /// The area of each vertex.
+    mass: Vec<f64>,
+}
+
+impl<'a> Reading<'a> {
+    fn new(task: &Task<'a>, owners: &[Option<u32>]) -> Self {
+        let vertices = &task.cut.vertices;
+        let (mut mass, mut counts) = (vec![0.0; owners.len()], vec![0.0; owners.len()]);
+        for (&v, m) in vertices.iter().zip(&task.membrane.mass) {
+            mass[v as usize] += m;
+            counts[v as usize] += 1.0;
+        }
+        let part = |(copy, &v): (u32, &u32)| match owners[v as usize] {
+            Some(owner) => f64::from(u8::from(owner == copy)),
+            None => 1.0 / counts[v as usize],
+        };
+        Self { vertices, parts: (0..).zip(vertices).map(part).collect(), mass }
+    }
+
+    /// The colours of the vertices.
+    fn taken(&self, values: &Columns) -> Columns {
+        let mut taken = Columns::zeros(self.mass.len(), values.n_columns);
+        for c in 0..values.n_columns {
+            let out = taken.column_mut(c);
+            let copies = self.vertices.iter().zip(&self.parts).zip(values.column(c));
+            copies.for_each(|((&v, part), x)| out[v as usize] += part * x);
+        }
+        taken
+    }
+
+    /// The transpose of [`Reading::taken`] times the areas.
+    fn given_back(&self, values: Columns) -> Columns {
+        let copy = |c: usize| {
+            let column = values.column(c);
+            self.vertices.iter().zip(&self.parts).map(|(&v, part)| part * self.mass[v as usize] * column[v as usize])
+        };
+        let data = (0..values.n_columns).flat_map(|c| copy(c).collect::<Vec<_>>()).collect();
+        Columns { n_rows: self.vertices.len(), n_columns: values.n_columns, data }
+    }
+}
+
+/// Which of its `copies` has the colour of a vertex; none if the mean of theirs is nearer to it.
+fn owner(copies: &[u32], values: &Columns, target: &Columns) -> Option<u32> {
+    let first = *copies.first()? as usize;
+    let distance = |color: &dyn Fn(&[f64]) -> f64| {
+        let term = |c: usize| color(values.column(c)) - target.column(c)[first];
+        (0..values.n_columns).map(|c| term(c).powi(2)).sum::<f64>()
+    };
+    let sides = copies.iter().map(|&copy| (copy, distance(&|column| column[copy as usize])));
+    let (nearest, off) = sides.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let count = copies.len() as f64;
+    let blend = distance(&|column| copies.iter().map(|&copy| column[copy as usize]).sum::<f64>() / count);
+    (off <= blend).then_some(nearest)
 }
 
 /// The pieces of a cut surface: copies that faces connect.

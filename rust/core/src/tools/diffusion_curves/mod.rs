@@ -55,7 +55,7 @@ pub struct DiffusionCurves {
     pub starts: Vec<usize>,
     /// The rebuilt colours.
     pub redrawn: Redrawn,
-    /// A face for each vertex whose side it takes; nothing for vertices without faces.
+    /// A face for each vertex whose side it takes; nothing for a vertex that is a blend of its sides, and without faces.
     pub sides: Vec<Option<u32>>,
     /// Mean squared error of the rebuilt colours over the area and the channels.
     pub error: f64,
@@ -67,7 +67,7 @@ pub struct DiffusionCurves {
 /// The curves along the borders of the regions `labels` (one a face), with colours that rebuild `colors` (n × c).
 ///
 /// On each piece of the surface cut open along the borders `min uᵀ L u + α ‖u − u₀‖²` is solved; its values at the borders are
-/// the colours of the curves. A vertex on a border counts for the side whose colour is nearest. With
+/// the colours of the curves. A vertex on a border counts for the side whose colour is nearest, and for none where the mean of its sides is nearer. With
 /// [`DiffusionCurvesOptions::refine`] least squares then improve them. Every colour stays within the range of `colors`,
 /// channel by channel.
 ///

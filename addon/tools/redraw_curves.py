@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Redrawing a mesh from its diffusion curves as they are now: Rowe et al. 2024, eq. (26)."""
+
+import bpy
+import ridgeform
+
+from .. import mesh_io
+from ..diffusion import curves_io
+from ..diffusion.drawing import write_corners
+from ..diffusion.layout import colored_edges
+from .attribute_run import surface_of
+
+
+def redraw(obj: bpy.types.Object, child: bpy.types.Object) -> str:
+    """Redraw the colours of a mesh object from its curves as they are now; returns the attribute's name.
+
+    `RefusedError` of the tools for a mesh that cannot be used, `CurvesRefusedError` for such curves, and the
+    errors of `ridgeform.redraw`.
+    """
+    with mesh_io.object_mode():
+        points = curves_io.read_curves(child, len(obj.data.vertices))
+        surface = surface_of(obj)
+        given = colored_edges(points, surface.weld)
+        drawn = ridgeform.redraw(
+            surface.mesh,
+            given.edges,
+            given.left,
+            given.right,
+            points=given.points,
+            point_colors=given.point_colors,
+        )
+        return write_corners(obj, surface.weld, drawn.corners, child.data[curves_io.MARK], 1.0)
