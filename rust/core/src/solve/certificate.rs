@@ -101,14 +101,14 @@ pub fn bound_along_ray<const K: usize>(
     }
     linear -= allowance + ROUNDING * (g.len() as f64).sqrt() * terms;
     if !longest.is_finite() {
-        return 0.0;
+        return reduced.offset;
     }
     let best = if quadratic > 0.0 { linear / (2.0 * quadratic) } else { f64::INFINITY };
     let s = if linear > 0.0 { best.min(1.0 / longest) } else { 0.0 };
     let bound = s * linear - s * s * quadratic;
     if bound.is_finite() {
-        bound.max(0.0)
+        reduced.offset + bound.max(0.0)
     } else {
-        0.0
+        reduced.offset
     }
 }

@@ -6,6 +6,8 @@
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::linalg::solvers::{Llt, Solve};
+use faer::perm::PermRef;
+use faer::sparse::linalg::amd;
 use faer::sparse::linalg::cholesky::{
     factorize_symbolic_cholesky, CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
 };
@@ -14,11 +16,16 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Mat, MatRef, Par, Side};
 
 use crate::error::SolveError;
+use crate::solve::dissection::nested_dissection;
 use crate::solve::triangular::{Panels, Values, LANES};
 
 /// Neighbouring supernodes of at most so many columns are joined while less than this part of the result is zero. The
 /// library's own thresholds make one solve a tenth slower and the factorisation no faster (measured on 10k and 58k rows).
 const RELAXATION: &[(usize, f64)] = &[(8, 0.3), (16, 0.1)];
+
+/// From this number of rows on nested dissection comes first. On matrices of this kind it leaves 19 % fewer entries than minimum
+/// degree at 58k and at 200k rows, and none at 9k, and costs half a factorisation (measured).
+const DISSECTED_FROM: usize = 25_000;
 
 /// The lower triangle of a symmetric matrix, column by column with sorted rows.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -52,7 +59,7 @@ impl std::fmt::Debug for Cholesky {
 }
 
 impl Cholesky {
-    /// Orders (approximate minimum degree) and analyses the pattern, for a factor of at most `memory_limit` bytes.
+    /// Orders (approximate minimum degree, below nested dissection for large ones) and analyses the pattern, for a factor of at most `memory_limit` bytes.
     ///
     /// # Errors
     /// [`SolveError::Memory`] when the factor is larger than that, or than what the system gives.
@@ -64,8 +71,14 @@ impl Cholesky {
             supernodal_params: SymbolicSupernodalParams { relax: Some(RELAXATION) },
             ..CholeskySymbolicParams::default()
         };
-        let symbolic = factorize_symbolic_cholesky(view, Side::Lower, SymmetricOrdering::Amd, parameters)
-            .map_err(|e| failed(&e))?;
+        let (forward, backward);
+        let ordering = if pattern.n < DISSECTED_FROM {
+            SymmetricOrdering::Amd
+        } else {
+            (forward, backward) = nested_dissection(&pattern)?;
+            SymmetricOrdering::Custom(PermRef::new_checked(&forward, &backward, pattern.n))
+        };
+        let symbolic = factorize_symbolic_cholesky(view, Side::Lower, ordering, parameters).map_err(|e| failed(&e))?;
         let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, faer::Spec::default());
         let needed = size_of::<f64>() * symbolic.len_val() + scratch.size_bytes();
         let too_large = || SolveError::Memory { needed, limit: memory_limit };
@@ -153,6 +166,20 @@ impl Cholesky {
             right[i as usize][..A].copy_from_slice(x);
         }
     }
+}
+
+/// The rows of a pattern in an order that approximate minimum degree finds.
+///
+/// # Errors
+/// [`SolveError::Factorisation`] when the library refuses the pattern.
+pub fn minimum_degree(pattern: &LowerPattern) -> Result<Vec<u32>, SolveError> {
+    let n = pattern.n;
+    let view = SymbolicSparseColMatRef::new_checked(n, n, &pattern.starts, None, &pattern.rows);
+    let (mut forward, mut backward) = (vec![0usize; n], vec![0usize; n]);
+    let mut memory = MemBuffer::new(amd::order_scratch::<usize>(n, pattern.rows.len()));
+    amd::order(&mut forward, &mut backward, view, amd::Control::default(), MemStack::new(&mut memory))
+        .map_err(|e| SolveError::Factorisation { reason: format!("{e:?}") })?;
+    Ok(forward.iter().map(|&i| i as u32).collect())
 }
 
 /// The supernodes of the factor; a factor without any, of a matrix that is nearly diagonal, has panels of one column.

@@ -71,7 +71,7 @@ pub fn minimise<const K: usize>(
     let u: Vec<[f64; K]> =
         (0..n).map(|i| std::array::from_fn(|c| if c < n_columns { found.x[c * n + i] } else { 0.0 })).collect();
     let (mut q, y) = program.multipliers(&found.z);
-    for (q, w) in q.iter_mut().zip(reduced.weights) {
+    for (q, w) in q.iter_mut().zip(reduced.weights.iter()) {
         if *w == 0.0 {
             // The interior point only comes near zero here; any q that is longer than its weight proves nothing.
             *q = [[0.0; K]; BLOCK];
@@ -103,7 +103,7 @@ fn certified<const K: usize>(
     let floor = reduced.floor(&at_target);
     let bound = |q: &[Block<K>]| {
         let mut dual_point = DualPoint::default();
-        for (b, (q, w)) in q.iter().zip(reduced.weights).enumerate() {
+        for (b, (q, w)) in q.iter().zip(reduced.weights.iter()).enumerate() {
             dual_point.add(q, *w, &reduced.constant(b));
         }
         let mut g = Vec::new();
@@ -117,7 +117,7 @@ fn certified<const K: usize>(
     if reduced.fidelity.iter().all(|a| *a > 0.0) {
         // No equations to keep: shortening each block by itself costs less than shortening all alike.
         let clip = |(q, w): (&Block<K>, &f64)| scaled((w / norm(q).max(f64::MIN_POSITIVE)).min(1.0), q);
-        let clipped: Vec<Block<K>> = q.iter().zip(reduced.weights).map(clip).collect();
+        let clipped: Vec<Block<K>> = q.iter().zip(reduced.weights.iter()).map(clip).collect();
         dual = dual.max(bound(&clipped));
     }
     Outcome { u, primal, dual, floor, iterations, status, warm: None }
@@ -147,7 +147,7 @@ impl<const K: usize> Program<K> {
                 }
             }
         }
-        linear[k * n..].copy_from_slice(reduced.weights);
+        linear[k * n..].copy_from_slice(&reduced.weights);
         let (at, values): (Vec<usize>, Vec<f64>) = diagonal.into_iter().unzip();
         let quadratic = CscMatrix::new_from_triplets(n_variables, n_variables, at.clone(), at, values);
 

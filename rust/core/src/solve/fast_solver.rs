@@ -152,7 +152,7 @@ impl FastSolver {
                     empty => empty.insert(System::new(&structure.free, call.settings.memory_limit)?),
                 };
                 let before = system.n_factorisations();
-                let warm = warm.and_then(|w| w.restore(problem.operator.n_blocks()));
+                let warm = warm.and_then(|w| w.restore(structure.free.operator.n_blocks()));
                 let outcome = fast::minimise(reduced, system, warm, call.settings, call.progress)?;
                 total.factorisations += system.n_factorisations() - before;
                 outcome

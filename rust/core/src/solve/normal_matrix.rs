@@ -1,7 +1,8 @@
 //! `HᵀRH + D` for a block operator `H`, a scalar `R` per block and a diagonal `D`, on a pattern found once.
 
-use crate::block_rows::BlockRows;
+use crate::block_rows::{BlockRows, BLOCK};
 use crate::solve::cholesky::LowerPattern;
+use crate::solve::newton::Stiffness;
 
 /// Where each product of two entries of a block lands in the lower triangle of `HᵀRH`.
 #[derive(Debug, Clone)]
@@ -78,13 +79,34 @@ impl NormalMatrix {
 
     /// The values of `HᵀRH + diag(d)`, one per entry of the pattern.
     pub fn assemble(&self, operator: &BlockRows, r: &[f64], diagonal: &[f64], values: &mut Vec<f64>) {
+        self.sum(operator, |b, x| x.map(|v| v * r[b]), diagonal, values);
+    }
+
+    /// The values of `HᵀVH + diag(d)` for a matrix `V` per block.
+    pub fn assemble_stiff(
+        &self,
+        operator: &BlockRows,
+        stiffness: &[Stiffness],
+        diagonal: &[f64],
+        values: &mut Vec<f64>,
+    ) {
+        self.sum(operator, |b, x| stiffness[b].times(x), diagonal, values);
+    }
+
+    fn sum(
+        &self,
+        operator: &BlockRows,
+        weigh: impl Fn(usize, &[f64; BLOCK]) -> [f64; BLOCK],
+        diagonal: &[f64],
+        values: &mut Vec<f64>,
+    ) {
         values.clear();
         values.resize(self.pattern.rows.len(), 0.0);
         let mut landing = self.landing.iter();
-        for (b, &weight) in r.iter().enumerate() {
+        for b in 0..operator.n_blocks() {
             let (_, entries) = operator.block(b);
             for (i, x) in entries.iter().enumerate() {
-                let scaled = x.map(|v| v * weight);
+                let scaled = weigh(b, x);
                 for (y, &at) in entries[..=i].iter().zip(&mut landing) {
                     values[at as usize] += scaled[0] * y[0] + scaled[1] * y[1] + scaled[2] * y[2];
                 }

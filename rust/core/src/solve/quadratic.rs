@@ -96,7 +96,7 @@ impl<'a> Newton<'a> {
         }
         let twice: Vec<f64> = free.free.iter().map(|&i| 2.0 * problem.fidelity[i as usize]).collect();
         let mut values = Vec::new();
-        normal.assemble(&free.operator, &problem.weights, &twice, &mut values);
+        normal.assemble(&free.operator, &free.of_blocks(&problem.weights), &twice, &mut values);
         let diagonal: Vec<f64> = normal.pattern().starts[..twice.len()].iter().map(|&s| values[s]).collect();
         let mean = diagonal.iter().map(|d| d.abs()).sum::<f64>() / diagonal.len() as f64;
         let scale = if mean > 0.0 { mean } else { 1.0 };

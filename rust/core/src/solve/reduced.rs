@@ -1,5 +1,7 @@
 //! The problem without its fixed rows: `min Σ w_b ‖(H u + c)_b‖ + Σ a_i ‖u_i − t_i‖²` subject to `A u = b`.
 
+use std::borrow::Cow;
+
 use crate::block_rows::{BlockRows, BLOCK};
 use crate::error::SolveError;
 use crate::solve::cones::{norm, Block};
@@ -37,11 +39,13 @@ impl Parts {
     }
 }
 
-/// The free rows of the operator, shared by all columns of a problem.
+/// The free rows of the operator, shared by all columns of a problem, and the blocks that see one of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreeOperator {
-    /// `H` on the free rows of `u`.
+    /// `H` on the free rows of `u`, without blocks that see fixed rows only.
     pub operator: BlockRows,
+    /// Which blocks are left; `None` where all are.
+    blocks: Option<Vec<u32>>,
     /// Per row of the whole `u`, its place among the free ones.
     pub place: Vec<Option<u32>>,
     /// The free rows.
@@ -49,7 +53,7 @@ pub struct FreeOperator {
 }
 
 impl FreeOperator {
-    /// Drops the columns of `operator` whose rows of `u` are fixed.
+    /// Drops the columns of `operator` whose rows of `u` are fixed, and the blocks that have no other.
     #[must_use]
     pub fn new(operator: &BlockRows, fixed: &[bool]) -> Self {
         let free: Vec<u32> = (0..operator.n_columns as u32).filter(|&i| !fixed[i as usize]).collect();
@@ -58,9 +62,10 @@ impl FreeOperator {
             place[i as usize] = Some(k as u32);
         }
         if free.len() == operator.n_columns {
-            return Self { operator: operator.clone(), place, free };
+            return Self { operator: operator.clone(), blocks: None, place, free };
         }
-        let mut kept = BlockRows { n_columns: free.len(), starts: vec![0], columns: Vec::new(), values: Vec::new() };
+        let mut kept = BlockRows::empty(free.len());
+        let mut blocks = Vec::new();
         for b in 0..operator.n_blocks() {
             let (columns, values) = operator.block(b);
             for (&column, value) in columns.iter().zip(values) {
@@ -69,9 +74,21 @@ impl FreeOperator {
                     kept.values.push(*value);
                 }
             }
-            kept.starts.push(kept.columns.len());
+            if kept.columns.len() > kept.starts[kept.n_blocks()] {
+                kept.starts.push(kept.columns.len());
+                blocks.push(b as u32);
+            }
         }
-        Self { operator: kept, place, free }
+        Self { operator: kept, blocks: Some(blocks), place, free }
+    }
+
+    /// What belongs to the blocks that are left, of something per block.
+    #[must_use]
+    pub fn of_blocks<'v>(&self, values: &'v [f64]) -> Cow<'v, [f64]> {
+        match &self.blocks {
+            None => Cow::Borrowed(values),
+            Some(blocks) => blocks.iter().map(|&b| values[b as usize]).collect(),
+        }
     }
 }
 
@@ -84,8 +101,10 @@ pub struct Reduced<'a, const K: usize> {
     pub n_columns: usize,
     /// `c`: what the fixed rows contribute; empty where none is fixed.
     constant: Vec<Block<K>>,
+    /// `Σ w ‖c‖` over the blocks that see fixed rows only: part of every objective and every bound.
+    pub offset: f64,
     /// `w`.
-    pub weights: &'a [f64],
+    pub weights: Cow<'a, [f64]>,
     /// `a` on the free rows.
     pub fidelity: Vec<f64>,
     /// `t` on the free rows.
@@ -106,14 +125,21 @@ impl<'a, const K: usize> Reduced<'a, K> {
         let target: Vec<[f64; K]> = free.free.iter().map(|&i| row_of(i as usize)).collect();
         let fidelity = free.free.iter().map(|&i| problem.fidelity[i as usize]).collect();
         let mut constant = Vec::new();
-        if free.free.len() < problem.n_rows() {
-            constant.resize(problem.operator.n_blocks(), [[0.0; K]; BLOCK]);
-            for (b, sum) in constant.iter_mut().enumerate() {
+        let mut offset = 0.0;
+        if let Some(blocks) = &free.blocks {
+            let mut left = blocks.iter().peekable();
+            for b in 0..problem.operator.n_blocks() {
+                let mut sum = [[0.0; K]; BLOCK];
                 let (block_columns, values) = problem.operator.block(b);
                 for (&column, value) in block_columns.iter().zip(values) {
                     if free.place[column as usize].is_none() {
-                        add_outer(sum, value, &row_of(column as usize));
+                        add_outer(&mut sum, value, &row_of(column as usize));
                     }
+                }
+                if left.next_if(|&&next| next as usize == b).is_some() {
+                    constant.push(sum);
+                } else {
+                    offset += problem.weights[b] * norm(&sum);
                 }
             }
         }
@@ -121,7 +147,8 @@ impl<'a, const K: usize> Reduced<'a, K> {
             None => None,
             Some((matrix, right)) => Some(LinearConstraints::new(matrix, right, free, columns, &row_of)?),
         };
-        Ok(Self { free, n_columns: columns.len(), constant, weights: &problem.weights, fidelity, target, constraints })
+        let weights = free.of_blocks(&problem.weights);
+        Ok(Self { free, n_columns: columns.len(), constant, offset, weights, fidelity, target, constraints })
     }
 
     /// Number of free rows.
@@ -184,8 +211,8 @@ impl<'a, const K: usize> Reduced<'a, K> {
     /// The objective at `u`, where `h = H u + c`.
     #[must_use]
     pub fn objective(&self, u: &[[f64; K]], h: &[Block<K>]) -> f64 {
-        let norms: f64 = h.iter().zip(self.weights).map(|(x, w)| w * norm(x)).sum();
-        norms + self.fidelity_term(u)
+        let norms: f64 = h.iter().zip(self.weights.iter()).map(|(x, w)| w * norm(x)).sum();
+        self.offset + norms + self.fidelity_term(u)
     }
 
     /// Below this an objective counts as zero: a millionth of the objective at the target, or 1e-9 of what that would be
@@ -193,7 +220,7 @@ impl<'a, const K: usize> Reduced<'a, K> {
     #[must_use]
     pub fn floor(&self, h: &[Block<K>]) -> f64 {
         let operator = &self.free.operator;
-        let mut without_cancelling = 0.0;
+        let mut without_cancelling = self.offset;
         for (b, w) in self.weights.iter().enumerate() {
             let (columns, values) = operator.block(b);
             let terms = columns.iter().zip(values).map(|(&j, v)| {

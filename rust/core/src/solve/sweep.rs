@@ -51,7 +51,13 @@ impl<const K: usize> Sweep<K> {
                 [[0.0; K]; BLOCK]
             }
         };
-        let state = r.iter().enumerate().map(join).collect();
+        Self::resume(reduced, r, |b| join((b, &r[b])))
+    }
+
+    /// Starts from `v = z + p/R` of each block.
+    #[must_use]
+    pub fn resume(reduced: &Reduced<'_, K>, r: &[f64], state: impl Fn(usize) -> Block<K>) -> Self {
+        let state = (0..r.len()).map(state).collect();
         let none = vec![Vec::new(); Parts::of(r.len()).count];
         let mut sweep = Self { state, right: none.clone(), from_equations: none.clone(), multipliers: none };
         let mut right = Vec::new();
@@ -62,7 +68,7 @@ impl<const K: usize> Sweep<K> {
 
     /// `R(z − c) − p` of block `b`.
     fn next_right(&self, reduced: &Reduced<'_, K>, r: &[f64], b: usize) -> Block<K> {
-        let (z, p) = self.split(reduced.weights, r, b);
+        let (z, p) = self.split(&reduced.weights, r, b);
         let fixed = combine(r[b], &z, -r[b], &reduced.constant(b));
         combine(1.0, &fixed, -1.0, &p)
     }

@@ -2,6 +2,7 @@
 
 use crate::error::SolveError;
 use crate::solve::cholesky::Cholesky;
+use crate::solve::newton::Stiffness;
 use crate::solve::normal_matrix::NormalMatrix;
 use crate::solve::reduced::{FreeOperator, Reduced};
 
@@ -50,6 +51,28 @@ impl System {
     pub fn factorise<const K: usize>(&mut self, reduced: &mut Reduced<'_, K>, r: &[f64]) -> Result<(), SolveError> {
         let twice: Vec<f64> = reduced.fidelity.iter().map(|a| 2.0 * a).collect();
         self.normal.assemble(&reduced.free.operator, r, &twice, &mut self.values);
+        self.factorise_values(reduced, &twice)
+    }
+
+    /// Factors the matrix for a stiffness per block.
+    ///
+    /// # Errors
+    /// As [`System::factorise`].
+    pub fn factorise_stiff<const K: usize>(
+        &mut self,
+        reduced: &mut Reduced<'_, K>,
+        stiffness: &[Stiffness],
+    ) -> Result<(), SolveError> {
+        let twice: Vec<f64> = reduced.fidelity.iter().map(|a| 2.0 * a).collect();
+        self.normal.assemble_stiff(&reduced.free.operator, stiffness, &twice, &mut self.values);
+        self.factorise_values(reduced, &twice)
+    }
+
+    fn factorise_values<const K: usize>(
+        &mut self,
+        reduced: &mut Reduced<'_, K>,
+        twice: &[f64],
+    ) -> Result<(), SolveError> {
         let starts = &self.normal.pattern().starts;
         let diagonal: Vec<f64> = starts[..twice.len()].iter().map(|&s| self.values[s]).collect();
         let mean = diagonal.iter().sum::<f64>() / diagonal.len().max(1) as f64;

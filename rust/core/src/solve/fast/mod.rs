@@ -4,6 +4,8 @@
 //! `z ← shrink(h + p/R, w/R)`, multipliers `p ← p + R (h − z)`. The point `p + R(Hu + c − z)` before the shrinkage solves
 //! the dual equations exactly, which is what the certificate is made of.
 
+mod finish;
+
 use crate::block_rows::BLOCK;
 use crate::progress::{Progress, Report};
 use crate::solve::certificate::{bound_along_ray, spread, DualPoint};
@@ -42,6 +44,9 @@ const REWEIGHT_COLD: usize = 10;
 
 /// A warm start brings good penalties along.
 const REWEIGHT_WARM: usize = 30;
+
+/// Iterations that cost as much as one factorisation (12 to 20 measured, from 9k to 200k vertices).
+const FACTORISATION: f64 = 15.0;
 
 /// What a finished run leaves to the next, similar problem, in units that survive new weights and a new operator.
 #[derive(Debug, Clone)]
@@ -114,6 +119,13 @@ struct Run<'r, 's, const K: usize> {
     floor: f64,
     best: Best<K>,
     next_reweighting: usize,
+    next_newton: usize,
+}
+
+/// What the last look at the certificate found.
+struct Checked {
+    primal: f64,
+    gap: f64,
 }
 
 struct Best<const K: usize> {
@@ -133,7 +145,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         progress: &Progress,
     ) -> Result<Self> {
         let (r, next_reweighting) = match &warm {
-            Some(warm) => (reweighted(&warm.length, reduced.weights), REWEIGHT_WARM),
+            Some(warm) => (reweighted(&warm.length, &reduced.weights), REWEIGHT_WARM),
             None => (uniform(&mut reduced, system, &h, progress)?, REWEIGHT_COLD),
         };
         if warm.is_some() {
@@ -145,14 +157,27 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         });
         let best = Best { u: reduced.target.clone(), primal: f64::INFINITY, dual: 0.0 };
         let (u, previous) = (reduced.target.clone(), Vec::new());
-        Ok(Self { reduced, system, r, sweep, u, previous, y: Vec::new(), floor, best, next_reweighting })
+        Ok(Self {
+            reduced,
+            system,
+            r,
+            sweep,
+            u,
+            previous,
+            y: Vec::new(),
+            floor,
+            best,
+            next_reweighting,
+            next_newton: 0,
+        })
     }
 
     fn iterate(mut self, settings: &Settings, progress: &Progress) -> Result<Outcome<K>> {
         let max = settings.max_iterations.unwrap_or(MAX_ITERATIONS).max(1);
         let mut status = Status::Inaccurate;
         let mut iterations = 0;
-        let mut last_check = f64::INFINITY;
+        let mut left = f64::INFINITY;
+        let mut last_check = Checked { primal: f64::INFINITY, gap: f64::INFINITY };
         while iterations < max {
             progress.check()?;
             if progress.is_finishing() && iterations > 0 {
@@ -164,25 +189,32 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             self.y = self.system.solve(&self.reduced, self.sweep.right(), &mut self.u);
             let check = iterations % CHECK_EVERY == 0 || iterations == max;
             let sums = self.sweep.advance(&self.reduced, &self.r, &self.u, check);
-            let primal = sums.norms + self.reduced.fidelity_term(&self.u);
-            if primal < self.best.primal && self.is_feasible() {
-                self.best.primal = primal;
-                self.best.u.clone_from(&self.u);
-            }
+            let primal = self.reduced.offset + sums.norms + self.reduced.fidelity_term(&self.u);
+            self.offer(primal);
             if check {
                 self.bound(&sums, settings);
-                if self.is_done(settings, last_check, &sums) {
+                if self.is_done(settings, last_check.primal, &sums) {
                     status = Status::Solved;
                     break;
                 }
-                last_check = self.best.primal;
                 if settings.announce {
                     progress.report(self.report(settings, iterations));
                 }
+                left = self.iterations_left(settings, last_check.gap);
+                if self.newton_pays(settings, iterations, last_check.primal, left) {
+                    self.newton(settings, iterations, progress)?;
+                    if self.is_certified(settings) {
+                        status = Status::Solved;
+                        break;
+                    }
+                }
+                last_check = Checked { primal: self.best.primal, gap: self.gap() };
             }
             if iterations == self.next_reweighting {
                 self.next_reweighting *= 3;
-                self.reweight()?;
+                if left > FACTORISATION {
+                    self.reweight()?;
+                }
             }
         }
         Ok(self.outcome(iterations, status))
@@ -190,27 +222,43 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
 
     /// New penalties from the lengths that the blocks have now; split variables and multipliers stay.
     fn reweight(&mut self) -> Result<()> {
-        let r = reweighted(&self.lengths(), self.reduced.weights);
+        let r = reweighted(&self.lengths(), &self.reduced.weights);
         self.system.factorise(&mut self.reduced, &r)?;
-        let sweep = Sweep::new(&self.reduced, &r, |b| self.sweep.split(self.reduced.weights, &self.r, b));
-        (self.r, self.sweep) = (r, sweep);
+        self.sweep = self.under(&r);
+        self.r = r;
         Ok(())
+    }
+
+    /// The same split variables and multipliers under other penalties.
+    fn under(&self, r: &[f64]) -> Sweep<K> {
+        Sweep::new(&self.reduced, r, |b| self.sweep.split(&self.reduced.weights, &self.r, b))
+    }
+
+    /// Takes the present point, of this objective, if it is the best so far.
+    fn offer(&mut self, primal: f64) {
+        if primal < self.best.primal && self.u.iter().flatten().all(|x| x.is_finite()) {
+            self.best.primal = primal;
+            self.best.u.clone_from(&self.u);
+        }
+    }
+
+    /// Adds `Aᵀy`.
+    fn add_constraints(&self, g: &mut [[f64; K]]) {
+        if let Some(constraints) = &self.reduced.constraints {
+            constraints.add_transposed(&self.y, g);
+        }
     }
 
     /// Lower bounds from `p + R (H u + c − z)` and, where there is fidelity everywhere, from the multipliers themselves,
     /// which are never too long.
     fn bound(&mut self, sums: &Sums, settings: &Settings) {
         let mut g = self.sweep.from_equations().to_vec();
-        if let Some(constraints) = &self.reduced.constraints {
-            constraints.add_transposed(&self.y, &mut g);
-        }
+        self.add_constraints(&mut g);
         self.refine_if_worth(&g, settings);
         self.bound_from(&sums.from_equations, &g);
         if self.reduced.fidelity.iter().all(|a| *a > 0.0) {
             let mut g = self.sweep.multipliers().to_vec();
-            if let Some(constraints) = &self.reduced.constraints {
-                constraints.add_transposed(&self.y, &mut g);
-            }
+            self.add_constraints(&mut g);
             self.bound_from(&sums.multipliers, &g);
         }
     }
@@ -238,24 +286,40 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         self.best.dual = self.best.dual.max(bound_along_ray(&self.reduced, q, &self.y, g, &self.u));
     }
 
-    fn is_feasible(&self) -> bool {
-        self.u.iter().flatten().all(|x| x.is_finite())
+    /// The relative gap of the best point.
+    fn gap(&self) -> f64 {
+        (self.best.primal - self.best.dual) / Problem::gap_scale(self.best.primal, self.floor)
+    }
+
+    fn is_certified(&self, settings: &Settings) -> bool {
+        settings.tolerance.is_some_and(|tolerance| self.gap() <= tolerance)
     }
 
     fn is_done(&self, settings: &Settings, last_check: f64, sums: &Sums) -> bool {
         let scale = Problem::gap_scale(self.best.primal, self.floor);
         match settings.tolerance {
-            Some(tolerance) => self.best.primal - self.best.dual <= tolerance * scale,
+            Some(tolerance) => self.gap() <= tolerance,
             None => {
-                self.best.primal - self.best.dual <= GAP_ENOUGH * scale
+                self.gap() <= GAP_ENOUGH
                     || (last_check - self.best.primal < STILL * scale && sums.split < SPLIT_RESIDUAL * sums.norms)
             }
         }
     }
 
+    /// Iterations until the gap asked for, at the rate since the last check; infinitely many where none is asked for.
+    fn iterations_left(&self, settings: &Settings, last_gap: f64) -> f64 {
+        let digits = |from: f64, to: f64| (from / to).ln();
+        match settings.tolerance {
+            Some(tolerance) if self.gap() < last_gap => {
+                CHECK_EVERY as f64 * digits(self.gap(), tolerance) / digits(last_gap, self.gap())
+            }
+            _ => f64::INFINITY,
+        }
+    }
+
     /// How far it is: digits of the gap won, out of the digits asked for.
     fn report(&self, settings: &Settings, iterations: usize) -> Report {
-        let gap = (self.best.primal - self.best.dual) / Problem::gap_scale(self.best.primal, self.floor);
+        let gap = self.gap();
         // At least one digit, so that the logarithms are sound whatever was asked for.
         let wanted = settings.tolerance.unwrap_or(RESIDUAL_GOAL).min(0.1);
         Report {
@@ -271,13 +335,13 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
     fn lengths(&self) -> Vec<f64> {
         let mut h = Vec::new();
         self.reduced.apply(&self.u, &mut h);
-        let z = |b| self.sweep.split(self.reduced.weights, &self.r, b).0;
+        let z = |b| self.sweep.split(&self.reduced.weights, &self.r, b).0;
         h.iter().enumerate().map(|(b, h)| 0.5 * (norm(h) + norm(&z(b)))).collect()
     }
 
     fn outcome(self, iterations: usize, status: Status) -> Outcome<K> {
         let length = self.lengths();
-        let weights = self.reduced.weights;
+        let weights = &self.reduced.weights;
         let split = weights.iter().enumerate().map(|(b, &w)| {
             let (z, p) = self.sweep.split(weights, &self.r, b);
             (z, if w > 0.0 { scaled(1.0 / w, &p) } else { p })

@@ -1,0 +1,180 @@
+//! A weighted graph, its coarser versions and its parts.
+
+use crate::solve::cholesky::LowerPattern;
+
+/// An undirected graph with weights on vertices and edges; every edge stands at both of its ends.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Graph {
+    /// Vertex `v` owns the neighbours `starts[v]..starts[v + 1]`.
+    pub starts: Vec<u32>,
+    /// The other end of each edge.
+    pub neighbours: Vec<u32>,
+    /// How many edges of the finest graph each edge stands for.
+    pub edges: Vec<u32>,
+    /// How many vertices of the finest graph each vertex stands for.
+    pub weights: Vec<u32>,
+}
+
+/// No vertex.
+const NONE: u32 = u32::MAX;
+
+impl Graph {
+    /// The graph of a symmetric matrix; all weights are one.
+    #[must_use]
+    pub fn new(pattern: &LowerPattern) -> Self {
+        let mut starts = vec![0u32; pattern.n + 1];
+        let entries =
+            |j: usize| pattern.rows[pattern.starts[j]..pattern.starts[j + 1]].iter().filter(move |&&i| i != j);
+        for j in 0..pattern.n {
+            for &i in entries(j) {
+                starts[i + 1] += 1;
+                starts[j + 1] += 1;
+            }
+        }
+        for v in 0..pattern.n {
+            starts[v + 1] += starts[v];
+        }
+        let mut place = starts.clone();
+        let mut neighbours = vec![0; starts[pattern.n] as usize];
+        let mut add = |v: usize, other: usize| {
+            neighbours[place[v] as usize] = other as u32;
+            place[v] += 1;
+        };
+        for j in 0..pattern.n {
+            for &i in entries(j) {
+                add(i, j);
+                add(j, i);
+            }
+        }
+        let edges = vec![1; neighbours.len()];
+        Self { starts, neighbours, edges, weights: vec![1; pattern.n] }
+    }
+
+    /// Number of vertices.
+    #[must_use]
+    pub fn n(&self) -> usize {
+        self.weights.len()
+    }
+
+    /// The neighbours of `v`.
+    #[must_use]
+    pub fn around(&self, v: usize) -> &[u32] {
+        &self.neighbours[self.starts[v] as usize..self.starts[v + 1] as usize]
+    }
+
+    /// Merges vertices with the neighbour that most edges lead to, as long as the two weigh at most `heaviest`; also says
+    /// which coarse vertex each vertex went into (heavy edge matching, Karypis and Kumar 1998).
+    #[must_use]
+    pub fn coarsened(&self, heaviest: u32, random: &mut Random) -> (Self, Vec<u32>) {
+        let n = self.n();
+        let mut mate = vec![NONE; n];
+        for v in random.order(n) {
+            if mate[v as usize] != NONE {
+                continue;
+            }
+            let range = self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize;
+            let mut best = (0, v);
+            for (&u, &edge) in self.neighbours[range.clone()].iter().zip(&self.edges[range]) {
+                let fits = self.weights[u as usize] + self.weights[v as usize] <= heaviest;
+                if edge > best.0 && mate[u as usize] == NONE && fits {
+                    best = (edge, u);
+                }
+            }
+            mate[v as usize] = best.1;
+            mate[best.1 as usize] = v;
+        }
+        let mut map = vec![NONE; n];
+        let mut firsts = Vec::with_capacity(n);
+        for v in 0..n {
+            if map[v] == NONE {
+                map[v] = firsts.len() as u32;
+                map[mate[v] as usize] = firsts.len() as u32;
+                firsts.push(v as u32);
+            }
+        }
+        (self.contracted(&map, &firsts, &mate), map)
+    }
+
+    fn contracted(&self, map: &[u32], firsts: &[u32], mate: &[u32]) -> Self {
+        let mut coarse = Self { starts: vec![0], neighbours: Vec::new(), edges: Vec::new(), weights: Vec::new() };
+        coarse.neighbours.reserve(self.neighbours.len());
+        coarse.edges.reserve(self.neighbours.len());
+        let mut place = vec![NONE; firsts.len()];
+        for (c, &v) in firsts.iter().enumerate() {
+            let begin = coarse.neighbours.len() as u32;
+            let pair = [v, mate[v as usize]];
+            let members = if pair[0] == pair[1] { &pair[..1] } else { &pair[..] };
+            for &v in members {
+                for k in self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize {
+                    let other = map[self.neighbours[k] as usize];
+                    if other as usize == c {
+                        continue;
+                    }
+                    let at = &mut place[other as usize];
+                    if *at != NONE && *at >= begin {
+                        coarse.edges[*at as usize] += self.edges[k];
+                    } else {
+                        *at = coarse.neighbours.len() as u32;
+                        coarse.neighbours.push(other);
+                        coarse.edges.push(self.edges[k]);
+                    }
+                }
+            }
+            coarse.starts.push(coarse.neighbours.len() as u32);
+            coarse.weights.push(members.iter().map(|&v| self.weights[v as usize]).sum());
+        }
+        coarse
+    }
+
+    /// The graph on the vertices `v` with `side[v] == which`, and which they are.
+    #[must_use]
+    pub fn part(&self, side: &[u8], which: u8) -> (Self, Vec<u32>) {
+        let members: Vec<u32> = (0..self.n() as u32).filter(|&v| side[v as usize] == which).collect();
+        let mut place = vec![NONE; self.n()];
+        for (k, &v) in members.iter().enumerate() {
+            place[v as usize] = k as u32;
+        }
+        let mut part = Self { starts: vec![0], neighbours: Vec::new(), edges: Vec::new(), weights: Vec::new() };
+        for &v in &members {
+            for k in self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize {
+                let u = place[self.neighbours[k] as usize];
+                if u != NONE {
+                    part.neighbours.push(u);
+                    part.edges.push(self.edges[k]);
+                }
+            }
+            part.starts.push(part.neighbours.len() as u32);
+            part.weights.push(self.weights[v as usize]);
+        }
+        (part, members)
+    }
+}
+
+/// A reproducible source of orders (xorshift; Marsaglia 2003).
+#[derive(Debug, Clone)]
+pub struct Random(u64);
+
+impl Random {
+    /// A source that depends on `seed` alone.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
+    }
+
+    /// A number below `n`.
+    pub fn below(&mut self, n: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (((self.0 >> 32) * n as u64) >> 32) as usize
+    }
+
+    /// The numbers below `n` in a random order.
+    fn order(&mut self, n: usize) -> Vec<u32> {
+        let mut order: Vec<u32> = (0..n as u32).collect();
+        for i in (1..n).rev() {
+            order.swap(i, self.below(i + 1));
+        }
+        order
+    }
+}

@@ -1,0 +1,93 @@
+//! Postorders of elimination trees.
+
+use crate::solve::cholesky::LowerPattern;
+
+/// No row.
+const NONE: u32 = u32::MAX;
+
+/// `order` changed so that every subtree of the elimination tree is contiguous: that leaves the factor as it is, and lets
+/// columns with the same pattern stand together.
+#[must_use]
+pub fn postordered(pattern: &LowerPattern, order: &[u32]) -> Vec<usize> {
+    let tree = parents(pattern, order);
+    let n = tree.len();
+    let (mut first_child, mut sibling) = (vec![NONE; n], vec![NONE; n]);
+    let mut roots = NONE;
+    for k in (0..n).rev() {
+        let head = if tree[k] == NONE { &mut roots } else { &mut first_child[tree[k] as usize] };
+        sibling[k] = std::mem::replace(head, k as u32);
+    }
+    let mut out = Vec::with_capacity(n);
+    let mut stack = Vec::new();
+    let mut at = roots;
+    loop {
+        while at != NONE {
+            stack.push(at);
+            at = first_child[at as usize];
+        }
+        let Some(done) = stack.pop() else {
+            return out;
+        };
+        out.push(order[done as usize] as usize);
+        at = sibling[done as usize];
+    }
+}
+
+/// The elimination tree of the matrix in this order (Liu 1986): per column the parent, or [`NONE`].
+fn parents(pattern: &LowerPattern, order: &[u32]) -> Vec<u32> {
+    let n = pattern.n;
+    let mut place = vec![0u32; n];
+    for (k, &i) in order.iter().enumerate() {
+        place[i as usize] = k as u32;
+    }
+    // The columns of each row of the lower triangle, in the new order.
+    let mut starts = vec![0usize; n + 1];
+    let pairs = |visit: &mut dyn FnMut(u32, u32)| {
+        for j in 0..n {
+            for &i in &pattern.rows[pattern.starts[j] + 1..pattern.starts[j + 1]] {
+                let (a, b) = (place[i], place[j]);
+                visit(a.max(b), a.min(b));
+            }
+        }
+    };
+    pairs(&mut |row, _| starts[row as usize + 1] += 1);
+    for k in 0..n {
+        starts[k + 1] += starts[k];
+    }
+    let mut columns = vec![0u32; starts[n]];
+    let mut next = starts.clone();
+    pairs(&mut |row, column| {
+        columns[next[row as usize]] = column;
+        next[row as usize] += 1;
+    });
+    let mut parent = vec![NONE; n];
+    let mut ancestor = vec![NONE; n];
+    for k in 0..n {
+        for &column in &columns[starts[k]..starts[k + 1]] {
+            let mut i = column;
+            while i != NONE && i != k as u32 {
+                let above = std::mem::replace(&mut ancestor[i as usize], k as u32);
+                if above == NONE {
+                    parent[i as usize] = k as u32;
+                }
+                i = above;
+            }
+        }
+    }
+    parent
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A path of four rows, eliminated from both ends, beside a single row.
+    #[test]
+    fn subtrees_become_contiguous_and_the_tree_stays() {
+        let pattern = LowerPattern { n: 5, starts: vec![0, 2, 4, 6, 7, 8], rows: vec![0, 1, 1, 2, 2, 3, 3, 4] };
+        let order = [0, 3, 4, 1, 2];
+        assert_eq!(parents(&pattern, &order), [3, 4, NONE, 4, NONE]);
+        let post = postordered(&pattern, &order);
+        assert_eq!(post, [4, 3, 0, 1, 2]);
+    }
+}
