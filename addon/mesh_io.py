@@ -35,7 +35,7 @@ def object_mode() -> Iterator[None]:
 
 def triangles(mesh: bpy.types.Mesh) -> np.ndarray:
     """The loop triangles (m, 3) int32: vertices of the triangles that Blender draws for faces of any size."""
-    return _corner_array(mesh, ".corner_vert", "vertex_index")[triangle_corners(mesh)]
+    return corner_vertices(mesh)[triangle_corners(mesh)]
 
 
 def triangle_corners(mesh: bpy.types.Mesh) -> np.ndarray:
@@ -69,13 +69,22 @@ def edges(mesh: bpy.types.Mesh) -> np.ndarray:
 
 def face_corners(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """First corner of each face (f,), vertex of each corner (c,) and edge of each corner (c,), int32."""
-    vertices = _corner_array(mesh, ".corner_vert", "vertex_index")
-    return _face_starts(mesh), vertices, _corner_array(mesh, ".corner_edge", "edge_index")
+    return _face_starts(mesh), corner_vertices(mesh), corner_edges(mesh)
+
+
+def corner_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
+    """The vertex (c,) int32 of each corner."""
+    return _corner_array(mesh, ".corner_vert", "vertex_index")
+
+
+def corner_edges(mesh: bpy.types.Mesh) -> np.ndarray:
+    """The edge (c,) int32 of each corner, which leads to the next one of the face."""
+    return _corner_array(mesh, ".corner_edge", "edge_index")
 
 
 def border_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
     """The vertices (k,) of the edges with one face, ascending."""
-    used = np.bincount(_corner_array(mesh, ".corner_edge", "edge_index"), minlength=len(mesh.edges))
+    used = np.bincount(corner_edges(mesh), minlength=len(mesh.edges))
     return np.unique(edges(mesh)[used == 1])
 
 

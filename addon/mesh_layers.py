@@ -87,7 +87,7 @@ def read_layers(obj: bpy.types.Object) -> Layers:
     return Layers(
         read_attributes(obj.data),
         _read_groups(obj),
-        _active_layers(obj.data) | {"group": obj.vertex_groups.active_index},
+        active_layers(obj.data) | {"group": obj.vertex_groups.active_index},
     )
 
 
@@ -189,7 +189,7 @@ def replace_faces(obj: bpy.types.Object, points: np.ndarray, faces: np.ndarray, 
             attribute = mesh.attributes.new(layer.name, layer.data_type, layer.domain)
         attribute.data.foreach_set(ATTRIBUTE_KINDS[layer.data_type][0], np.ascontiguousarray(values).ravel())
     _write_groups(obj, layers.groups, layers.active["group"])
-    _set_active_layers(mesh, layers.active)
+    set_active_layers(mesh, layers.active)
     mesh.validate()
     mesh.update()
 
@@ -236,7 +236,8 @@ def _marks(layer: Layer, old: Triangulation, points: np.ndarray, ends: np.ndarra
     return values
 
 
-def _active_layers(mesh: bpy.types.Mesh) -> dict[str, str]:
+def active_layers(mesh: bpy.types.Mesh) -> dict[str, str]:
+    """The names of the active UV maps and colours of a mesh, in use and for rendering."""
     colors = mesh.color_attributes
     shown = colors.render_color_index
     render_uv = next((layer.name for layer in mesh.uv_layers if layer.active_render), "")
@@ -248,7 +249,8 @@ def _active_layers(mesh: bpy.types.Mesh) -> dict[str, str]:
     }
 
 
-def _set_active_layers(mesh: bpy.types.Mesh, active: dict[str, str | int]) -> None:
+def set_active_layers(mesh: bpy.types.Mesh, active: dict[str, str | int]) -> None:
+    """Make UV maps and colours active again, those that are there."""
     if active["uv"] in mesh.uv_layers:
         mesh.uv_layers.active = mesh.uv_layers[active["uv"]]
     if active["uv_render"] in mesh.uv_layers:

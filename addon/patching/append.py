@@ -1,30 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The border between Blender and NumPy for patches: appending them to a mesh, with all that lies on it.
 
-Object Mode only. Blender's own `mesh.vertices.add` and its like are not used: on a mesh that has geometry,
-those of Blender 5.2 write outside its arrays. A BMesh keeps everything: keys, groups, every attribute.
+Object Mode only.
 """
 
-import bmesh
 import bpy
 import numpy as np
 
 from .. import mesh_io
 from ..mesh_layers import ATTRIBUTE_KINDS, Layer
 from .extension import PATCH_NAME, Extension
+from .growing import grow
 
 
-def append(mesh: bpy.types.Mesh, extension: Extension) -> np.ndarray:
-    """Append new triangles to a mesh and select exactly them; returns which edges (k,) bool they have.
+def append(obj: bpy.types.Object, extension: Extension) -> np.ndarray:
+    """Append new triangles to the mesh of an object and select just them; returns their edges (k,) bool.
 
     What the mesh has keeps its place and every bit; only custom normals, which Blender stores relative to the
     faces, are stored anew.
     """
+    mesh = obj.data
     sizes = _Sizes(mesh)
     normals = sharp = None
     if extension.normals is not None:
         normals, sharp = _corner_normals(mesh), _sharp_edges(mesh)
-    made = _append_geometry(mesh, extension)
+    made = grow(obj, extension)
     for layer in extension.attributes:
         values = layer.values[made] if layer.domain == "EDGE" else layer.values
         _write_tail(_attribute(mesh, layer), values, sizes.of(layer.domain))
@@ -48,36 +48,6 @@ class _Sizes:
         return {"POINT": self.vertices, "EDGE": self.edges, "CORNER": self.corners, "FACE": self.faces}[
             domain
         ]
-
-
-def _append_geometry(mesh: bpy.types.Mesh, extension: Extension) -> np.ndarray:
-    """Make the elements; returns which of the edges (q,) bool of the extension were new, those come first."""
-    patch = extension.patch
-    edited = bmesh.new()
-    edited.from_mesh(mesh, face_normals=False, vertex_normals=False)
-    made = [edited.verts.new(point) for point in patch.points.tolist()]
-    for name, coordinates in extension.keys.items():
-        layer = edited.verts.layers.shape[name]
-        for vertex, point in zip(made, coordinates.tolist(), strict=True):
-            vertex[layer] = point
-    if extension.weights:
-        layer = edited.verts.layers.deform.verify()
-        for group, weights in extension.weights.items():
-            for vertex, weight in zip(made, weights.tolist(), strict=True):
-                if weight > 0.0:
-                    vertex[layer][group] = weight
-    edited.verts.ensure_lookup_table()
-    vertices = edited.verts
-    new_edge = np.zeros(len(extension.edges), bool)
-    for row, (a, b) in enumerate(extension.edges.tolist()):
-        if edited.edges.get((vertices[a], vertices[b])) is None:
-            edited.edges.new((vertices[a], vertices[b]))
-            new_edge[row] = True
-    for a, b, c in patch.triangles.tolist():
-        edited.faces.new((vertices[a], vertices[b], vertices[c]))
-    edited.to_mesh(mesh)
-    edited.free()
-    return new_edge
 
 
 def _attribute(mesh: bpy.types.Mesh, layer: Layer) -> bpy.types.Attribute:
@@ -131,7 +101,7 @@ def _restore_sharp_edges(mesh: bpy.types.Mesh, old: np.ndarray) -> None:
 
 def _select_tail(mesh: bpy.types.Mesh, sizes: _Sizes) -> np.ndarray:
     """Select the faces from `sizes.faces` on, their edges and vertices, nothing else; returns those edges."""
-    _, vertices, edges = mesh_io.face_corners(mesh)
+    vertices, edges = mesh_io.corner_vertices(mesh), mesh_io.corner_edges(mesh)
     of_vertices, of_edges, of_faces = (
         np.zeros(len(kind), bool) for kind in (mesh.vertices, mesh.edges, mesh.polygons)
     )

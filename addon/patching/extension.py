@@ -15,8 +15,6 @@ from .surroundings import Patch, Surroundings
 
 PATCH_NAME = "ridgeform_patch"
 """The face attribute that numbers the patches from 1 on; 0 are the faces that no patch holds."""
-LEAST_WEIGHT = 1e-6
-"""A vertex with a smaller weight is not put into a vertex group."""
 
 
 @dataclass

@@ -13,14 +13,14 @@ FLAT = "sharp_face"
 """Blender's attribute of the faces that are not shaded smooth."""
 
 
-def read_source(obj: bpy.types.Object, coordinates: np.ndarray, weld: Weld, rims: np.ndarray) -> Source:
-    """Read the mesh of an object with coordinates (n, 3), those of `reference_coordinates`.
+def read_source(
+    mesh: bpy.types.Mesh, coordinates: np.ndarray, corners: np.ndarray, weld: Weld, rims: np.ndarray
+) -> Source:
+    """Read a mesh with coordinates (n, 3), those of `reference_coordinates`, and triangle corners (m, 3).
 
     Of vertex groups only what lies around `rims` (r,) is read, welded vertices.
     """
-    mesh = obj.data
-    corners = mesh_io.triangle_corners(mesh)
-    triangles = mesh_io.face_corners(mesh)[1][corners]
+    triangles = mesh_io.corner_vertices(mesh)[corners]
     near = np.unique(triangles[ring_triangles(weld.vertex[triangles], rims)])
     return Source(
         coordinates,

@@ -63,7 +63,8 @@ class HoleFilling(Run):
     def prepare(self, obj: bpy.types.Object) -> HolePart:
         """Read one mesh, and choose which of its holes are filled."""
         coordinates = reference_coordinates(obj.data)
-        weld, _ = welded(obj, coordinates)
+        corners = mesh_io.triangle_corners(obj.data)
+        weld, _ = welded(obj, coordinates, mesh_io.corner_vertices(obj.data)[corners])
         try:
             mesh = ridgeform.Mesh(coordinates[weld.first].astype(np.float64), weld.triangles)
             holes = ridgeform.find_holes(mesh)
@@ -81,7 +82,7 @@ class HoleFilling(Run):
         if not chosen:
             raise RefusedError(f'No hole of "{obj.name}" was filled: {"; ".join(reasons)}')
         loops = [hole.vertices for hole in chosen]
-        source = read_source(obj, coordinates, weld, np.concatenate(loops))
+        source = read_source(obj.data, coordinates, corners, weld, np.concatenate(loops))
         part = HolePart(obj, Task(obj.name, None), len(coordinates), reasons, source=source, loops=loops)
         part.task.call = partial(_filled, part, mesh, hole_options(self.settings), self.settings.material)
         return part
@@ -106,7 +107,7 @@ class HoleFilling(Run):
             for part in parts:
                 mesh, extension = part.object.data, part.task.result.extension
                 before = len(mesh.polygons)
-                touched = append(mesh, extension)
+                touched = append(part.object, extension)
                 part.n_faces = len(mesh.polygons) - before
                 if self.settings.marks:
                     ridges = ridge_mask(mesh_io.edges(mesh), extension.patch.ridges, len(mesh.vertices))

@@ -146,12 +146,14 @@ def meshes_phrase(done: Sequence[dict[str, object]]) -> str:
     return f'"{done[0]["name"]}"' if len(done) == 1 else f"{len(done)} meshes"
 
 
-def welded(obj: bpy.types.Object, coordinates: np.ndarray) -> tuple[Weld, np.ndarray]:
-    """The mesh of an object with its seams welded, and all its loop triangles (m, 3) int32.
+def welded(
+    obj: bpy.types.Object, coordinates: np.ndarray, triangles: np.ndarray | None = None
+) -> tuple[Weld, np.ndarray]:
+    """The mesh of an object with its seams welded, and all its loop triangles (m, 3) int32, if not given.
 
     `RefusedError` for a mesh without faces, or with a coordinate (n, 3) that is not a finite number.
     """
-    triangles = mesh_io.triangles(obj.data)
+    triangles = mesh_io.triangles(obj.data) if triangles is None else triangles
     if len(triangles) == 0:
         raise RefusedError(f'"{obj.name}" has no faces')
     broken = np.flatnonzero(~np.isfinite(coordinates).all(axis=1))
