@@ -180,6 +180,11 @@ def _read_key(key: bpy.types.ShapeKey) -> np.ndarray:
     return values.reshape(-1, 3)
 
 
+def key_coordinates(mesh: bpy.types.Mesh) -> dict[str, np.ndarray]:
+    """The coordinates (n, 3) float32 of each shape key, by name; none without shape keys."""
+    return {} if mesh.shape_keys is None else {key.name: _read_key(key) for key in mesh.shape_keys.key_blocks}
+
+
 def _write_key(key: bpy.types.ShapeKey, coordinates: np.ndarray) -> None:
     key.data.foreach_set("co", np.ascontiguousarray(coordinates, np.float32).ravel())
 

@@ -15,6 +15,8 @@ from .extension import Extension
 
 LEAST_WEIGHT = 1e-6
 """A vertex with a smaller weight is not put into a vertex group."""
+NOT_IN_BMESH = {"FLOAT4X4"}
+"""Types of attributes with which Blender 4.2 crashes when something is added to a BMesh."""
 _GEOMETRY = {"position", ".edge_verts", ".corner_vert", ".corner_edge"}
 
 
@@ -64,11 +66,7 @@ def _grow_arrays(mesh: bpy.types.Mesh, extension: Extension) -> np.ndarray:
     _write(mesh, ".corner_vert", np.concatenate([corner_vertices, patch.triangles.ravel().astype(np.int32)]))
     _write(mesh, ".corner_edge", np.concatenate([corner_edges, new_corner_edges]))
     for layer in kept:
-        attribute = mesh.attributes.get(layer.name)
-        attribute = attribute or mesh.attributes.new(layer.name, layer.data_type, layer.domain)
-        full = np.zeros(len(attribute.data) * layer.values.shape[1], layer.values.dtype)
-        full[: layer.values.size] = layer.values.ravel()
-        attribute.data.foreach_set(ATTRIBUTE_KINDS[layer.data_type][0], full)
+        _put_back(mesh, layer)
     mesh_layers.set_active_layers(mesh, active)
     return new_edge
 
@@ -105,6 +103,15 @@ def _read(attribute: bpy.types.Attribute) -> mesh_layers.Layer:
     return mesh_layers.Layer(attribute.name, attribute.data_type, attribute.domain, values.reshape(-1, size))
 
 
+def _put_back(mesh: bpy.types.Mesh, layer: mesh_layers.Layer) -> None:
+    """Write a layer as it was, 0 on new elements; makes its attribute if that is gone."""
+    attribute = mesh.attributes.get(layer.name)
+    attribute = attribute or mesh.attributes.new(layer.name, layer.data_type, layer.domain)
+    full = np.zeros(len(attribute.data) * layer.values.shape[1], layer.values.dtype)
+    full[: layer.values.size] = layer.values.ravel()
+    attribute.data.foreach_set(ATTRIBUTE_KINDS[layer.data_type][0], full)
+
+
 def _write(mesh: bpy.types.Mesh, name: str, values: np.ndarray) -> None:
     attribute = mesh.attributes[name]
     prop = ATTRIBUTE_KINDS[attribute.data_type][0]
@@ -113,19 +120,19 @@ def _write(mesh: bpy.types.Mesh, name: str, values: np.ndarray) -> None:
 
 def _grow_bmesh(mesh: bpy.types.Mesh, extension: Extension) -> np.ndarray:
     patch = extension.patch
+    old_keys = mesh_io.key_coordinates(mesh)
+    taken_off = [_read(attribute) for attribute in mesh.attributes if attribute.data_type in NOT_IN_BMESH]
+    for layer in taken_off:
+        mesh.attributes.remove(mesh.attributes[layer.name])
     edited = bmesh.new()
     edited.from_mesh(mesh, face_normals=False, vertex_normals=False)
     made = [edited.verts.new(point) for point in patch.points.tolist()]
-    for name, coordinates in extension.keys.items():
-        layer = edited.verts.layers.shape[name]
-        for vertex, point in zip(made, coordinates.tolist(), strict=True):
-            vertex[layer] = point
     if extension.weights:
-        layer = edited.verts.layers.deform.verify()
+        deform = edited.verts.layers.deform.verify()
         for group, weights in extension.weights.items():
             for vertex, weight in zip(made, weights.tolist(), strict=True):
                 if weight > LEAST_WEIGHT:
-                    vertex[layer][group] = weight
+                    vertex[deform][group] = weight
     edited.verts.ensure_lookup_table()
     vertices = edited.verts
     new_edge = np.zeros(len(extension.edges), bool)
@@ -137,4 +144,9 @@ def _grow_bmesh(mesh: bpy.types.Mesh, extension: Extension) -> np.ndarray:
         edited.faces.new((vertices[a], vertices[b], vertices[c]))
     edited.to_mesh(mesh)
     edited.free()
+    for layer in taken_off:
+        _put_back(mesh, layer)
+    for name, old in old_keys.items():
+        new = extension.keys[name].astype(np.float32)
+        mesh.shape_keys.key_blocks[name].data.foreach_set("co", np.concatenate([old, new]).ravel())
     return new_edge

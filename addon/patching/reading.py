@@ -30,7 +30,7 @@ def read_source(
         mesh_io.edges(mesh),
         weld,
         _read_attributes(mesh),
-        _read_keys(mesh),
+        mesh_io.key_coordinates(mesh),
         near,
         _read_weights(mesh, near),
         _read_normals(mesh),
@@ -40,7 +40,7 @@ def read_source(
 def reference_coordinates(mesh: bpy.types.Mesh) -> np.ndarray:
     """Coordinates (n, 3) float32 of a mesh: those of its reference key if it has shape keys."""
     if mesh.shape_keys is not None:
-        return _read_key(mesh.shape_keys.reference_key)
+        return mesh_io.key_coordinates(mesh)[mesh.shape_keys.reference_key.name]
     values = np.empty(3 * len(mesh.vertices), np.float32)
     mesh.attributes["position"].data.foreach_get("vector", values)
     return values.reshape(-1, 3)
@@ -61,16 +61,6 @@ def _read_attributes(mesh: bpy.types.Mesh) -> list[mesh_layers.Layer]:
         smooth = np.zeros((len(mesh.polygons), 1), bool)
         layers.append(mesh_layers.Layer(FLAT, "BOOLEAN", "FACE", smooth))
     return layers
-
-
-def _read_key(key: bpy.types.ShapeKey) -> np.ndarray:
-    values = np.empty(3 * len(key.data), np.float32)
-    key.data.foreach_get("co", values)
-    return values.reshape(-1, 3)
-
-
-def _read_keys(mesh: bpy.types.Mesh) -> dict[str, np.ndarray]:
-    return {} if mesh.shape_keys is None else {key.name: _read_key(key) for key in mesh.shape_keys.key_blocks}
 
 
 def _read_weights(mesh: bpy.types.Mesh, vertices: np.ndarray) -> dict[int, np.ndarray]:
