@@ -25,10 +25,12 @@ class Source:
     """Coordinates (n, 3) float32."""
     triangles: np.ndarray
     """Loop triangles (m, 3)."""
-    corners: np.ndarray
-    """Their corners (m, 3)."""
-    faces: np.ndarray
-    """The face (m,) of each."""
+    ring: np.ndarray
+    """The triangles (r, 3) around the holes."""
+    ring_corners: np.ndarray
+    """Their corners (r, 3)."""
+    ring_faces: np.ndarray
+    """The face (r,) of each."""
     edges: np.ndarray
     """Edges (k, 2)."""
     weld: Weld
@@ -37,9 +39,9 @@ class Source:
     keys: dict[str, np.ndarray] = field(default_factory=dict)
     """Coordinates (n, 3) of each shape key."""
     near: np.ndarray = field(default_factory=lambda: np.empty(0, np.int64))
-    """The vertices (r,), ascending, whose weights were read: those around the holes."""
+    """The vertices (v,), ascending, whose weights were read: those around the holes."""
     weights: dict[int, np.ndarray] = field(default_factory=dict)
-    """For each vertex group that has any of them, their weights (r,), 0 where a vertex is not in it."""
+    """For each vertex group that has any of them, their weights (v,), 0 where a vertex is not in it."""
     normals: np.ndarray | None = None
     """Normals (c, 3) of the corners, if the mesh has custom ones."""
 
@@ -66,7 +68,7 @@ class CancelledError(Exception):
 
 def extend(source: Source, patch: Patch, material: str, is_cancelled: Callable[[], bool]) -> Extension:
     """Continue everything on a mesh into a patch; `material` is "CONTINUE" or "MAJORITY"."""
-    around = Surroundings(source.coordinates, source.triangles, source.weld, patch)
+    around = Surroundings(source.coordinates, source.ring, source.weld, patch)
     work = _Work(source, patch, around, Continuation(around), material)
     result = Extension(patch, work.edges())
     for layer in source.attributes:
@@ -99,7 +101,7 @@ class _Work:
         if layer.domain == "EDGE":
             return self._of_edges(layer)
         if layer.domain == "FACE":
-            beside = layer.values[self.source.faces[self.around.ring]]
+            beside = layer.values[self.source.ring_faces]
             if layer.name == "material_index" and self.material == "MAJORITY":
                 return self.continuation.majority(beside)
             return self.continuation.faces(beside)
@@ -110,12 +112,11 @@ class _Work:
 
     def of_points(self, values: np.ndarray) -> np.ndarray:
         """Values (k, c) of the new vertices from those (n, c) of the mesh's."""
-        at = self.source.triangles[self.around.ring].ravel()
-        return self.continuation.points(values[at])
+        return self.continuation.points(values[self.source.ring.ravel()])
 
     def of_corners(self, values: np.ndarray) -> np.ndarray:
         """Values (3 p, c) of the new corners from those (l, c) of the mesh's."""
-        return self.continuation.corners(values[self.source.corners[self.around.ring].ravel()])
+        return self.continuation.corners(values[self.source.ring_corners.ravel()])
 
     def edges(self) -> np.ndarray:
         """The edges (q, 2) inside the patches, in vertices of the mesh."""
@@ -127,11 +128,11 @@ class _Work:
         around = self.around
         corner = self.continuation.nearest_corners()
         if layer.domain == "CORNER":
-            return layer.values[self.source.corners[around.ring].ravel()[corner]]
+            return layer.values[self.source.ring_corners.ravel()[corner]]
         vertex = around.triangles[around.n_ring :].ravel()
         new = around.is_new[vertex]
         values = np.zeros((int(around.is_new.sum()), layer.values.shape[1]), layer.values.dtype)
-        at = self.source.triangles[around.ring].ravel()[corner[new]]
+        at = self.source.ring.ravel()[corner[new]]
         values[around.new_index[vertex[new]]] = layer.values[at]
         return values
 

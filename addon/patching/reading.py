@@ -21,12 +21,14 @@ def read_source(
     Of vertex groups only what lies around `rims` (r,) is read, welded vertices.
     """
     triangles = mesh_io.corner_vertices(mesh)[corners]
-    near = np.unique(triangles[ring_triangles(weld.vertex[triangles], rims)])
+    ring = np.flatnonzero(ring_triangles(weld.vertex[triangles], rims) & weld.kept)
+    near = np.unique(triangles[ring])
     return Source(
         coordinates,
         triangles,
-        corners,
-        mesh_io.triangle_faces(mesh),
+        triangles[ring],
+        corners[ring],
+        mesh_io.triangle_faces(mesh)[ring],
         mesh_io.edges(mesh),
         weld,
         _read_attributes(mesh),

@@ -64,38 +64,31 @@ class Surroundings:
     Corner i (0 to 2) of triangle t is numbered 3 t + i. The mesh's triangles come first, then the patches'.
     """
 
-    def __init__(self, coordinates: np.ndarray, triangles: np.ndarray, weld: Weld, patch: Patch) -> None:
-        """Cut out the triangles (m, 3) of a mesh with coordinates (n, 3) around its patches, seams joined."""
+    def __init__(self, coordinates: np.ndarray, ring: np.ndarray, weld: Weld, patch: Patch) -> None:
+        """Join patches with the triangles (r, 3) around them, of a mesh with coordinates (n, 3)."""
         n_welded = len(weld.first)
         n = len(coordinates)
-        welded = weld.vertex[triangles]
-        filling = np.where(
-            patch.triangles < n,
-            weld.vertex[np.minimum(patch.triangles, n - 1)],
-            patch.triangles - n + n_welded,
-        )
-        self.ring = np.flatnonzero(ring_triangles(welded, filling[filling < n_welded]))
-        """The triangles (r,) of the mesh that are here."""
-        both = np.concatenate([welded[self.ring], filling])
+
+        def welded(vertices: np.ndarray) -> np.ndarray:
+            old = weld.vertex[np.minimum(vertices, n - 1)]
+            return np.where(vertices < n, old, vertices - n + n_welded)
+
+        both = np.concatenate([weld.vertex[ring], welded(patch.triangles)])
         self.vertex, local = np.unique(both, return_inverse=True)
         """The welded vertex (v,) of each local one; new vertices follow the last welded one."""
         self.triangles = local.reshape(-1, 3).astype(np.int32)
         """The triangles (r + p, 3) in local vertices."""
-        self.n_ring = len(self.ring)
+        self.n_ring = len(ring)
         self.is_new = self.vertex >= n_welded
         """Which local vertices (v,) bool are new."""
         self.new_index = self.vertex - n_welded
         """Which of the patch's points each local vertex (v,) is, for new ones."""
         self.hole = patch.hole
-        places = np.concatenate([coordinates[weld.first].astype(np.float64), patch.points])
-        self.places = places[self.vertex]
+        old = coordinates[weld.first[self.vertex[~self.is_new]]].astype(np.float64)
+        self.places = np.concatenate([old, patch.points[self.new_index[self.is_new]]])
         """Coordinates (v, 3) of the local vertices."""
         self._find_edges()
-        self._mark_ridges(
-            np.where(
-                patch.ridges < n, weld.vertex[np.minimum(patch.ridges, n - 1)], patch.ridges - n + n_welded
-            )
-        )
+        self._mark_ridges(welded(patch.ridges))
         self.border = self._border()
 
     def _find_edges(self) -> None:
