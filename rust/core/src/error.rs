@@ -126,6 +126,11 @@ pub enum Refusal {
     /// The loop is the three edges of one face.
     #[error("it is the outline of a single triangle, and would be filled with the same triangle again")]
     SingleFace,
+    /// Another piece of surface lies inside the hole.
+    #[error(
+        "another piece of surface lies inside it; delete that piece, or join it to the rim, and fill what is left"
+    )]
+    Island,
     /// The rim encloses no area.
     #[error("it has no width: the two sides of the rim lie in the same place; merge vertices by distance")]
     NoExtent,

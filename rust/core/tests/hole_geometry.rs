@@ -1,10 +1,13 @@
 //! Which loops are holes, and how they are triangulated.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod hole_checks;
+
+use hole_checks::{patch_corners, patched, shapeliness};
 use ridgeform_core::error::{Error, MeshError, Refusal};
 use ridgeform_core::hole_filling::{fill_loop, fill_loops, fillable_loops, find_holes, FillOptions, Patch};
-use ridgeform_core::mesh::vector::{area_vector, norm};
-use ridgeform_core::mesh::{invariants, report, Mesh, MeshReport};
+use ridgeform_core::mesh::vector::{area_vector, distance, dot, norm, quality};
+use ridgeform_core::mesh::{report, Mesh};
 use ridgeform_core::shapes::{self, Shape};
 use ridgeform_core::Progress;
 
@@ -12,33 +15,11 @@ fn flat() -> FillOptions {
     FillOptions { refine: false, ..FillOptions::default() }
 }
 
-/// The mesh with patches, checked: sound connectivity, nothing non-manifold or degenerate that was not there before.
-fn patched(mesh: &Mesh, patches: &[Patch]) -> Mesh {
-    let mut vertices = mesh.positions().unwrap().to_vec();
-    let mut faces = mesh.connectivity().faces().to_vec();
-    for patch in patches {
-        vertices.extend(&patch.vertices);
-        faces.extend(&patch.faces);
-    }
-    let filled = Mesh::new(vertices, faces).unwrap();
-    invariants::check(filled.connectivity()).unwrap();
-    let (before, after) = (report(mesh), report(&filled));
-    let kept = MeshReport {
-        n_components: after.n_components,
-        n_boundary_loops: before.n_boundary_loops - patches.len(),
-        nonmanifold_vertices: after.nonmanifold_vertices.clone(),
-        ..before.clone()
-    };
-    assert_eq!(after, kept);
-    assert!(after.nonmanifold_vertices.iter().all(|v| before.nonmanifold_vertices.contains(v)));
-    filled
-}
-
 fn fill_all(shape: &Shape, options: &FillOptions) -> (Mesh, Vec<Patch>) {
     let mesh = shape.mesh().unwrap();
     let loops = fillable_loops(&mesh).unwrap();
     let patches = fill_loops(&mesh, &loops, options, &Progress::new()).unwrap();
-    (patched(&mesh, &patches), patches)
+    (patched(&mesh, &patches).unwrap(), patches)
 }
 
 fn refusal(mesh: &Mesh, rim: &[u32]) -> Refusal {
@@ -106,9 +87,132 @@ fn a_flat_hole_is_filled_flat_and_without_overlap_also_where_it_is_not_convex() 
 }
 
 #[test]
-fn a_hole_across_the_edge_of_a_box_is_filled_without_a_chamfer_deeper_than_needed() {
-    let (mesh, _) = fill_all(&shapes::cube(2).without_faces(|f| f < 8), &flat());
-    assert!(report(&mesh).n_boundary_loops == 0);
+fn a_hole_across_the_edge_of_a_box_gets_one_chamfer_from_end_to_end() {
+    // The cells along an edge of the cube: between its two ends nothing has to bend by more than the 45 degrees of a chamfer.
+    let cube = shapes::cube(8);
+    let near = |p: &[f64; 3]| p[0] + p[1] > 1.4 && p[2].abs() < 0.6;
+    let hole = cube.clone().without_faces(|f| cube.faces[f].iter().all(|&v| near(&cube.vertices[v as usize])));
+    let mesh = hole.mesh().unwrap();
+    let patch = fill_loop(&mesh, &fillable_loops(&mesh).unwrap()[0], &flat(), &Progress::new()).unwrap();
+    let filled = patched(&mesh, &[patch]).unwrap();
+    assert!(shapeliness(&filled, mesh.connectivity().n_faces()).cosine > -1e-9);
+}
+
+/// A fan of a regular polygon with `n` corners at height `height(angle)`, turned inside out: its rim is a hole.
+fn ring(n: usize, height: impl Fn(f64) -> f64) -> Shape {
+    shapes::cylinder(n, 1, 1.0, -1.0)
+        .map(|[x, y, z]| if z == 0.0 { [x, y, height(y.atan2(x))] } else { [1.5 * x, 1.5 * y, z] })
+}
+
+#[test]
+fn a_regular_polygon_and_a_saddle_are_filled_with_even_triangles() {
+    for (n, wave) in [(6, 0.0), (7, 0.0), (24, 0.0), (40, 0.4), (60, 0.8)] {
+        let mesh = ring(n, |angle| wave * (2.0 * angle).sin()).mesh().unwrap();
+        let rim = find_holes(&mesh).unwrap().into_iter().map(|h| h.vertices).find(|rim| rim.contains(&0)).unwrap();
+        let simple = fill_loop(&mesh, &rim, &flat(), &Progress::new()).unwrap();
+        assert_eq!((simple.vertices.len(), simple.faces.len()), (0, n - 2));
+        let patch = fill_loop(&mesh, &rim, &FillOptions::default(), &Progress::new()).unwrap();
+        let filled = patched(&mesh, std::slice::from_ref(&patch)).unwrap();
+        let least = patch_corners(&filled, &patch).map(quality).fold(1.0, f64::min);
+        assert!(least > 0.5, "{n} {wave}: {least}");
+        if wave == 0.0 {
+            assert!(patch.vertices.iter().all(|p| p[2].abs() < 1e-12));
+            assert!(patch_corners(&filled, &patch).all(|t| area_vector(t)[2].abs() > 0.0));
+        }
+        let edge = rim
+            .iter()
+            .zip(rim.iter().cycle().skip(1))
+            .map(|(&a, &b)| distance(mesh.positions().unwrap()[a as usize], mesh.positions().unwrap()[b as usize]));
+        let edge = edge.sum::<f64>() / n as f64;
+        let inside =
+            patch_corners(&filled, &patch).map(|t| distance(t[0], t[1])).sum::<f64>() / patch.faces.len() as f64;
+        assert!(n < 20 || (inside / edge - 1.0).abs() < 0.35, "{n} {wave}: {inside} of {edge}");
+    }
+}
+
+#[test]
+fn the_edge_length_can_be_set_and_faces_be_limited() {
+    let mesh = ring(64, |_| 0.0).mesh().unwrap();
+    let rim = find_holes(&mesh).unwrap().into_iter().map(|h| h.vertices).find(|rim| rim.contains(&0)).unwrap();
+    let count = |options: &FillOptions| fill_loop(&mesh, &rim, options, &Progress::new()).unwrap().faces.len();
+    let usual = count(&FillOptions::default());
+    let coarse = count(&FillOptions { edge_length: Some(0.3), ..FillOptions::default() });
+    let fine = count(&FillOptions { edge_length: Some(0.05), ..FillOptions::default() });
+    let limited = count(&FillOptions { max_faces: 300, ..FillOptions::default() });
+    assert!(coarse < usual && usual < fine && limited < 450 && limited < usual, "{coarse} {usual} {fine} {limited}");
+}
+
+#[test]
+fn holes_that_touch_and_rims_that_touch_themselves_are_filled() {
+    // Cells that meet at vertices only, and a frame whose inner rim touches the outer one.
+    for cells in [vec![14, 21, 28], vec![7, 14], vec![14, 15, 22, 27, 26], vec![0, 7]] {
+        let shape = shapes::grid(6, 6).without_faces(|f| cells.contains(&(f / 2)));
+        let (filled, patches) = fill_all(&shape, &FillOptions::default());
+        let area: f64 =
+            patches.iter().flat_map(|p| patch_corners(&filled, p).collect::<Vec<_>>()).map(|t| area_vector(t)[2]).sum();
+        let corner_cells = cells.iter().filter(|&&c| c == 0).count();
+        assert!((area - (cells.len() - corner_cells) as f64).abs() < 1e-9, "{cells:?}: {area}");
+        assert!(report(&filled).nonmanifold_edges.is_empty());
+    }
+}
+
+#[test]
+fn no_edge_is_made_that_exists_already() {
+    // Two vertices of the rim are joined across the back, so the diagonals of the square hole are both taken.
+    let square = Shape {
+        vertices: vec![
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.5, 0.5, -1.0],
+            [0.5, 0.5, -2.0],
+        ],
+        faces: vec![[0, 4, 1], [1, 4, 2], [2, 4, 3], [3, 4, 0], [0, 5, 2], [1, 5, 3]],
+    };
+    let mesh = square.mesh().unwrap();
+    for options in [flat(), FillOptions::default()] {
+        let patch = fill_loop(&mesh, &[0, 1, 2, 3], &options, &Progress::new()).unwrap();
+        let filled = patched(&mesh, std::slice::from_ref(&patch)).unwrap();
+        assert!(patch.faces.len() >= 4 && !patch.vertices.is_empty());
+        assert!(report(&filled).nonmanifold_edges.is_empty());
+    }
+    // Both sides of a thin plate: what the first patch makes, the second may not.
+    let band = shapes::cylinder(4, 1, 1.0, 0.1);
+    let (filled, _) = fill_all(&band, &flat());
+    assert_eq!(report(&filled).n_boundary_loops, 0);
+}
+
+#[test]
+fn an_island_in_a_hole_is_named() {
+    let sheet = shapes::grid(9, 9).without_faces(|f| {
+        let (i, j) = ((f / 2) % 9, f / 2 / 9);
+        (2..7).contains(&i) && (2..7).contains(&j) && (i, j) != (4, 4)
+    });
+    let holes = find_holes(&sheet.mesh().unwrap()).unwrap();
+    let said: Vec<_> = holes.iter().map(|h| (h.vertices.len(), h.is_outer_border, h.refusal)).collect();
+    assert_eq!(said, [(36, true, None), (20, false, Some(Refusal::Island)), (4, true, None)]);
+    // Not if the piece lies elsewhere, or is a speck.
+    let beside = shapes::grid(9, 9).without_faces(|f| f / 2 == 40);
+    let far = beside.clone().and(&shapes::grid(1, 1).map(|p| [0.4 * p[0] + 4.3, 0.4 * p[1] + 4.3, 3.0]));
+    assert_eq!(fillable_loops(&far.mesh().unwrap()).unwrap().len(), 1);
+    let speck = beside.and(&shapes::grid(1, 1).map(|p| [0.05 * p[0] + 4.5, 0.05 * p[1] + 4.5, 0.0]));
+    assert_eq!(fillable_loops(&speck.mesh().unwrap()).unwrap().len(), 1);
+}
+
+#[test]
+fn patches_turn_and_grow_with_the_mesh() {
+    let shape = shapes::icosphere(3).without_faces(|f| f < 60);
+    let (filled, _) = fill_all(&shape, &FillOptions::default());
+    let turned = shape.rotated([1.0, 2.0, 0.5], 0.8).map(|p| p.map(|x| 1000.0 * x));
+    let (other, _) = fill_all(&turned, &FillOptions::default());
+    let back = Shape { vertices: other.positions().unwrap().to_vec(), faces: Vec::new() };
+    let back = back.map(|p| p.map(|x| x / 1000.0)).rotated([1.0, 2.0, 0.5], -0.8);
+    let near =
+        |p: &[f64; 3]| filled.positions().unwrap().iter().map(|&q| distance(*p, q)).fold(f64::INFINITY, f64::min);
+    // Ties may be decided otherwise by rounding, but the surface is the same.
+    assert!(back.vertices.iter().all(|p| near(p) < 0.08));
+    assert!(filled.positions().unwrap().iter().all(|&p| dot(p, p) < 1.0 + 1e-9));
 }
 
 #[test]

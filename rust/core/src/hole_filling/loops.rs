@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::islands::refuse_holes_with_islands;
 use crate::error::{MeshError, Refusal};
 use crate::mesh::vector::{add, area_vector, cross, dot, norm, scale, sub, Point};
 use crate::mesh::{boundary_loops, Connectivity, EdgeKind, Mesh};
@@ -29,6 +30,11 @@ pub struct Hole {
 /// they cancel on a closed surface and nearly so on one with holes, also on an open tube, whose ends are both holes; they add up
 /// fully on a flat sheet, with holes or without.
 ///
+/// - Holes that touch at a vertex are separate loops, and so are the loops of a rim that touches itself.
+/// - The two ends of a tube with a ring missing are two holes, and each gets a lid.
+/// - A hole in which another open sheet lies is refused ([`Refusal::Island`]); [`super::fill_loops`] fills it all the same.
+/// - A rim that ends at a non-manifold edge is no loop and is not listed.
+///
 /// # Errors
 /// [`MeshError::NoPositions`].
 pub fn find_holes(mesh: &Mesh) -> Result<Vec<Hole>> {
@@ -40,16 +46,17 @@ pub fn find_holes(mesh: &Mesh) -> Result<Vec<Hole>> {
         .map(|h| ([connectivity.tail(h), connectivity.head(h)], h))
         .collect();
     let mut outer: Vec<Option<(f64, usize)>> = vec![None; components.len()];
-    let mut holes = Vec::new();
+    let (mut holes, mut owners) = (Vec::new(), Vec::new());
     for vertices in boundary_loops(connectivity) {
         let along = cycle(&vertices).find_map(|edge| halfedges.get(&edge));
         let against = || cycle(&vertices).find_map(|[a, b]| halfedges.get(&[b, a]));
-        if let Some(&h) = along.or_else(against) {
-            let component = component_of[h / 3];
-            if let Some(normal) = components[component].sheet_normal() {
+        let owner = along.or_else(against).map_or(usize::MAX, |&h| component_of[h / 3]);
+        owners.push(owner);
+        if let Some(component) = components.get(owner) {
+            if let Some(normal) = component.sheet_normal() {
                 let size = dot(loop_area_vector(&vertices, positions), normal).abs();
-                if outer[component].is_none_or(|(largest, _)| size > largest) {
-                    outer[component] = Some((size, holes.len()));
+                if outer[owner].is_none_or(|(largest, _)| size > largest) {
+                    outer[owner] = Some((size, holes.len()));
                 }
             }
         }
@@ -59,6 +66,7 @@ pub fn find_holes(mesh: &Mesh) -> Result<Vec<Hole>> {
     for (_, hole) in outer.into_iter().flatten() {
         holes[hole].is_outer_border = true;
     }
+    refuse_holes_with_islands(&mut holes, &owners, positions);
     Ok(holes)
 }
 
@@ -105,7 +113,7 @@ fn is_slit(vertices: &[u32], positions: &[Point]) -> bool {
 }
 
 /// Half the sum of the cross products of successive positions: the area vector of any surface that the loop bounds.
-fn loop_area_vector(vertices: &[u32], positions: &[Point]) -> Point {
+pub(super) fn loop_area_vector(vertices: &[u32], positions: &[Point]) -> Point {
     let Some(&first) = vertices.first() else { return [0.0; 3] };
     let at = |v: u32| sub(positions[v as usize], positions[first as usize]);
     cycle(vertices).fold([0.0; 3], |sum, [a, b]| add(sum, scale(cross(at(a), at(b)), 0.5)))

@@ -15,6 +15,7 @@
 //! The mesh with its patches is its vertices, then those of each patch; its faces, then those of each patch. Vertices on
 //! the rim are the mesh's own and do not move. No patch makes an edge that the mesh or another patch has.
 
+mod islands;
 mod long_loops;
 mod loops;
 mod patch;

@@ -10,11 +10,15 @@ use crate::remesh::curves::Keep;
 use crate::remesh::isotropic::run;
 use crate::remesh::remesher::{Remesher, Surface};
 use crate::remesh::sizing::Sizing;
-use crate::remesh::EditableMesh;
+use crate::remesh::{guard, EditableMesh};
 use crate::{Progress, Result};
 
 /// Edges grow by at most this for every unit of distance from the rim: faster, and the triangles lose their shape.
 const STEEPEST_GROWTH: f64 = 0.5;
+
+/// A patch with a bend beyond this (120 degrees) that was not there before it was remeshed is taken as it was: narrow
+/// tongues of surface that reach into a hole can make the passes lay faces against them.
+const FOLD_COSINE: f64 = -0.5;
 
 /// The area of an equilateral triangle of edge length 1.
 const EQUILATERAL: f64 = 0.433;
@@ -38,6 +42,9 @@ pub(super) fn refined(
     for [a, b] in rims.chords(&polygon.vertices) {
         mesh.forbid_edge(a, b);
     }
+    for (i, &normal) in polygon.outside.iter().enumerate() {
+        mesh.set_beyond(i as u32, ((i + 1) % n) as u32, normal);
+    }
     let surface = Surface::of(&mesh);
     let rim_edges: Vec<f64> = (0..n).map(|i| distance(polygon.points[i], polygon.points[(i + 1) % n])).collect();
     let rim_length: f64 = rim_edges.iter().sum();
@@ -59,6 +66,7 @@ pub(super) fn refined(
         None => (sizes.iter().sum::<f64>() + growth * far.iter().sum::<f64>()) / 3.0,
     };
     refine(&mut mesh, &mut sizes, size_between, progress)?;
+    let refined = (mesh.clone(), guard::worst_bend(&mesh));
     let fixed: Vec<bool> = (0..mesh.n_vertices()).map(|v| v < n).collect();
     let keep = Keep { fixed: &fixed, fixed_faces: false, feature_cosine: -2.0 };
     let mut remesher = Remesher::new(mesh, &surface, &keep, |mesh, curves| match options.edge_length {
@@ -66,6 +74,8 @@ pub(super) fn refined(
         None => Sizing::graded(sizes.clone(), growth, mesh, curves),
     });
     run(&mut remesher, options.remesh_iterations, progress)?;
-    let (points, faces, _) = remesher.mesh.into_parts(|v| (v as usize) < n);
+    let bend = guard::worst_bend(&remesher.mesh);
+    let mesh = if bend < FOLD_COSINE && bend < refined.1 { refined.0 } else { remesher.mesh };
+    let (points, faces, _) = mesh.into_parts(|v| (v as usize) < n);
     Ok((points[n..].to_vec(), faces))
 }

@@ -1,6 +1,6 @@
 //! A triangle mesh whose edges can be flipped, split and collapsed.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use crate::error::MeshError;
 use crate::mesh::vector::{area_vector, Point};
@@ -22,6 +22,7 @@ pub struct EditableMesh {
     faces: Vec<[u32; 3]>,
     faces_of: Vec<Vec<u32>>,
     forbidden: HashSet<[u32; 2]>,
+    beyond: HashMap<[u32; 2], Point>,
 }
 
 /// The two faces of an interior edge `a b`, and the vertices opposite it.
@@ -58,8 +59,13 @@ impl EditableMesh {
     /// # Errors
     /// [`MeshError::VertexOutOfRange`].
     pub fn new(positions: Vec<Point>, faces: Vec<[u32; 3]>) -> Result<Self, MeshError> {
-        let mut mesh =
-            Self { faces_of: vec![Vec::new(); positions.len()], positions, faces, forbidden: HashSet::new() };
+        let mut mesh = Self {
+            faces_of: vec![Vec::new(); positions.len()],
+            positions,
+            faces,
+            forbidden: HashSet::new(),
+            beyond: HashMap::new(),
+        };
         for (f, corners) in mesh.faces.iter_mut().enumerate() {
             let n_vertices = mesh.positions.len();
             if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= n_vertices) {
@@ -78,6 +84,22 @@ impl EditableMesh {
     /// Forbids an edge: no operation will make it. For edges that exist in a larger mesh of which this is a part.
     pub fn forbid_edge(&mut self, a: u32, b: u32) {
         self.forbidden.insert(key(a, b));
+    }
+
+    /// Says along which normal (of any length) a face lies beyond a border edge, in a larger mesh of which this is a part.
+    pub fn set_beyond(&mut self, a: u32, b: u32, normal: Point) {
+        self.beyond.insert(key(a, b), normal);
+    }
+
+    /// The area vector, or any other normal, of the face across the edge `a b` of a face in which `b` follows `a`; nothing
+    /// if there is none or it is not known.
+    #[must_use]
+    pub fn normal_across(&self, a: u32, b: u32) -> Option<Point> {
+        match self.edge(a, b) {
+            Edge::Interior(wings) => Some(self.area_vector(wings.faces[1])),
+            Edge::Border(..) => self.beyond.get(&key(a, b)).copied(),
+            Edge::None | Edge::NonManifold => None,
+        }
     }
 
     /// The positions by vertex number, those of removed vertices included.

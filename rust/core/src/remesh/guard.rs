@@ -1,7 +1,7 @@
 //! Which edits keep the surface unfolded and its triangles in shape.
 
 use crate::mesh::vector::{add, area_vector, dot, norm, quality, Point};
-use crate::remesh::EditableMesh;
+use crate::remesh::{Edge, EditableMesh};
 
 /// The least cosine between a face's normal and what it was before an edit: 60 degrees. A fold turns it by more than 90.
 pub const LEAST_COSINE: f64 = 0.5;
@@ -10,6 +10,9 @@ pub const LEAST_COSINE: f64 = 0.5;
 /// An edit may make one only if that is better than the worst face before.
 pub const SLIVER: f64 = 0.2;
 
+/// An edit that turns no face by more than this (11 degrees) makes no fold, and need not be looked at for bends.
+const HARDLY_TURNED: f64 = 0.98;
+
 /// Whether faces in shape `new` may replace what had the normal `normal` (of any length) and the least quality `worst`.
 fn replaces(new: [Point; 3], normal: Point, worst: f64) -> bool {
     let area = area_vector(new);
@@ -17,51 +20,138 @@ fn replaces(new: [Point; 3], normal: Point, worst: f64) -> bool {
 }
 
 /// Whether flipping the edge `a b` is possible ([`EditableMesh::flip`]) and folds nothing: both new faces look the way that
-/// the two old ones do on average, to [`LEAST_COSINE`], and no sliver is made where there was none.
+/// the two old ones do on average, to [`LEAST_COSINE`], no edge around them bends by more than a right angle that did not bend
+/// so before, and no sliver is made where there was none.
 #[must_use]
 pub fn may_flip(mesh: &EditableMesh, a: u32, b: u32) -> bool {
     let (Some(new), Some(wings)) = (mesh.flipped(a, b), mesh.wings(a, b)) else { return false };
     let old = wings.faces.map(|f| mesh.area_vector(f));
     let worst = worst_quality(mesh, &wings.faces);
-    new.iter().all(|&face| replaces(mesh.corners(face), add(old[0], old[1]), worst))
+    if !new.iter().all(|&face| replaces(mesh.corners(face), add(old[0], old[1]), worst)) {
+        return false;
+    }
+    // The outer edges in the direction of the quadrilateral, with the face on each before and after.
+    let [left, right] = wings.tips;
+    let outer = [(b, left, 0, 1), (left, a, 0, 0), (a, right, 1, 0), (right, b, 1, 1)];
+    let after = new.map(|face| area_vector(mesh.corners(face)));
+    let (mut before, mut bend) = (cosine(old[0], old[1]), cosine(after[0], after[1]));
+    for (tail, head, was, is) in outer {
+        if let Some(across) = mesh.normal_across(tail, head) {
+            before = before.min(cosine(across, old[was]));
+            bend = bend.min(cosine(across, after[is]));
+        }
+    }
+    bend >= before.min(0.0)
 }
 
 /// Whether `v` may move to `position`: no face around it turns by more than [`LEAST_COSINE`], none becomes a sliver that
-/// was none.
+/// was none, and none comes to lie at more than a right angle to a neighbour if none did before.
 #[must_use]
 pub fn may_move(mesh: &EditableMesh, v: u32, position: Point) -> bool {
-    let worst = worst_quality(mesh, mesh.faces_of(v));
-    mesh.faces_of(v).iter().all(|&f| moved_face(mesh, f, v, position, worst))
+    keeps_shape(mesh, &[v], position)
 }
 
 /// Whether the edge may collapse into its end `to` at `position`: the connectivity allows it
 /// ([`EditableMesh::can_collapse`]), and the faces that stay are in order as for [`may_move`].
 #[must_use]
 pub fn may_collapse(mesh: &EditableMesh, from: u32, to: u32, position: Point) -> bool {
-    let worst = worst_quality(mesh, mesh.faces_of(from)).min(worst_quality(mesh, mesh.faces_of(to)));
-    let stays = |v: u32, other: u32| {
-        mesh.faces_of(v)
-            .iter()
-            .all(|&f| mesh.face(f).is_none_or(|face| face.contains(&other)) || moved_face(mesh, f, v, position, worst))
+    keeps_shape(mesh, &[from, to], position) && mesh.can_collapse(from, to)
+}
+
+/// Whether the faces around `vertices` are in order once these are all at `position`; faces with two of them are gone then.
+fn keeps_shape(mesh: &EditableMesh, vertices: &[u32], position: Point) -> bool {
+    let faces = || vertices.iter().flat_map(|&v| mesh.faces_of(v)).filter_map(|&f| mesh.face(f).map(|face| (f, face)));
+    let worst = faces().map(|(_, face)| quality(mesh.corners(face))).fold(1.0, f64::min);
+    let mut least = 1.0_f64;
+    for (f, face) in faces() {
+        if face.iter().filter(|v| vertices.contains(v)).count() > 1 {
+            continue;
+        }
+        let new = face.map(|v| if vertices.contains(&v) { position } else { mesh.position(v) });
+        let old = mesh.area_vector(f);
+        // A face without area has no side that it could turn away from.
+        if norm(old) > 0.0 && !replaces(new, old, worst) || quality(new) < SLIVER.min(worst) {
+            return false;
+        }
+        least = least.min(cosine(area_vector(new), old));
+    }
+    least > HARDLY_TURNED || bend_after(mesh, vertices, position) >= bend_before(mesh, vertices).min(0.0)
+}
+
+/// The least cosine between the normals of neighbours anywhere, those beyond borders included.
+#[must_use]
+pub fn worst_bend(mesh: &EditableMesh) -> f64 {
+    least_cosine(mesh, 0..mesh.n_faces() as u32)
+}
+
+/// The least cosine between neighbours among the faces around `vertices` and those next to them.
+fn bend_before(mesh: &EditableMesh, vertices: &[u32]) -> f64 {
+    least_cosine(mesh, vertices.iter().flat_map(|&v| mesh.faces_of(v)).copied())
+}
+
+fn least_cosine(mesh: &EditableMesh, faces: impl Iterator<Item = u32>) -> f64 {
+    let mut least = 1.0_f64;
+    for f in faces {
+        let Some([a, b, c]) = mesh.face(f) else { continue };
+        for (tail, head) in [(a, b), (b, c), (c, a)] {
+            if let Some(across) = mesh.normal_across(tail, head) {
+                least = least.min(cosine(across, mesh.area_vector(f)));
+            }
+        }
+    }
+    least
+}
+
+/// The same once `vertices` are all at `position`.
+fn bend_after(mesh: &EditableMesh, vertices: &[u32], position: Point) -> f64 {
+    let merged = |v: u32| if vertices.contains(&v) { vertices[0] } else { v };
+    // The faces that stay, as they are named now and then, with their area vectors then.
+    let stay: Vec<([u32; 3], [u32; 3], Point)> = vertices
+        .iter()
+        .flat_map(|&v| mesh.faces_of(v))
+        .filter_map(|&f| mesh.face(f))
+        .filter(|face| face.iter().filter(|v| vertices.contains(v)).count() == 1)
+        .map(|face| {
+            let corners = face.map(|v| if vertices.contains(&v) { position } else { mesh.position(v) });
+            (face, face.map(merged), area_vector(corners))
+        })
+        .collect();
+    // Where a face between two of the vertices goes, what lay beyond its border is next to the face that comes to that border.
+    let beyond = |tail: u32, head: u32| {
+        let names = |v: u32| if vertices.contains(&v) { vertices.to_vec() } else { vec![v] };
+        let borders = names(tail).into_iter().flat_map(|t| names(head).into_iter().map(move |h| (t, h)));
+        let is_outer =
+            |&(t, h): &(u32, u32)| (t, h) == (tail, head) && !vertices.contains(&t) && !vertices.contains(&h);
+        borders
+            .filter(|pair| is_outer(pair) || matches!(mesh.edge(pair.0, pair.1), Edge::Border(..)))
+            .find_map(|(t, h)| mesh.normal_across(t, h))
     };
-    stays(from, to) && stays(to, from) && mesh.can_collapse(from, to)
+    let mut least = 1.0_f64;
+    for (face, then, area) in &stay {
+        for i in 0..3 {
+            let (tail, head) = (then[i], then[(i + 1) % 3]);
+            let neighbour =
+                stay.iter().find(|(_, other, _)| (0..3).any(|k| other[k] == head && other[(k + 1) % 3] == tail));
+            let across = neighbour.map(|&(_, _, area)| area).or_else(|| beyond(face[i], face[(i + 1) % 3]));
+            if let Some(across) = across {
+                least = least.min(cosine(across, *area));
+            }
+        }
+    }
+    least
+}
+
+/// The cosine of the angle between two vectors; 1 if one is zero.
+fn cosine(a: Point, b: Point) -> f64 {
+    let lengths = norm(a) * norm(b);
+    if lengths > 0.0 {
+        dot(a, b) / lengths
+    } else {
+        1.0
+    }
 }
 
 /// The least quality among `faces`.
 fn worst_quality(mesh: &EditableMesh, faces: &[u32]) -> f64 {
     faces.iter().filter_map(|&f| mesh.face(f)).map(|face| quality(mesh.corners(face))).fold(1.0, f64::min)
-}
-
-/// Whether face `f` is still in order with its corner `v` at `position`.
-fn moved_face(mesh: &EditableMesh, f: u32, v: u32, position: Point, worst: f64) -> bool {
-    mesh.face(f).is_none_or(|face| {
-        let new = face.map(|w| if w == v { position } else { mesh.position(w) });
-        // A face without area has no side that it could turn away from.
-        let old = mesh.area_vector(f);
-        if norm(old) > 0.0 {
-            replaces(new, old, worst)
-        } else {
-            quality(new) >= SLIVER.min(worst)
-        }
-    })
 }

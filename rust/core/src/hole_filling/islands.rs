@@ -1,0 +1,73 @@
+//! Pieces of surface that lie inside a hole of another.
+
+use super::loops::{cycle, loop_area_vector};
+use super::Hole;
+use crate::error::Refusal;
+use crate::mesh::vector::{add, cross, dot, norm, scale, sub, unit, Point};
+
+/// Pieces of less than this part of a hole's area are specks: they do not keep it from being filled, and stay where they are.
+const SPECK: f64 = 0.01;
+
+/// A piece this far from the mean plane of a hole, as part of the square root of its area, is not inside it. The rim of a
+/// hemisphere is 0.56 from its top.
+const FAR: f64 = 0.6;
+
+/// A loop seen from afar.
+struct Outline {
+    area: Point,
+    centre: Point,
+}
+
+impl Outline {
+    fn of(vertices: &[u32], positions: &[Point]) -> Self {
+        let sum = vertices.iter().fold([0.0; 3], |sum, &v| add(sum, positions[v as usize]));
+        Self { area: loop_area_vector(vertices, positions), centre: scale(sum, 1.0 / vertices.len().max(1) as f64) }
+    }
+}
+
+/// Refuses the holes in which the whole border of an open sheet lies: a patch would cross it.
+///
+/// `components` is the component of every hole. A sheet is in a hole of another component if its border runs the other way
+/// around, lies near the hole's mean plane, and its centre is inside the hole in the projection onto that plane.
+pub(super) fn refuse_holes_with_islands(holes: &mut [Hole], components: &[usize], positions: &[Point]) {
+    let outlines: Vec<Outline> = holes.iter().map(|hole| Outline::of(&hole.vertices, positions)).collect();
+    for i in 0..holes.len() {
+        if holes[i].is_outer_border || holes[i].refusal.is_some() {
+            continue;
+        }
+        let hole = &outlines[i];
+        let (size, normal) = (norm(hole.area), unit(hole.area));
+        let holds = |j: usize| {
+            let island = &outlines[j];
+            components[i] != components[j]
+                && dot(island.area, normal) < -SPECK * size
+                && norm(island.area) < size
+                && dot(sub(island.centre, hole.centre), normal).abs() < FAR * size.sqrt()
+                && encloses(&holes[i].vertices, positions, normal, island.centre)
+        };
+        if (0..holes.len()).any(|j| holes[j].is_outer_border && holds(j)) {
+            holes[i].refusal = Some(Refusal::Island);
+        }
+    }
+}
+
+/// Whether the loop runs around the line through `point` along `normal`: the even-odd rule in the projection.
+fn encloses(vertices: &[u32], positions: &[Point], normal: Point, point: Point) -> bool {
+    let least = (0..3).fold(0, |least, k| if normal[k].abs() < normal[least].abs() { k } else { least });
+    let mut axis = [0.0; 3];
+    axis[least] = 1.0;
+    let across = unit(cross(normal, axis));
+    let up = cross(normal, across);
+    let flat = |v: u32| {
+        let from = sub(positions[v as usize], point);
+        [dot(from, across), dot(from, up)]
+    };
+    let mut inside = false;
+    for [a, b] in cycle(vertices) {
+        let ([x, y], [u, v]) = (flat(a), flat(b));
+        if (y > 0.0) != (v > 0.0) && x + (u - x) * y / (y - v) > 0.0 {
+            inside = !inside;
+        }
+    }
+    inside
+}
