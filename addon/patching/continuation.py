@@ -34,8 +34,11 @@ class Continuation:
         """Values (3 p, c) at the corners of the patches from those (3 r, c) at the corners around them.
 
         Where values jump across an edge of the mesh, a seam, they are taken to lie on separate islands. Seams
-        that end at a hole go on through its patch, and each island is continued by itself.
+        that end at a hole go on through its patch, and each island is continued by itself. Where one value
+        is not a finite number, the nearest are taken.
         """
+        if not np.isfinite(values).all():
+            return values[self.nearest_corners()]
         values = values.astype(np.float64)
         tolerance = SAME * float(np.ptp(values, axis=0).max(initial=0.0))
         cut = self._cut(values, tolerance)

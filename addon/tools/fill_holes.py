@@ -3,7 +3,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 import bpy
@@ -41,6 +41,14 @@ class HolePart(Part):
     """The welded vertices of each hole that is filled."""
     n_faces: int = 0
     """How many faces were added."""
+    shown: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
+    """Vertices and triangles of the patches that the preview shows, the one in work last."""
+
+    def see(self, surface: tuple[np.ndarray, np.ndarray]) -> None:
+        """Take a patch as it is now for the preview, instead of an earlier state of it."""
+        if self.shown and _same_hole(self.shown[-1][0], surface[0]):
+            self.shown.pop()
+        self.shown.append(surface)
 
 
 class HoleFilling(Run):
@@ -91,9 +99,10 @@ class HoleFilling(Run):
         """Draw the patches as far as they are, over the untouched meshes; whether anything is new."""
         shown = []
         for part in self.parts:
-            patch = part.task.progress.snapshot_surface() if part.task.started else None
-            if patch is not None:
-                shown.append((part.object.matrix_world, *patch))
+            surface = part.task.progress.snapshot_surface() if part.task.started else None
+            if surface is not None:
+                part.see(surface)
+            shown += [(part.object.matrix_world, *surface) for surface in part.shown]
         return self._overlay.show(shown)
 
     def restore(self) -> None:
@@ -138,6 +147,11 @@ class HoleFilling(Run):
             f"Filled {_counted(holes, 'hole')} of {meshes_phrase(done)}: {_counted(faces, 'face')} added"
             f"{ridge_phrase}, {seconds:.1f} s"
         )
+
+
+def _same_hole(vertices: np.ndarray, others: np.ndarray) -> bool:
+    """Whether these are vertices (k, 3) of one patch at two times: those around the hole stay."""
+    return vertices.shape == others.shape and bool((vertices == others).all(axis=1).any())
 
 
 def _picked(holes: Sequence[ridgeform.Hole], edges: np.ndarray, n_vertices: int) -> list[ridgeform.Hole]:

@@ -126,6 +126,19 @@ def test_edit_mode_fills_the_picked_hole_and_selects_the_patch():
     assert {v.index for v in obj.data.vertices if v.select} == new
 
 
+def test_several_objects_in_edit_mode():
+    boxes = [hole_kit.box(name=name, centers=(FRONT, BACK)) for name in "AB"]
+    picked = [hole_kit.around_holes(obj)[0].vertices.tolist()[:2] for obj in boxes]
+    for obj in boxes:
+        obj.select_set(True)
+    hole_kit.pick(boxes[0], picked[0])
+    bpy.ops.object.mode_set(mode="OBJECT")
+    hole_kit.pick(boxes[1], picked[1])
+    assert bpy.ops.ridgeform.fill_holes() == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert {entry["name"]: entry["holes"] for entry in job.last_summary()} == {"A": 1, "B": 1}
+
+
 def test_edit_mode_without_an_edge_of_a_hole_is_refused():
     obj = hole_kit.box()
     rim = set(hole_kit.around_holes(obj)[0].vertices.tolist())

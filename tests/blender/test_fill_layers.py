@@ -152,6 +152,50 @@ def test_whole_numbers_and_truths_come_from_the_nearest():
     assert mesh.attributes["name"].data[5].value == b"five"
 
 
+def test_values_that_are_no_numbers_come_from_the_nearest():
+    obj = hole_kit.sheet()
+    at = kit.coordinates(obj)
+    broken = np.where(at[:, :1] > 0.5, np.nan, 1.0).astype(np.float32)
+    hole_kit.set_values(obj.data, "broken", "FLOAT", "POINT", broken)
+    assert bpy.ops.ridgeform.fill_holes() == {"FINISHED"}
+    # Blender's validation, which other tests call, would replace them.
+    at = kit.coordinates(obj)
+    values = hole_kit.values(obj.data, "broken")[:, 0]
+    far = np.abs(at[:, 0] - 0.5) > 0.1
+    assert np.array_equal(np.isnan(values[far]), at[far, 0] > 0.5)
+
+
+def test_a_map_of_single_faces_is_no_seam():
+    obj = hole_kit.sheet()
+    corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32)
+    hole_kit.set_values(obj.data, "UV", "FLOAT2", "CORNER", np.tile(corners, (len(obj.data.polygons), 1)))
+    filled(obj)
+    uv = hole_kit.values(obj.data, "UV")
+    assert np.isfinite(uv).all()
+    assert uv.min() > -0.5
+    assert uv.max() < 1.5
+
+
+def test_a_seam_that_ends_in_the_hole_is_led_to_its_middle():
+    obj = hole_kit.sheet(hole=(5, 7))
+    mesh = obj.data
+    at, corner = kit.coordinates(obj), hole_kit.corner_vertices(mesh)
+    middle = face_middles(obj)[:, :2] - 0.5
+    # An angle around the middle of the hole: it jumps where it has gone around.
+    offset = at[corner][:, :2] - 0.5
+    angle = np.arctan2(offset[:, 1], offset[:, 0])
+    below = np.repeat((middle[:, 1] < 0) & (middle[:, 0] < 0), 4)
+    angle = np.where(below & (angle > 3.0), angle - 2 * np.pi, angle)
+    hole_kit.set_values(mesh, "angle", "FLOAT", "CORNER", angle.astype(np.float32)[:, None])
+    n = len(corner)
+    at, corner = filled(obj)
+    values = hole_kit.values(mesh, "angle")[n:].reshape(-1, 3)
+    # Across the cut the angle is continued on both sides: no triangle reaches around.
+    assert np.ptp(values, axis=1).max() < 5.0
+    assert values.min() < -2.0
+    assert values.max() > 2.0
+
+
 def test_faces_take_material_and_flags_of_those_beside_them():
     obj = hole_kit.box(n=12, radius=0.5)
     mesh = obj.data

@@ -5,6 +5,7 @@ import time
 import addon_kit as kit
 import bpy
 import hole_kit
+import numpy as np
 import pytest
 from bl_ext.user_default.ridgeform import job
 from bl_ext.user_default.ridgeform.hole_settings import HoleSettings
@@ -44,6 +45,21 @@ def test_cancel_leaves_every_bit_and_takes_the_preview_away():
     assert not run.job.is_running
 
 
+def test_the_preview_keeps_patches_that_are_done():
+    obj = hole_kit.box(centers=((1.0, 0.0, 1.0), (-1.0, 0.0, -1.0)))
+    run = HoleFilling([obj], defaults_of(HoleSettings))
+    (part,) = run.parts
+    rim, other = np.eye(3), np.eye(3) + 5.0
+    faces = np.array([[0, 1, 2], [1, 2, 3]])
+    for patch in (rim, other):
+        for height in (0.1, 0.2):
+            part.see((np.vstack([patch, [height, height, height]]), faces))
+    assert [surface[0][3, 0] for surface in part.shown] == [0.2, 0.2]
+    assert run._overlay.show([(obj.matrix_world, *surface) for surface in part.shown])
+    assert run._overlay.n_triangles == 4
+    run.restore()
+
+
 def test_cancel_in_edit_mode():
     obj = hole_kit.box()
     hole = hole_kit.around_holes(obj)[0].vertices.tolist()
@@ -56,6 +72,14 @@ def test_cancel_in_edit_mode():
     assert operator.modal(context, event("ESC")) == {"CANCELLED"}
     bpy.ops.object.mode_set(mode="OBJECT")
     assert hole_kit.state(obj) == before
+
+
+def test_opening_a_file_takes_the_preview_away():
+    run, operator, context = start(hole_kit.box())
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    assert not run.job.is_running
+    assert run._overlay.n_triangles == 0
+    operator.cancel(context)
 
 
 def test_enter_keeps_what_is_there():
