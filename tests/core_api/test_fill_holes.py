@@ -78,6 +78,30 @@ def test_a_cubes_edge_comes_back(n, radius, seed):
     assert np.abs(ends[..., :2] - 1).max() < 0.02
 
 
+@pytest.mark.parametrize(("n", "radius", "seed"), [(12, 0.6, 4), (24, 0.3, 5)])
+def test_a_cubes_corner_comes_back(n, radius, seed):
+    mesh, rotation = turned_cube(n, [1, 1, 1], radius, seed)
+    filled = ridgeform.fill_holes(mesh)
+    check_invariants(mesh, filled)
+    corner = distance_to(np.ones((1, 3)) @ rotation.T, filled.vertices, patch_faces(filled))
+    assert corner[0] <= 0.001
+    middles = filled.vertices[patch_faces(filled)].mean(axis=1) @ rotation
+    assert shapes.distance_to_cube(middles).max() < 0.003
+
+
+def test_a_cylinders_rim_bends_on():
+    vertices, faces = shapes.cylinder(72, 20, 10)
+    mesh = without(vertices, faces, np.array([0.6, 0.8, 1.0]), 0.4)
+    filled = ridgeform.fill_holes(mesh)
+    check_invariants(mesh, filled)
+    new = filled.vertices[mesh.n_vertices :]
+    on_side = np.abs(np.hypot(new[:, 0], new[:, 1]) - 1)
+    assert np.minimum(on_side, np.abs(new[:, 2] - 1)).max() < 0.01
+    ends = filled.vertices[filled.ridges]
+    assert np.abs(np.hypot(ends[..., 0], ends[..., 1]) - 1).max() < 0.01
+    assert np.abs(ends[..., 2] - 1).max() < 0.01
+
+
 def test_a_sphere_stays_smooth():
     vertices, faces = shapes.icosphere(4)
     mesh = without(vertices, faces, np.array([0.3, 0.5, 0.81]), 0.45)

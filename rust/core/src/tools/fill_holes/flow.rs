@@ -33,7 +33,7 @@ pub(super) fn flow(
         sharpness,
         coupling: options.coupling,
         scale: Scale::Length(unit(region, options.scale)?),
-        fixed: Some(region.fixed.clone()),
+        fixed: Some(region.fixed()),
         dual: options.dual,
         // Threads are set once, around all holes.
         solve: crate::tools::SolveOptions { threads: None, ..options.solve },
@@ -51,7 +51,7 @@ pub(super) fn flow(
 
 /// The length that is 1 for the fidelity weight: of the patch alone, so that nothing farther away matters.
 fn unit(region: &Region, scale: Scale) -> Result<f64> {
-    let (points, faces) = region.patch();
+    let (points, faces, _) = region.patch();
     let lengths = edge_lengths(&faces, &points);
     Ok(scale.unit(&Connectivity::new(faces, points.len())?, &points, &lengths))
 }

@@ -2,16 +2,22 @@
 //!
 //! Each hole is a problem of its own ([`region`]): the patch and a few rings around it. The patch starts as the minimiser of a
 //! quadratic energy ([`start`]). Where the surface around is smooth ([`decide`]) that is the result. Where it has ridges,
-//! cycles of three follow: the L1 flow flattens ([`flow`]), edges flip along the ridges ([`flips`]), vertices snap
-//! onto the planes around them and their intersections ([`snap`]). No move folds the surface ([`guard`]).
+//! cycles follow: the L1 flow flattens ([`flow`]), edges flip along the ridges ([`flips`]), vertices snap onto the planes
+//! around them and their intersections ([`snap`]), the patch is remeshed with its ridges kept ([`resample`]). In the end the
+//! parts between the ridges become smooth ([`fair`]) and the ridges go on as those around ([`ridge_curves`]). No move
+//! folds the surface ([`guard`]).
 
 mod choice;
 mod decide;
+mod fair;
 mod flips;
 mod flow;
 mod guard;
+mod neighbourhoods;
 mod region;
+mod resample;
 mod restore;
+mod ridge_curves;
 mod snap;
 mod start;
 mod surface;
@@ -30,7 +36,8 @@ use crate::operators::Dual;
 use crate::progress::{Progress, Report};
 use crate::solve::Coupling;
 use crate::{Error, Result};
-use region::{Neighbourhoods, Region};
+use neighbourhoods::Neighbourhoods;
+use region::Region;
 use restore::{restore, Restored};
 
 /// The flow's stencil takes two rings; planes are fitted over five.
@@ -196,6 +203,8 @@ fn fill(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) -> Result<
     let shared = choice::on_several(&chosen);
     let total = patches.iter().map(|patch| patch.faces.len()).sum::<usize>().max(1) as f64;
     let mut done = 0.0;
+    // Where the new vertices of a patch begin, as the triangulation numbered them.
+    let mut from = positions.len() as u32;
     for ((boundary, refusal), patch) in chosen.into_iter().zip(patches) {
         let share = patch.faces.len() as f64 / total;
         let outcome = match refusal {
@@ -203,10 +212,11 @@ fn fill(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) -> Result<
             None => {
                 let watch = |part: f64, steps, energy| report(progress, done + share * part, "filling", steps, energy);
                 let hole = filled.holes.len() as i32;
-                Ok(fill_one(mesh, &near, &shared, &patch, hole, &mut filled, options, progress, &watch)?)
+                Ok(fill_one(mesh, &near, &shared, &patch, from, hole, &mut filled, options, progress, &watch)?)
             }
         };
         done += share;
+        from += patch.vertices.len() as u32;
         filled.holes.push(match outcome {
             Ok(Restored { sharpness, status, energy, gap, iterations }) => {
                 FilledHole { boundary, status, sharpness, energy, gap, iterations }
@@ -238,23 +248,22 @@ fn fill_one(
     near: &Neighbourhoods<'_>,
     shared: &HashSet<u32>,
     patch: &Patch,
+    patches_from: u32,
     hole: i32,
     filled: &mut Filled,
     options: &FillHolesOptions,
     progress: &Progress,
     watch: &dyn Fn(f64, usize, Option<f64>),
 ) -> Result<Restored> {
-    let first_new = filled.vertices.len() as u32;
-    let mut region = Region::new(mesh, near, &patch.vertices, first_new, &patch.faces, RINGS)?;
-    region.forbid_edges_among(shared);
+    let mut region = Region::new(mesh, near, patch, patches_from, RINGS, shared)?;
+    region.first_new = filled.vertices.len() as u32;
     let restored = restore(&mut region, options, progress, &mut |region, part, steps, energy| {
-        let (vertices, faces) = region.patch();
+        let (vertices, faces, _) = region.patch();
         progress.set_surface(vertices, faces);
         watch(part, steps, energy);
     })?;
     filled.vertices.extend(region.free().map(|v| region.mesh.position(v)));
-    let patch_faces = (region.n_outer as u32..region.mesh.n_faces() as u32).filter_map(|f| region.mesh.face(f));
-    filled.faces.extend(patch_faces.map(|face| face.map(|v| region.vertices[v as usize])));
+    filled.faces.extend(region.patch_faces().map(|(_, face)| face.map(|v| region.global(v))));
     filled.patch.resize(filled.faces.len(), hole);
     if restored.sharpness > 0.0 {
         filled.ridges.extend(surface::ridges(&region, RIDGE));

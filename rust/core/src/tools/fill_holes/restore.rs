@@ -1,13 +1,14 @@
 //! One hole: the smooth patch, and from it the sharp one where the surroundings ask for it.
 
-use super::decide::is_sharp;
+use super::decide::least_ridge;
+use super::fair::fair;
 use super::flips::flip_along_ridges;
 use super::flow::flow;
 use super::region::Region;
+use super::resample::{resample, typical_edge};
 use super::snap::{snap, Snapping};
 use super::start::smooth;
 use super::{FillHolesOptions, HoleStatus, Sharpness};
-use crate::mesh::vector::distance;
 use crate::operators::Energy;
 use crate::progress::Progress;
 use crate::Result;
@@ -22,6 +23,17 @@ const SHARP: f64 = 0.8;
 const STEPS: usize = 3;
 const SNAP_FROM: usize = 3;
 const SNAPS: usize = 2;
+
+/// Every so many cycles the patch is remeshed: snapping crowds vertices on ridges, and ridges stretch the patch.
+const RESAMPLE_EVERY: usize = 4;
+const RESAMPLE_ROUNDS: usize = 2;
+
+/// Edges of the patch bent by more than this part of the ridges around the hole are ridges; where those are unknown, by more
+/// than 0.6 radians.
+const RIDGE: f64 = 0.6;
+
+/// Rounds that make the parts between ridges smooth; the metric of each is that after the one before.
+const FAIR_ROUNDS: usize = 4;
 
 /// Sweeps of flips at most; they end by themselves after three or four.
 const SWEEPS: usize = 10;
@@ -48,8 +60,9 @@ pub(super) fn restore(
 ) -> Result<Restored> {
     smooth(region, Energy::L2Laplacian, SMOOTH_ROUNDS, progress)?;
     watch(region, 0.05, 0, None);
+    let least = least_ridge(region);
     let sharpness = match options.sharpness {
-        Sharpness::Auto if is_sharp(region) => SHARP,
+        Sharpness::Auto if least.is_some() => SHARP,
         Sharpness::Auto => 0.0,
         Sharpness::Value(sharpness) => sharpness,
     };
@@ -57,47 +70,59 @@ pub(super) fn restore(
     if options.sharpness == Sharpness::Auto && sharpness == 0.0 {
         return Ok(restored);
     }
+    let ridge = RIDGE * least.unwrap_or(1.0);
     restored.status = HoleStatus::Finished;
     let cycles = options.iterations.div_ceil(STEPS);
     for cycle in 1..=cycles {
         progress.check()?;
         if progress.is_finishing() {
             restored.status = HoleStatus::Stopped;
-            break;
+            return Ok(restored);
         }
         let steps = STEPS.min(options.iterations - restored.iterations);
         let flowed = flow(region, steps, sharpness, options, progress)?;
-        let mut moved = flowed.moved;
-        let mut flips = 0;
-        if sharpness > 0.0 {
-            flips += flip_along_ridges(region, SWEEPS);
-            if cycle >= SNAP_FROM {
-                for _ in 0..SNAPS {
-                    moved = moved.max(snap(region, &Snapping::WIDE));
-                    flips += flip_along_ridges(region, SWEEPS);
-                }
-            }
-        }
+        let moved = flowed.moved.max(if sharpness > 0.0 { align(region, cycle) } else { 0.0 });
         if cycle == 1 {
             restored.energy[0] = flowed.energy[0];
         }
         restored.energy[1] = flowed.energy[1];
         restored.gap = flowed.gap;
         restored.iterations += steps;
-        watch(region, cycle as f64 / cycles as f64, restored.iterations, Some(flowed.energy[1]));
-        if flips == 0 && moved < STILL * mean_edge(region) && cycle > SNAP_FROM {
+        watch(region, 0.05 + 0.9 * cycle as f64 / cycles as f64, restored.iterations, Some(flowed.energy[1]));
+        if cycle > SNAP_FROM && moved < STILL * typical_edge(&region.mesh) {
             restored.status = HoleStatus::Converged;
             break;
         }
+        if sharpness > 0.0 && cycle % RESAMPLE_EVERY == 0 {
+            resample(region, options.edge_length, ridge, RESAMPLE_ROUNDS, progress)?;
+            flip_along_ridges(region, SWEEPS);
+        }
+    }
+    if sharpness > 0.0 && cycles > 0 {
+        resample(region, options.edge_length, ridge, RESAMPLE_ROUNDS, progress)?;
+        for _ in 0..FAIR_ROUNDS {
+            flip_along_ridges(region, SWEEPS);
+            fair(region, ridge, progress)?;
+        }
+        watch(region, 1.0, restored.iterations, Some(restored.energy[1]));
     }
     Ok(restored)
 }
 
-fn mean_edge(region: &Region) -> f64 {
-    let mesh = &region.mesh;
-    let patch = mesh.faces().filter(|&(f, _)| region.is_patch(f)).map(|(_, face)| mesh.corners(face));
-    let (sum, count) = patch.fold((0.0, 0.0), |(sum, count), [a, b, c]| {
-        (sum + distance(a, b) + distance(b, c) + distance(c, a), count + 3.0)
-    });
-    sum / f64::max(count, 1.0)
+/// Turns the edges of the patch along its ridges and snaps its vertices onto them; returns the longest move, infinite where an
+/// edge was flipped.
+fn align(region: &mut Region, cycle: usize) -> f64 {
+    let mut flips = flip_along_ridges(region, SWEEPS);
+    let mut moved: f64 = 0.0;
+    if cycle >= SNAP_FROM {
+        for _ in 0..SNAPS {
+            moved = moved.max(snap(region, &Snapping::DEFAULT));
+            flips += flip_along_ridges(region, SWEEPS);
+        }
+    }
+    if flips > 0 {
+        f64::INFINITY
+    } else {
+        moved
+    }
 }

@@ -1,6 +1,6 @@
 //! Snapping: vertices near a ridge move onto the intersection of the planes around them.
 
-use super::guard::move_guarded;
+use super::guard::move_one;
 use super::region::Region;
 use super::surface::Surface;
 use crate::mesh::vector::{add, distance, dot, norm, scale, sub, Point};
@@ -8,14 +8,18 @@ use crate::mesh::vector::{add, distance, dot, norm, scale, sub, Point};
 /// What snapping is done with.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Snapping {
-    /// Vertices with a dihedral angle above this (radians) move.
+    /// Edges bent by more than this (radians) call for snapping.
     pub threshold: f64,
+    /// A vertex snaps if such an edge is on a face within so many rings.
+    pub near: usize,
     /// Planes are those of the faces within so many rings.
     pub rings: usize,
     /// The width of the Gaussian that weighs them, in edge lengths.
     pub width: f64,
     /// The dihedral angle at which a face is no longer trusted.
     pub doubt: f64,
+    /// How much more the faces around the patch count.
+    pub trust: f64,
     /// Eigenvalues under this part of the largest are dropped.
     pub drop: f64,
     /// A vertex moves at most so many edge lengths.
@@ -25,24 +29,39 @@ pub(super) struct Snapping {
 }
 
 impl Snapping {
-    /// Over five rings: faces that lie on their planes already pull in those that do not yet.
-    pub(super) const WIDE: Self =
-        Self { threshold: 0.1, rings: 5, width: 2.5, doubt: 0.5, drop: 0.05, reach: 1.0, relaxation: 0.5 };
+    /// Over five rings: faces that lie on their planes already pull in those that do not yet. The faces around the patch are
+    /// known to be right: without their weight a cut corner, whose chamfer is a plane as well, would stay.
+    pub(super) const DEFAULT: Self = Self {
+        threshold: 0.1,
+        near: 2,
+        rings: 5,
+        width: 2.5,
+        doubt: 0.5,
+        trust: 4.0,
+        drop: 0.05,
+        reach: 1.0,
+        relaxation: 0.5,
+    };
 }
 
 /// Moves every free vertex where the planes around it say where, and to the middle of its neighbours where they do not;
 /// returns the longest move.
 ///
-/// Where a dihedral angle at the vertex is above the threshold, the pseudo-inverse of the quadric (Garland and Heckbert 1997) of
+/// Where an edge nearby is bent by more than the threshold, the pseudo-inverse of the quadric (Garland and Heckbert 1997) of
 /// the planes takes it onto a plane, onto the line of two, into the corner of three. In the directions that the planes
 /// leave free, it goes to the centroid of its neighbours: ridges and plane parts keep their triangles in shape.
 pub(super) fn snap(region: &mut Region, how: &Snapping) -> f64 {
     let surface = Surface::of(region);
-    let mut goal = region.mesh.positions().to_vec();
-    for v in region.free() {
-        goal[v as usize] = add(goal[v as usize], step(region, &surface, v, how));
-    }
-    move_guarded(region, &goal)
+    let mut moves: Vec<(f64, u32, Point)> = region
+        .free()
+        .map(|v| {
+            let step = step(region, &surface, v, how);
+            (norm(step), v, add(region.mesh.position(v), step))
+        })
+        .collect();
+    // The nearest first: of several vertices that a corner attracts, only one finds room there.
+    moves.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+    moves.into_iter().fold(0.0, |longest: f64, (_, v, goal)| longest.max(move_one(region, v, goal)))
 }
 
 fn step(region: &Region, surface: &Surface, v: u32, how: &Snapping) -> Point {
@@ -52,14 +71,16 @@ fn step(region: &Region, surface: &Surface, v: u32, how: &Snapping) -> Point {
     let count = neighbours.len().max(1) as f64;
     let edge = neighbours.iter().map(|&w| distance(at, mesh.position(w))).sum::<f64>() / count;
     let (mut quadric, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
-    let near_ridge = surface.vertex_angles[v as usize] > how.threshold;
+    let is_bent = |f: &u32| surface.face_angles[*f as usize] > how.threshold;
+    let near_ridge = mesh.faces_within(&[v], how.near).iter().any(is_bent);
     let rings = if near_ridge { how.rings } else { 1 };
     for f in mesh.faces_within(&[v], rings).into_iter().map(|f| f as usize) {
         let Some(face) = mesh.face(f as u32) else { continue };
         let normal = surface.normals[f];
         let away = distance(surface.centres[f], at) / (how.width * edge);
         let confidence = 1.0 / (0.01 + (surface.face_angles[f] / how.doubt).powi(4));
-        let weight = surface.areas[f] * (-0.5 * away * away).exp() * confidence;
+        let trust = if region.is_patch(f as u32) { 1.0 } else { how.trust };
+        let weight = trust * surface.areas[f] * (-0.5 * away * away).exp() * confidence;
         let offset = dot(normal, sub(mesh.position(face[0]), at));
         for i in 0..3 {
             right[i] += weight * offset * normal[i];

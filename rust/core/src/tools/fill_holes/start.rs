@@ -17,14 +17,16 @@ pub(super) fn smooth(region: &mut Region, energy: Energy, rounds: usize, progres
         let problem = Problem {
             operator: &form.operator,
             weights: form.weights,
-            fidelity: vec![0.0; region.fixed.len()],
+            fidelity: vec![0.0; region.mesh.n_vertices()],
             target: Columns::from_points(region.mesh.positions()),
-            fixed: region.fixed.clone(),
+            fixed: region.fixed(),
             linear_constraints: None,
             coupling: Coupling::Joint,
         };
         let solution = quadratic::minimise(&problem, &settings, progress)?;
-        region.move_to(&solution.values.to_points()?);
+        for (v, point) in (0..).zip(solution.values.to_points()?).skip(region.anchors.len()) {
+            region.mesh.set_position(v, point);
+        }
     }
     Ok(())
 }

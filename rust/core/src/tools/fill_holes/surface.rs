@@ -19,8 +19,6 @@ pub(super) struct Surface {
     pub centres: Vec<Point>,
     /// The largest dihedral angle (0 where flat) at the edges of every face.
     pub face_angles: Vec<f64>,
-    /// The largest dihedral angle at the edges of every vertex.
-    pub vertex_angles: Vec<f64>,
 }
 
 impl Surface {
@@ -34,7 +32,6 @@ impl Surface {
             normals: vectors.iter().zip(&areas).map(normal).collect(),
             centres: corners.into_iter().map(centroid).collect(),
             face_angles: vec![0.0; areas.len()],
-            vertex_angles: vec![0.0; mesh.n_vertices()],
             areas,
         };
         for [a, b] in mesh.edges() {
@@ -42,10 +39,6 @@ impl Surface {
             let theta = surface.dihedral(faces);
             for f in faces {
                 let largest = &mut surface.face_angles[f as usize];
-                *largest = largest.max(theta);
-            }
-            for v in [a, b] {
-                let largest = &mut surface.vertex_angles[v as usize];
                 *largest = largest.max(theta);
             }
         }
@@ -66,6 +59,5 @@ pub(super) fn ridges(region: &Region, least: f64) -> Vec<[u32; 2]> {
         let faces = mesh.wings(a, b).map(|wings| wings.faces);
         faces.is_some_and(|faces| faces.iter().any(|&f| region.is_patch(f)) && surface.dihedral(faces) > least)
     };
-    let named = |[a, b]: [u32; 2]| key(region.vertices[a as usize], region.vertices[b as usize]);
-    mesh.edges().into_iter().filter(bent).map(named).collect()
+    mesh.edges().into_iter().filter(bent).map(|[a, b]| key(region.global(a), region.global(b))).collect()
 }
