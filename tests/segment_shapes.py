@@ -95,7 +95,7 @@ def l_shape(level: int) -> Part:
 
 def staircase(level: int) -> Part:
     """Three steps: 10 parts, two of them stepped."""
-    return _exact(shapes.staircase(3, (4, 8, 16)[level]))
+    return _exact(shapes.staircase(3, (6, 12, 24)[level]))
 
 
 def house(level: int) -> Part:
@@ -105,7 +105,7 @@ def house(level: int) -> Part:
 
 def cylinder(level: int) -> Part:
     """A cylinder with caps: 3 parts, one of them curved."""
-    return _exact(shapes.cylinder(*((32, 10, 5), (64, 20, 10), (128, 40, 20))[level]))
+    return _exact(shapes.cylinder(*((48, 15, 8), (96, 30, 16), (192, 60, 32))[level]))
 
 
 def fan(level: int) -> Part:
@@ -113,7 +113,7 @@ def fan(level: int) -> Part:
     cells = [(i, j, 0) for i in range(4) for j in range(3)]
     cells += [(i, j, 1) for i in (0, 1) for j in range(3)] + [(2, 1, 1)]
     cells.remove((3, 2, 0))
-    vertices, faces = shapes.voxels(cells, (4, 8, 16)[level])
+    vertices, faces = shapes.voxels(cells, (6, 12, 24)[level])
     x, y, z = vertices.T
     radius, angle = 0.9 + 0.3 * x, np.radians(32.0) * y
     height = 0.32 * z + 0.06 * z * (4 - x)

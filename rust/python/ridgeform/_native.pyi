@@ -331,7 +331,7 @@ def segment(
     epsilon_end: float = 0.001,
     inner_tolerance: float = 1e-5,
     cut_threshold: float = 0.6,
-    min_faces: int = 20,
+    min_faces: int | None = None,
     scale: Literal["extent", "bounding_box", "area", "max_edge"] = "extent",
     method: Literal["fitted", "paper"] = "fitted",
     n_segments: int | None = None,

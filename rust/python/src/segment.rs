@@ -99,7 +99,7 @@ impl Segmentation {
 ///     the mesh is fine
 /// inner_tolerance : the mean squared change of v at which epsilon is halved
 /// cut_threshold : 0 to 1, edges with a lower v are cut; for "paper"
-/// min_faces : segments of fewer faces are merged
+/// min_faces : segments of fewer faces are merged; None: 20, and for "fitted" down to 4 the less noise there is
 /// scale : "extent" (a cube has its side, whatever its rotation), "bounding_box" (the longest side is 1), "area" or "max_edge"
 /// method : "fitted" (watershed of v, merging of what bends little, border faces moved to the segment that they fit best) or "paper"
 ///     (cuts below the threshold, small pieces merged by majority)
@@ -127,7 +127,7 @@ impl Segmentation {
 /// Rowe et al. 2024, eqs. (25) and (41), section 7.5, supplement E.
 #[pyfunction]
 #[pyo3(signature = (mesh, *, values=None, length_weight=0.5, fidelity=None, epsilon_start=0.1, epsilon_end=0.001,
-    inner_tolerance=1e-5, cut_threshold=0.6, min_faces=20, scale="extent", method="fitted", n_segments=None,
+    inner_tolerance=1e-5, cut_threshold=0.6, min_faces=None, scale="extent", method="fitted", n_segments=None,
     face_weights=None, edge_weights=None, faces=None, solver="auto", tolerance=None, max_iterations=None,
     memory_limit=None, threads=None, progress=None))]
 #[allow(clippy::too_many_arguments)]
@@ -141,7 +141,7 @@ pub fn segment(
     epsilon_end: f64,
     inner_tolerance: f64,
     cut_threshold: f64,
-    min_faces: i64,
+    min_faces: Option<i64>,
     scale: &str,
     method: &str,
     n_segments: Option<i64>,
@@ -167,7 +167,7 @@ pub fn segment(
         epsilon_end,
         inner_tolerance,
         cut_threshold,
-        min_faces: options::at_least(py, "min_faces", min_faces, 0)?,
+        min_faces: min_faces.map(|count| options::at_least(py, "min_faces", count, 0)).transpose()?,
         n_segments: n_segments.map(|count| options::at_least(py, "n_segments", count, 1)).transpose()?,
         scale: options::scale(py, scale)?,
         face_weights: options::weights("face_weights", face_weights, m, "face")?,

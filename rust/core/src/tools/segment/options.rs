@@ -39,8 +39,8 @@ pub struct SegmentOptions {
     pub inner_tolerance: f64,
     /// For [`SegmentMethod::Paper`]: edges with a lower indicator are cut.
     pub cut_threshold: f64,
-    /// Segments of fewer faces are merged.
-    pub min_faces: usize,
+    /// Segments of fewer faces are merged. Without it 20, or down to 4 where [`SegmentMethod::Fitted`] finds less noise.
+    pub min_faces: Option<usize>,
     /// How many segments are wanted; as many as the length weight makes where `None`.
     pub n_segments: Option<usize>,
     /// The unit of length of the weights.
@@ -65,7 +65,7 @@ impl Default for SegmentOptions {
             epsilon_end: 0.001,
             inner_tolerance: 1e-5,
             cut_threshold: 0.6,
-            min_faces: 20,
+            min_faces: None,
             n_segments: None,
             scale: DEFAULT_SCALE,
             face_weights: None,

@@ -19,8 +19,10 @@ const SWEEPS: usize = 12;
 const PLANE_NOISE: f64 = 1.5;
 const PLANE_EDGE: f64 = 0.02;
 
-/// A misfit of this part of an edge costs as much as noise of that size would: exact data have none.
-const LEAST_NOISE: f64 = 0.02;
+/// The least noise to reckon with, in mean edges for shapes and in the range of other signals: fits near curved borders are off by as
+/// much, and with less, borders on scans and characters have teeth.
+const LEAST_NOISE: f64 = 0.1;
+const LEAST_NOISE_OF_VALUES: f64 = 0.02;
 
 /// The most that one corner's misfit costs: a spike does not decide alone.
 const MOST_MISFIT: f64 = 12.0;
@@ -35,6 +37,8 @@ pub(super) struct Refit<'a> {
     pub signal: Option<&'a Columns>,
     /// Standard deviation of the noise of the signal, or of the positions along the normal.
     pub noise: f64,
+    /// Pieces of at least so many faces that come loose are segments of their own.
+    pub least_faces: usize,
     pub progress: &'a Progress,
 }
 
@@ -51,7 +55,7 @@ struct Fits<'a, 'b> {
 }
 
 impl Refit<'_> {
-    /// Moves faces until none wants to move; segments may vanish but not fall apart.
+    /// Moves faces until none wants to move. Segments may vanish, and fall into pieces that are segments then.
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
@@ -105,15 +109,17 @@ impl Refit<'_> {
         EDGE_COST * cost / self.surface.mean_edge.max(f64::MIN_POSITIVE)
     }
 
-    /// Gives every piece of a segment but its largest to the neighbour with which it has the longest border.
-    pub fn rejoin(&self, labels: &mut [u32]) {
+    /// Gives every small piece of a segment but its largest to the neighbour with which it has the longest border; other pieces
+    /// become segments of their own.
+    fn rejoin(&self, labels: &mut [u32]) {
         loop {
             let (piece, count) = pieces(self.surface, labels);
-            let mut area = vec![0.0; count];
-            let mut owner = vec![0; count];
+            let (mut area, mut size, mut owner) = (vec![0.0; count], vec![0; count], vec![0; count]);
             for f in 0..labels.len() {
-                area[piece[f] as usize] += self.surface.areas[f];
-                owner[piece[f] as usize] = labels[f];
+                let p = piece[f] as usize;
+                area[p] += self.surface.areas[f];
+                size[p] += 1;
+                owner[p] = labels[f];
             }
             let mut largest: BTreeMap<u32, usize> = BTreeMap::new();
             for p in 0..count {
@@ -122,6 +128,15 @@ impl Refit<'_> {
                     *held = p;
                 }
             }
+            let mut fresh = labels.iter().copied().max().map_or(0, |label| label + 1);
+            for p in 0..count {
+                if largest[&owner[p]] != p && size[p] >= self.least_faces {
+                    owner[p] = fresh;
+                    largest.insert(fresh, p);
+                    fresh += 1;
+                }
+            }
+            labels.iter_mut().zip(&piece).for_each(|(label, p)| *label = owner[*p as usize]);
             let mut shared: BTreeMap<(u32, u32), f64> = BTreeMap::new();
             for f in 0..labels.len() {
                 if largest[&labels[f]] == piece[f] as usize {
@@ -171,7 +186,7 @@ impl<'a, 'b> Fits<'a, 'b> {
                 }
             }
         }
-        let least = if refit.signal.is_none() { LEAST_NOISE * surface.mean_edge } else { LEAST_NOISE };
+        let least = if refit.signal.is_none() { LEAST_NOISE * surface.mean_edge } else { LEAST_NOISE_OF_VALUES };
         Self {
             refit,
             labels,

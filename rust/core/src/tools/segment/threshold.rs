@@ -1,6 +1,7 @@
 //! Segments as the paper makes them: cuts where the indicator is low, and small pieces merged by majority.
 
-use std::collections::BTreeMap;
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::surface::{contiguous, Surface};
 
@@ -16,26 +17,43 @@ pub(super) fn cut_and_merge(
     min_faces: usize,
 ) -> (Vec<u32>, usize) {
     let mut labels = components(surface, |f, g| 0.5 * (indicator[f] + indicator[g]) >= threshold);
-    loop {
-        let mut sizes: BTreeMap<u32, usize> = BTreeMap::new();
-        for label in &labels {
-            *sizes.entry(*label).or_default() += 1;
+    let count = labels.iter().map(|l| *l as usize + 1).max().unwrap_or(0);
+    let mut sizes = vec![0; count];
+    labels.iter().for_each(|l| sizes[*l as usize] += 1);
+    let mut shared: Vec<BTreeMap<u32, usize>> = vec![BTreeMap::new(); count];
+    for f in 0..labels.len() {
+        for (_, g) in surface.around(f).filter(|&(_, g)| labels[g] != labels[f]) {
+            *shared[labels[f] as usize].entry(labels[g]).or_default() += 1;
         }
-        let mut shared: BTreeMap<u32, BTreeMap<u32, usize>> = BTreeMap::new();
-        for f in 0..labels.len() {
-            if sizes[&labels[f]] < min_faces {
-                for (_, g) in surface.around(f).filter(|&(_, g)| labels[g] != labels[f]) {
-                    *shared.entry(labels[f]).or_default().entry(labels[g]).or_default() += 1;
-                }
+    }
+    let mut home: Vec<u32> = (0..count as u32).collect();
+    let mut small: BTreeSet<(usize, u32)> =
+        (0..count as u32).map(|l| (sizes[l as usize], l)).filter(|(size, _)| *size < min_faces).collect();
+    while let Some((size, gone)) = small.pop_first() {
+        let neighbours = std::mem::take(&mut shared[gone as usize]);
+        // The smallest name where several have most edges.
+        let majority = neighbours.iter().max_by_key(|(label, edges)| (**edges, Reverse(**label)));
+        let Some((&kept, _)) = majority else { continue };
+        home[gone as usize] = kept;
+        small.remove(&(sizes[kept as usize], kept));
+        sizes[kept as usize] += size;
+        if sizes[kept as usize] < min_faces {
+            small.insert((sizes[kept as usize], kept));
+        }
+        for (third, edges) in neighbours {
+            shared[third as usize].remove(&gone);
+            if third != kept {
+                *shared[third as usize].entry(kept).or_default() += edges;
+                *shared[kept as usize].entry(third).or_default() += edges;
             }
         }
-        let Some((&gone, neighbours)) = shared.iter().min_by_key(|(label, _)| (sizes[label], **label)) else {
-            return contiguous(&labels);
-        };
-        let majority = neighbours.iter().max_by_key(|(label, edges)| (**edges, std::cmp::Reverse(**label)));
-        let kept = majority.map_or(gone, |(label, _)| *label);
-        labels.iter_mut().filter(|label| **label == gone).for_each(|label| *label = kept);
     }
+    for label in &mut labels {
+        while home[*label as usize] != *label {
+            *label = home[*label as usize];
+        }
+    }
+    contiguous(&labels)
 }
 
 /// The pieces of the dual graph with only the edges that `joins`.
