@@ -33,6 +33,9 @@ pub struct Segmentation {
     /// The fidelity weight at the end.
     #[pyo3(get)]
     fidelity: f64,
+    /// The values of epsilon that it went through, (k,) float64.
+    #[pyo3(get)]
+    epsilons: Py<PyArray1<f64>>,
     /// How often indicator and signal took turns.
     #[pyo3(get)]
     alternations: usize,
@@ -92,8 +95,8 @@ impl Segmentation {
 /// ----------
 /// mesh : Mesh with positions
 /// values : (n,) or (n,k) array, the signal, k ≤ 16; None for the positions. A signal is scaled to a range of 1
-/// length_weight : float > 0, what a border costs per length: of two parts of a shape that meet at an edge bent by less than about
-///     this (radians) one is made; smaller gives more segments
+/// length_weight : float > 0, what a border costs per length: two parts of a shape that meet at an edge bent by less than about 0.8
+///     times this (radians) become one; smaller gives more segments
 /// fidelity : float > 0, how closely u follows the signal; None: as the noise found in the signal wants it (1000 for "paper")
 /// epsilon_start, epsilon_end : widths of the bands in which v falls, in the unit that `scale` sets; "fitted" goes no lower than
 ///     the mesh is fine
@@ -187,6 +190,7 @@ pub fn segment(
         boundary_edges: arrays::index_rows(py, &found.boundary_edges).unbind(),
         noise: found.noise,
         fidelity: found.fidelity,
+        epsilons: found.epsilons.into_pyarray(py).unbind(),
         alternations: found.alternations,
         status: found.status.name(),
         hierarchy: found.hierarchy,

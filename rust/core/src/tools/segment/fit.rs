@@ -1,12 +1,20 @@
 //! What a segment would look like at a face if it went on there: a plane, or a quadratic function fitted to its faces nearby.
 
 use super::surface::Surface;
-use crate::mesh::vector::{cross, dot, norm, scale, sub, unit};
+use crate::mesh::vector::{add, cross, dot, norm, scale, sub, unit, Point};
 use crate::solve::eigen::symmetric_eigen;
 use crate::solve::Columns;
 
-/// Faces of a segment that a local fit looks at.
-const NEARBY: usize = 60;
+/// Faces of a segment that a local fit looks at: few where the surface is clean and may be curved, more where noise has to be
+/// averaged out; as many more for each mean edge of noise, up to a limit.
+const NEARBY: f64 = 20.0;
+const NEARBY_OF_NOISE: f64 = 400.0;
+const MOST_NEARBY: f64 = 60.0;
+
+/// How many faces a local fit looks at where the noise is this part of a mean edge.
+pub(super) fn patch_size(noise: f64) -> usize {
+    (NEARBY + NEARBY_OF_NOISE * noise).min(MOST_NEARBY) as usize
+}
 
 /// Coefficients of `1, s, t, s², st, t²`.
 const TERMS: usize = 6;
@@ -46,7 +54,16 @@ impl Plane {
             }
         }
         let (values, vectors) = symmetric_eigen(moments);
-        Some(Self { normal: std::array::from_fn(|c| vectors[0][c]), center, spread: values[0].max(0.0).sqrt() })
+        let normal = std::array::from_fn(|c| vectors[0][c]);
+        // The side that the faces show.
+        let outward: f64 = faces.iter().map(|&f| dot(surface.vector_area(f as usize), normal)).sum();
+        let normal = scale(normal, outward.signum());
+        Some(Self { normal, center, spread: values[0].max(0.0).sqrt() })
+    }
+
+    /// The unit normal, to the side that the faces show.
+    pub fn normal(&self) -> Point {
+        self.normal
     }
 
     /// The distance of `p`.
@@ -121,17 +138,30 @@ impl Patch {
         let at = |c: &[f64; TERMS]| terms.iter().zip(c).map(|(t, c)| t * c).sum::<f64>();
         match signal {
             None => {
-                let c = &self.coefficients[0];
-                let slope =
-                    [c[1] + 2.0 * c[3] * terms[1] + c[4] * terms[2], c[2] + c[4] * terms[1] + 2.0 * c[5] * terms[2]];
+                let slope = self.slope(&terms);
                 let steepness = (1.0 + slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
-                self.scale * (height - at(c)).abs() / steepness
+                self.scale * (height - at(&self.coefficients[0])).abs() / steepness
             }
             Some(signal) => {
                 let squares = self.coefficients.iter().enumerate().map(|(k, c)| (signal.column(k)[v] - at(c)).powi(2));
                 squares.sum::<f64>().sqrt()
             }
         }
+    }
+}
+
+impl Patch {
+    /// The slope of the first column at a point with these terms.
+    fn slope(&self, terms: &[f64; TERMS]) -> [f64; 2] {
+        let c = &self.coefficients[0];
+        [c[1] + 2.0 * c[3] * terms[1] + c[4] * terms[2], c[2] + c[4] * terms[1] + 2.0 * c[5] * terms[2]]
+    }
+
+    /// The unit normal of the continued patch of a shape at `p`.
+    pub fn normal(&self, p: Point) -> Point {
+        let [s, t] = self.slope(&self.terms(p).0);
+        let [first, second, up] = self.axes;
+        unit(sub(up, add(scale(first, s), scale(second, t))))
     }
 }
 
@@ -166,15 +196,21 @@ fn solve(mut a: [[f64; TERMS]; TERMS], mut b: [f64; TERMS]) -> [f64; TERMS] {
     b
 }
 
-/// The faces of the segment of `start` that are nearest to it in steps over edges, those at the border left out if there are
-/// others; `seen` marks faces by `stamp`.
-pub(super) fn nearby(surface: &Surface<'_>, labels: &[u32], start: usize, seen: &mut [u32], stamp: u32) -> Vec<u32> {
+/// The `count` faces of the segment of `start` that are nearest to it in steps over edges. Those at the border may be in the wrong
+/// segment and are left out, unless they are most of those nearby. `seen` marks faces by `stamp`.
+pub(super) fn nearby(
+    surface: &Surface<'_>,
+    labels: &[u32],
+    start: usize,
+    count: usize,
+    (seen, stamp): (&mut [u32], u32),
+) -> Vec<u32> {
     let label = labels[start];
     let mut queue = vec![start as u32];
-    let mut inside = Vec::with_capacity(NEARBY);
+    let mut inside = Vec::with_capacity(count);
     seen[start] = stamp;
     let mut next = 0;
-    while next < queue.len() && inside.len() < NEARBY {
+    while next < queue.len().min(2 * count) && inside.len() < count {
         let f = queue[next] as usize;
         next += 1;
         if !surface.is_at_border(labels, f) {
@@ -187,7 +223,8 @@ pub(super) fn nearby(surface: &Surface<'_>, labels: &[u32], start: usize, seen: 
             }
         }
     }
-    if inside.is_empty() {
+    if 3 * inside.len() < next.min(count) {
+        queue.truncate(next.min(count));
         queue
     } else {
         inside

@@ -55,6 +55,8 @@ pub struct Segmentation {
     pub noise: f64,
     /// The fidelity weight at the end.
     pub fidelity: f64,
+    /// The values of `ε`, from the first to the last.
+    pub epsilons: Vec<f64>,
     /// How often indicator and signal took turns.
     pub alternations: usize,
     /// `Solved`, or `Stopped` if the caller asked to finish early: then with fewer values of `ε`.
@@ -106,6 +108,7 @@ fn whole(
     let start = signal.as_ref().map_or_else(|| Columns::from_points(&surface.positions), |s| s.normalised.clone());
     let degrees = values.map_or(1, |v| v.n_columns);
     let noise = noise_level(&surface, &start, degrees);
+    let epsilons = options.epsilons(LEAST_EPSILON * surface.mean_edge);
     let found = Functional {
         surface: &surface,
         values: &start,
@@ -113,7 +116,7 @@ fn whole(
         face_costs: &options.face_costs(&surface.costs),
         fidelity: options.starting_fidelity(),
         noise: options.fidelity.is_none().then_some(noise),
-        epsilons: options.epsilons(LEAST_EPSILON * surface.mean_edge),
+        epsilons: epsilons.clone(),
         inner_tolerance: options.inner_tolerance,
         solver: options.solve.solver,
         settings: *settings,
@@ -143,6 +146,7 @@ fn whole(
         hierarchy,
         noise: noise * signal.as_ref().map_or(unit, |s| s.range),
         fidelity: found.fidelity,
+        epsilons,
         alternations: found.alternations,
         status: found.status,
     })
