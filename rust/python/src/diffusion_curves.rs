@@ -126,7 +126,7 @@ pub fn diffusion_curves(
     let regions = tools::SegmentOptions {
         n_segments: n_regions.map(|count| options::at_least(py, "n_regions", count, 1)).transpose()?,
         length_weight,
-        min_faces: options::at_least(py, "min_faces", min_faces, 0)?,
+        min_faces: Some(options::at_least(py, "min_faces", min_faces, 0)?),
         ..tools::SegmentOptions::default()
     };
     let options = tools::DiffusionCurvesOptions { fidelity, rims, refine, color_error };
