@@ -69,18 +69,20 @@ class DiffusionCurves(Run):
         settings = self.settings
         faces = mesh_io.triangle_faces(obj.data)[surface.weld.kept]
         if settings.regions == "COLORS":
-            options = {"n_segments": settings.count or None, "min_faces": settings.least_faces}
-            find = partial(_found, surface.mesh, values, faces, options)
+            regions = {
+                "n_regions": settings.count or None,
+                "min_faces": settings.least_faces,
+                "face_groups": faces,
+            }
         else:
-            labels = _face_labels(obj, settings)[faces]
-            find = partial(_given, labels)
+            regions = {"labels": _face_labels(obj, settings)[faces]}
         options = {
             "fidelity": settings.fidelity,
             "rims": settings.rims,
             "refine": settings.refine,
             "color_error": settings.color_error,
         }
-        return partial(_drawn, surface.mesh, values, find, options)
+        return partial(_drawn, surface.mesh, values, regions | options)
 
     def write(self, parts: Sequence[DiffusionPart]) -> None:
         """Write the curves as child objects and the rebuilt colours as an attribute, and show them."""
@@ -139,37 +141,7 @@ def _face_labels(obj: bpy.types.Object, settings: object) -> np.ndarray:
     return labels
 
 
-def _given(labels: np.ndarray, _progress: ridgeform.Progress) -> np.ndarray:
-    return labels
-
-
-def _found(
-    mesh: ridgeform.Mesh,
-    values: np.ndarray,
-    faces: np.ndarray,
-    options: dict[str, object],
-    progress: ridgeform.Progress,
-) -> np.ndarray:
-    """The regions (m,) of the triangles by their colours; all triangles of a face are in one."""
-    found = ridgeform.segment(mesh, values=values, progress=progress, **options)
-    return majority(found.labels, faces)
-
-
-def majority(labels: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Labels (m,) of triangles with that of most triangles of the same face (m,), the lowest of equals."""
-    pairs, counts = np.unique(np.stack([faces, labels], axis=1), axis=0, return_counts=True)
-    # By face, then most first, then lowest label.
-    order = np.lexsort((pairs[:, 1], -counts, pairs[:, 0]))
-    winners = pairs[order]
-    first = np.searchsorted(winners[:, 0], faces)
-    return winners[first, 1]
-
-
 def _drawn(
-    mesh: ridgeform.Mesh,
-    values: np.ndarray,
-    find: partial,
-    options: dict[str, object],
-    progress: ridgeform.Progress,
+    mesh: ridgeform.Mesh, values: np.ndarray, options: dict[str, object], progress: ridgeform.Progress
 ) -> ridgeform.DiffusionCurves:
-    return ridgeform.diffusion_curves(mesh, values, labels=find(progress), progress=progress, **options)
+    return ridgeform.diffusion_curves(mesh, values, progress=progress, **options)

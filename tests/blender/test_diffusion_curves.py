@@ -159,6 +159,18 @@ def test_setting_colours_with_blenders_own_operator():
     assert np.allclose(corner_colors(obj)[0], (1.0, 1.0, 0.0, 1.0), atol=1e-5)
 
 
+@pytest.mark.parametrize("count", [0, 2])
+def test_regions_are_found_by_their_colours_and_keep_faces_whole(count):
+    obj = add_plane(lambda p: np.where(np.hypot(*(p - 0.5).T)[:, None] < 0.3, RED, BLUE), cells=24)
+    assert find(regions="COLORS", count=count) == {"FINISHED"}
+    (entry,) = job.last_summary()
+    assert entry["regions"] == 2
+    assert entry["psnr"] is None or entry["psnr"] > 60
+    corners = corner_colors(obj).reshape(-1, 4, 4)
+    assert np.abs(corners - corners[:, :1]).max() < 0.01
+    assert len(curves_io.curves_of(obj).data.curves) == 1
+
+
 def test_one_region_has_a_colour_point_and_loose_pieces_too():
     obj = add_plane(lambda p: np.tile(np.float32(RED), (len(p), 1)))
     find()

@@ -375,6 +375,7 @@ def diffusion_curves(
     n_regions: int | None = None,
     length_weight: float = 0.5,
     min_faces: int = 20,
+    face_groups: ArrayLike | None = None,
     fidelity: float = 1e3,
     rims: bool = False,
     refine: bool = True,

@@ -74,7 +74,8 @@ impl DiffusionCurves {
 
 /// The curves along the borders of regions, with a colour on each side, that rebuild a painted surface.
 ///
-/// The regions are those given, or else what `segment` finds with the colours as its signal and one norm for all channels.
+/// The regions are those given, or else what `segment` finds with the colours as its signal and one norm for all channels; their
+/// borders are then moved until no vertex beside them has the colour of the other side.
 /// On each piece of the surface cut open along the borders, min uᵀ L u + fidelity (u - colors)ᵀ M (u - colors) is solved with the
 /// cotangent Laplacian L; its values at the borders are the colours of the curves, and `redraw` rebuilds the surface from them.
 /// A vertex on a border counts for the side whose colour is nearest, and for none where it is nearer to their mean. All colours stay within the range of those given, channel
@@ -86,6 +87,8 @@ impl DiffusionCurves {
 /// colors : (n,) or (n,c) array, a colour a vertex, usually between 0 and 1
 /// labels : (m,) array of whole numbers, the region of each face; None to find regions by their colours
 /// n_regions, length_weight, min_faces : for finding regions: `n_segments`, `length_weight` and `min_faces` of `segment`
+/// face_groups : (m,) array of whole numbers ≥ 0 or None: faces with the same number, the triangles of a polygon, are found in one
+///     region
 /// fidelity : float > 0; colours are smoothed over a length of 1 / √fidelity times the square root of the surface's area
 /// rims : the rims of an open mesh are curves too, with the colours of their one side
 /// refine : improve the colours of the curves by least squares until the rebuilt surface is closest to `colors`
@@ -104,7 +107,7 @@ impl DiffusionCurves {
 /// ----------
 /// Rowe et al. 2024, section 7.6, eqs. (26) and (27); Orzan et al. 2008.
 #[pyfunction]
-#[pyo3(signature = (mesh, colors, *, labels=None, n_regions=None, length_weight=0.5, min_faces=20, fidelity=1e3, rims=false,
+#[pyo3(signature = (mesh, colors, *, labels=None, n_regions=None, length_weight=0.5, min_faces=20, face_groups=None, fidelity=1e3, rims=false,
     refine=true, color_error=0.0, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn diffusion_curves(
@@ -115,6 +118,7 @@ pub fn diffusion_curves(
     n_regions: Option<i64>,
     length_weight: f64,
     min_faces: i64,
+    face_groups: Option<&Bound<'_, PyAny>>,
     fidelity: f64,
     rims: bool,
     refine: bool,
@@ -123,6 +127,7 @@ pub fn diffusion_curves(
 ) -> PyResult<DiffusionCurves> {
     let colors = columns::read("colors", colors, mesh.n_vertices(), "vertex")?;
     let labels = labels.map(|given| read_labels(given, mesh.n_faces())).transpose()?;
+    let groups = face_groups.map(|given| read_groups(given, mesh.n_faces())).transpose()?;
     let regions = tools::SegmentOptions {
         n_segments: n_regions.map(|count| options::at_least(py, "n_regions", count, 1)).transpose()?,
         length_weight,
@@ -134,7 +139,10 @@ pub fn diffusion_curves(
     let (labels, found) = doorway::call(py, &progress, || {
         let labels = match labels {
             Some(labels) => labels,
-            None => tools::segment(mesh.inner(), Some(&colors.columns), &regions, &progress)?.labels,
+            None => {
+                let groups = groups.as_deref();
+                tools::color_regions(mesh.inner(), &colors.columns, &regions, groups, fidelity, &progress)?
+            }
         };
         let found = tools::diffusion_curves(mesh.inner(), &colors.columns, &labels, &options, &progress)?;
         Ok((labels, found))
@@ -256,6 +264,15 @@ fn read_labels(object: &Bound<'_, PyAny>, n_faces: usize) -> PyResult<Vec<i32>> 
         i32::try_from(label).map_err(|_| argument(py, "labels", format!("{label} is too large for 32 bits")))
     };
     labels.iter().map(narrow).collect()
+}
+
+fn read_groups(object: &Bound<'_, PyAny>, n_faces: usize) -> PyResult<Vec<u32>> {
+    let py = object.py();
+    let groups = arrays::integers("face_groups", object)?.exactly(py, "face_groups", n_faces, "face")?;
+    let narrow = |&group: &i64| {
+        u32::try_from(group).map_err(|_| argument(py, "face_groups", format!("{group} is not from 0 to 2^32 - 1")))
+    };
+    groups.iter().map(narrow).collect()
 }
 
 fn read_edges(object: &Bound<'_, PyAny>, n_vertices: usize) -> PyResult<Vec<[u32; 2]>> {

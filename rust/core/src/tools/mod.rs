@@ -16,7 +16,10 @@ mod stylize;
 mod unseen;
 
 pub use denoise::{denoise, DenoiseOptions};
-pub use diffusion_curves::{diffusion_curves, redraw, ColoredCurves, DiffusionCurves, DiffusionCurvesOptions, Redrawn};
+pub use diffusion_curves::{
+    color_regions, diffusion_curves, follow_colors, redraw, ColoredCurves, DiffusionCurves, DiffusionCurvesOptions,
+    Redrawn,
+};
 pub use energy_options::EnergyOptions;
 pub use fill_holes::{fill_holes, FillHolesOptions, Filled, FilledHole, HoleStatus, LoopChoice, Sharpness};
 pub use interpolate::interpolate;

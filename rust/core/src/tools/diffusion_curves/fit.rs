@@ -118,7 +118,8 @@ impl Task<'_> {
         Columns { n_rows: vertices.len(), n_columns: self.colors.n_columns, data }
     }
 
-    fn copies(&self) -> Vec<Vec<u32>> {
+    /// The copies of every vertex.
+    pub fn copies(&self) -> Vec<Vec<u32>> {
         let mut copies = vec![Vec::new(); self.colors.n_rows];
         (0..).zip(&self.cut.vertices).for_each(|(copy, &v)| copies[v as usize].push(copy));
         copies

@@ -1,7 +1,7 @@
 //! Diffusion curves: the few curves, with a colour on each side, that redraw a painted surface (Rowe et al. 2024,
 //! section 7.6).
 //!
-//! Regions → [`chains`] (the edges between them, as curves) → [`fit`] (colours along the curves, (27)) → [`borders`],
+//! [`regions`] → [`chains`] (the edges between them, as curves) → [`fit`] (colours along the curves, (27)) → [`borders`],
 //! [`thinning`] (what is stored) → [`redraw()`] ((26)); fit and drawing on the Laplacian of [`membrane`].
 
 mod borders;
@@ -9,9 +9,11 @@ mod chains;
 mod fit;
 mod membrane;
 mod redraw;
+mod regions;
 mod thinning;
 
 pub use redraw::{redraw, ColoredCurves, Redrawn};
+pub use regions::{color_regions, follow_colors};
 
 use super::options::check_range;
 use crate::error::MeshError;
@@ -84,13 +86,8 @@ pub fn diffusion_curves(
 ) -> Result<DiffusionCurves> {
     let connectivity = mesh.connectivity();
     colors.check("colors", connectivity.n_vertices())?;
-    if labels.len() != connectivity.n_faces() {
-        let problem = format!("has {} entries, expected one per face: {}", labels.len(), connectivity.n_faces());
-        return Err(Error::argument("labels", problem));
-    }
-    if !(options.fidelity > 0.0 && options.fidelity.is_finite()) {
-        return Err(Error::argument("fidelity", format!("is {}; it must be positive", options.fidelity)));
-    }
+    check_labels(labels, connectivity.n_faces())?;
+    check_fidelity(options.fidelity)?;
     check_range("color_error", options.color_error, 0.0, f64::MAX)?;
     let area: f64 = mesh.edge_lengths().iter().map(|&l| triangle::area(l)).sum();
     if area <= 0.0 {
@@ -134,6 +131,20 @@ pub fn diffusion_curves(
     let error = mean_squared_error(&redrawn.colors, colors, &mass);
     let n_numbers = borders.n_numbers(&curves, knots.as_deref());
     Ok(DiffusionCurves { curves, starts, redrawn, sides, error, n_numbers })
+}
+
+fn check_labels(labels: &[i32], n_faces: usize) -> Result<()> {
+    if labels.len() == n_faces {
+        return Ok(());
+    }
+    Err(Error::argument("labels", format!("has {} entries, expected one per face: {n_faces}", labels.len())))
+}
+
+fn check_fidelity(fidelity: f64) -> Result<()> {
+    if fidelity > 0.0 && fidelity.is_finite() {
+        return Ok(());
+    }
+    Err(Error::argument("fidelity", format!("is {fidelity}; it must be positive")))
 }
 
 /// A vertex for every piece of surface without a curve, and the mean colour of the piece.
