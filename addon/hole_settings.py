@@ -114,7 +114,7 @@ def hole_options(settings: object) -> dict[str, object]:
         # Without a step of the flow the smooth patch that it starts from is left.
         "iterations": 0 if settings.shape == "SMOOTH" else settings.iterations,
         "fidelity": settings.fidelity,
-        "sharpness": settings.sharpness if settings.shape == "SHARP" else "auto",
+        "sharpness": {"AUTO": "auto", "SMOOTH": 0.0, "SHARP": settings.sharpness}[settings.shape],
         "coupling": settings.coupling,
     }
 

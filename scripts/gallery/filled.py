@@ -142,7 +142,7 @@ def draw(folder: Path) -> dict[str, str]:
             color = np.where(new[:, None], PATCH, pictures.CLAY)
             row.append(
                 (
-                    f"{way}, {seconds:.1f} s",
+                    way,
                     pictures.render(filled.vertices, filled.faces, color=color, **look),
                 )
             )

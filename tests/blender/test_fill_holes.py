@@ -64,6 +64,17 @@ def test_the_edge_of_a_box_comes_back():
     assert entry["ridge_edges"] > 0
 
 
+def test_smooth_makes_no_ridges():
+    obj = hole_kit.box(n=12, radius=0.5)
+    n = len(obj.data.vertices)
+    bpy.ops.ridgeform.fill_holes(shape="SMOOTH", marks={"SHARP"})
+    (entry,) = job.last_summary()
+    assert (entry["ridge_edges"], entry["steps"]) == (0, 0)
+    new = kit.coordinates(obj)[n:]
+    assert np.minimum(1 - new[:, 0], 1 - new[:, 2]).max() > 0.05
+    assert not any(edge.use_edge_sharp for edge in obj.data.edges)
+
+
 def test_several_holes_and_objects_and_the_report():
     boxes = [hole_kit.box(name=name, centers=(FRONT, BACK)) for name in "AB"]
     for obj in boxes:
