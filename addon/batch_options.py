@@ -178,7 +178,7 @@ def _add_segment(child: argparse.ArgumentParser, defaults: object) -> None:
     add(
         "--make", action="append", choices=words, help="what is made of segments; may be repeated (materials)"
     )
-    add("--min-faces", type=int, help=f"join segments of fewer triangles ({defaults.min_faces})")
+    add("--min-faces", type=int, help="join segments of fewer triangles (0: by the noise)")
     add("--method", choices=("fitted", "paper"), help=f"how borders are found ({defaults.method})")
     add("--cut-threshold", type=float, help=f"with --method paper, 0 to 1 ({defaults.cut_threshold})")
     add("--fidelity", type=float, help="fidelity weight of the paper (from the noise of the mesh)")

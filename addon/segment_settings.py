@@ -57,7 +57,7 @@ class SegmentSettings(RidgeSettings, SolverChoice):
     length_weight: FloatProperty(
         name="Border Cost",
         description="What a border costs for its length (λ of the paper). Two parts of a shape become one "
-        "segment if they meet at an edge that bends by less than about this angle in radians (0.5: 29°). "
+        "segment if they meet at an edge that bends by less than an angle of about 0.8 of this (0.5: 23°). "
         "Larger gives fewer segments, smaller more",
         default=0.5,
         min=1e-4,
@@ -89,8 +89,9 @@ class SegmentSettings(RidgeSettings, SolverChoice):
     )
     min_faces: IntProperty(
         name="Least Faces",
-        description="Segments of fewer triangles are joined to a neighbour",
-        default=4,
+        description="Segments of fewer triangles are joined to a neighbour. 0: as many as the noise of the "
+        "mesh asks for",
+        default=0,
         min=0,
         soft_max=200,
     )
@@ -175,7 +176,7 @@ def segment_options(settings: object) -> dict[str, object]:
         "epsilon_start": settings.epsilon_start,
         "epsilon_end": settings.epsilon_end,
         "cut_threshold": settings.cut_threshold,
-        "min_faces": settings.min_faces,
+        "min_faces": settings.min_faces or None,
         "method": settings.method,
         "scale": settings.scale,
         "solver": settings.solver,
