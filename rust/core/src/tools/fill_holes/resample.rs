@@ -36,6 +36,16 @@ pub(super) fn resample(
             mesh.forbid_edge(a, b);
         }
     }
+    for (f, [a, b, c]) in region.patch_faces() {
+        for (tail, head) in [(a, b), (b, c), (c, a)] {
+            let across = region.mesh.wings(tail, head).and_then(|w| w.faces.into_iter().find(|&g| g != f));
+            if let (Some(across), Some(a), Some(b)) = (across, place(tail), place(head)) {
+                if !region.is_patch(across) {
+                    mesh.set_beyond(a, b, region.mesh.area_vector(across));
+                }
+            }
+        }
+    }
     let surface = Surface::of(&mesh);
     let fixed: Vec<bool> = (0..mesh.n_vertices()).map(|v| v < n).collect();
     let keep = Keep { fixed: &fixed, fixed_faces: false, feature_cosine: ridge.cos() };

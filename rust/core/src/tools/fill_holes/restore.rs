@@ -11,6 +11,7 @@ use super::start::smooth;
 use super::{FillHolesOptions, HoleStatus, Sharpness};
 use crate::operators::Energy;
 use crate::progress::Progress;
+use crate::remesh::guard::worst_bend;
 use crate::Result;
 
 /// Rounds of the smooth start: the third moves the patch by a hundredth of an edge.
@@ -41,6 +42,10 @@ const SWEEPS: usize = 10;
 /// A patch whose vertices all moved by less than this part of its mean edge in a cycle rests.
 const STILL: f64 = 1e-3;
 
+/// A patch with a bend beyond this (140 degrees) is folded, unless its smooth start or its rim had such a bend: the last one
+/// without is taken.
+const FOLD_COSINE: f64 = -0.77;
+
 /// How one patch ended.
 pub(super) struct Restored {
     pub sharpness: f64,
@@ -50,13 +55,15 @@ pub(super) struct Restored {
     pub iterations: usize,
 }
 
-/// Moves the patch of `region` to where the surface around it goes on; `watch` is told how much is done, the steps so far
-/// and the energy.
+/// Hears of every cycle: the region, how much is done, the steps so far, the energy.
+pub(super) type Watch<'a> = dyn FnMut(&Region, f64, usize, Option<f64>) + 'a;
+
+/// Moves the patch of `region` to where the surface around it goes on; `watch` hears of every cycle.
 pub(super) fn restore(
     region: &mut Region,
     options: &FillHolesOptions,
     progress: &Progress,
-    watch: &mut dyn FnMut(&Region, f64, usize, Option<f64>),
+    watch: &mut Watch<'_>,
 ) -> Result<Restored> {
     smooth(region, Energy::L2Laplacian, SMOOTH_ROUNDS, progress)?;
     watch(region, 0.05, 0, None);
@@ -71,6 +78,8 @@ pub(super) fn restore(
         return Ok(restored);
     }
     let ridge = RIDGE * least.unwrap_or(1.0);
+    let mut sound = region.clone();
+    let worst = worst_bend(&region.mesh).min(FOLD_COSINE);
     restored.status = HoleStatus::Finished;
     let cycles = options.iterations.div_ceil(STEPS);
     for cycle in 1..=cycles {
@@ -89,6 +98,9 @@ pub(super) fn restore(
         restored.gap = flowed.gap;
         restored.iterations += steps;
         watch(region, 0.05 + 0.9 * cycle as f64 / cycles as f64, restored.iterations, Some(flowed.energy[1]));
+        if worst_bend(&region.mesh) >= worst {
+            sound.clone_from(region);
+        }
         if cycle > SNAP_FROM && moved < STILL * typical_edge(&region.mesh) {
             restored.status = HoleStatus::Converged;
             break;
@@ -100,13 +112,26 @@ pub(super) fn restore(
     }
     if sharpness > 0.0 && cycles > 0 {
         resample(region, options.edge_length, ridge, RESAMPLE_ROUNDS, progress)?;
-        for _ in 0..FAIR_ROUNDS {
-            flip_along_ridges(region, SWEEPS);
-            fair(region, ridge, progress)?;
+        finish(region, ridge, progress)?;
+        if worst_bend(&region.mesh) < worst {
+            region.clone_from(&sound);
+            finish(region, ridge, progress)?;
         }
         watch(region, 1.0, restored.iterations, Some(restored.energy[1]));
     }
+    if worst_bend(&region.mesh) < worst {
+        *region = sound;
+    }
     Ok(restored)
+}
+
+/// Makes the parts between ridges smooth.
+fn finish(region: &mut Region, ridge: f64, progress: &Progress) -> Result<()> {
+    for _ in 0..FAIR_ROUNDS {
+        flip_along_ridges(region, SWEEPS);
+        fair(region, ridge, progress)?;
+    }
+    Ok(())
 }
 
 /// Turns the edges of the patch along its ridges and snaps its vertices onto them; returns the longest move, infinite where an

@@ -109,10 +109,13 @@ fn step(region: &Region, surface: &Surface, v: u32, how: &Snapping) -> Point {
     add(step, slide)
 }
 
+/// Sweeps of rotations at most; they converge quadratically, after four or five.
+const ROTATIONS: usize = 30;
+
 /// Eigenvalues and unit eigenvectors of a symmetric matrix, by Jacobi rotations.
-pub(super) fn eigen(mut a: [[f64; 3]; 3]) -> ([f64; 3], [Point; 3]) {
+fn eigen(mut a: [[f64; 3]; 3]) -> ([f64; 3], [Point; 3]) {
     let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    for _ in 0..30 {
+    for _ in 0..ROTATIONS {
         let off = a[0][1].abs() + a[0][2].abs() + a[1][2].abs();
         if off <= 1e-300 || off <= 1e-15 * (a[0][0].abs() + a[1][1].abs() + a[2][2].abs()) {
             break;
@@ -125,17 +128,13 @@ pub(super) fn eigen(mut a: [[f64; 3]; 3]) -> ([f64; 3], [Point; 3]) {
             let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
             let c = 1.0 / (t * t + 1.0).sqrt();
             let s = t * c;
-            for k in 0..3 {
-                let (x, y) = (a[k][p], a[k][q]);
-                (a[k][p], a[k][q]) = (c * x - s * y, s * x + c * y);
+            let turn = |x: f64, y: f64| (c * x - s * y, s * x + c * y);
+            for row in a.iter_mut().chain(&mut v) {
+                (row[p], row[q]) = turn(row[p], row[q]);
             }
-            for k in 0..3 {
-                let (x, y) = (a[p][k], a[q][k]);
-                (a[p][k], a[q][k]) = (c * x - s * y, s * x + c * y);
-            }
-            for row in &mut v {
-                let (x, y) = (row[p], row[q]);
-                (row[p], row[q]) = (c * x - s * y, s * x + c * y);
+            let (first, second) = (a[p], a[q]);
+            for (k, (&x, &y)) in first.iter().zip(&second).enumerate() {
+                (a[p][k], a[q][k]) = turn(x, y);
             }
         }
     }
