@@ -2,7 +2,7 @@
 PYTHON ?= python3
 RUN = @$(PYTHON) scripts/setup_env.py
 
-.PHONY: help demo test lint bench bench-holes extension wheel fixtures pictures gallery
+.PHONY: help demo test lint bench bench-holes bench-segments extension wheel fixtures pictures gallery
 
 help:
 	@echo "make demo        stylize a real scan in Blender, without a window: out/demo.png, out/demo.blend"
@@ -11,6 +11,7 @@ help:
 	@echo "make bench       measure against peers: benchmarks/results.md, the table in the README"
 	@echo "                 ARGS=--quick: a minute, keeps nothing; ARGS=--large: a million vertices as well"
 	@echo "make bench-holes fill holes with known truth by every tool: benchmarks/holes.md"
+	@echo "make bench-segments  segment shapes of known parts: benchmarks/segments.md"
 	@echo "make wheel       build the Python wheel"
 	@echo "make extension   build and check the Blender extension: .ridgeform/extension/"
 	@echo "make fixtures    make the .blend files of blend_fixtures/ again"
@@ -31,6 +32,9 @@ bench:
 
 bench-holes:
 	$(RUN) benchmarks/holes.py $(ARGS)
+
+bench-segments:
+	$(RUN) benchmarks/segments.py $(ARGS)
 
 extension:
 	$(RUN) scripts/build_extension.py

@@ -2,9 +2,9 @@
 
     python scripts/setup_env.py benchmarks/segments.py [--only WORDS] [--levels N ...] [--site FOLDER]
 
-`--only` takes the shapes with these words in their name, `--levels` some densities: these print and keep nothing.
-`--site` names a folder with the package `ridgeform`, instead of building the wheel. trimesh gets an environment of
-its own; Blender's linked-flat selection is written again in NumPy.
+`--only` takes the shapes with these words in their name, `--levels` some densities: these print and keep
+nothing. `--site` names a folder with the package `ridgeform`, instead of building the wheel. trimesh gets an
+environment of its own; Blender's linked-flat selection is written again in NumPy.
 """
 
 from __future__ import annotations
@@ -146,7 +146,14 @@ def speed() -> str:
         total = time.process_time() - begin
         per_level = total / len(found.epsilons) / unit
         rows.append(
-            [words, str(found.n_segments), duration(total), str(len(found.epsilons)), f"{per_level:.1f}", duration(unit)]
+            [
+                words,
+                str(found.n_segments),
+                duration(total),
+                str(len(found.epsilons)),
+                f"{per_level:.1f}",
+                duration(unit),
+            ]
         )
     head = ["vertices", "segments", "time", "values of ε", "yardsticks for each", "yardstick"]
     return grid(head, rows)
@@ -156,23 +163,25 @@ def main() -> None:
     """Measure, print, and keep the full run."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--only", metavar="WORDS", default="", help="shapes; keeps nothing")
-    parser.add_argument("--levels", nargs="+", type=int, default=list(segment_shapes.LEVELS), help="densities")
+    parser.add_argument(
+        "--levels", nargs="+", type=int, default=list(segment_shapes.LEVELS), help="densities"
+    )
     parser.add_argument("--site", type=Path, help="a folder with the package to be measured")
     given = parser.parse_args()
     if given.site is None:
         build_wheel()
     sys.path.insert(0, str(given.site or WHEEL_SITE))
     rows, passes = [], []
-    for name in (name for name in SHAPES if given.only in name):
-        for level in given.levels:
-            for noise in segment_shapes.NOISES:
-                row, passed = judge(name, level, noise)
-                rows.append(row)
-                passes.append(passed)
-                print(grid([], [row]).splitlines()[-1], flush=True)
+    cases = [(name, level) for level in given.levels for name in SHAPES if given.only in name]
+    for name, level in cases:
+        for noise in segment_shapes.NOISES:
+            row, passed = judge(name, level, noise)
+            rows.append(row)
+            passes.append(passed)
+            print(grid([], [row]).splitlines()[-1], flush=True)
     head = ["shape", "vertices", "noise", "parts", *TITLES, "time"]
     total = f"{sum(passes)} of {len(passes)}"
-    print(total)
+    print(total, flush=True)
     if given.only or given.levels != list(segment_shapes.LEVELS):
         return
     words = INTRODUCTION.format(total=total, angles=", ".join(f"{a:g}" for a in ANGLES))
@@ -181,20 +190,21 @@ def main() -> None:
 
 INTRODUCTION = """# Segments against known truth
 
-`python scripts/setup_env.py benchmarks/segments.py` makes this page. Shapes with known parts
-([segment_shapes.py](../tests/segment_shapes.py)), three densities, Gaussian noise in every coordinate of the given share of the mean
-edge, random rotations. Each cell: segments found, and the adjusted Rand index with the truth, the least of two noises and rotations; one
-set of defaults for all. Bold: the true count and at least 0.98 up to noise of 0.1, at least 0.92 at 0.2 ({total}). *As the paper*:
-`method="paper"` with ε down to 0.02, cut at 0.6, pieces under 20 faces merged. *trimesh facets*: faces in no facet count one by
-one. *Linked flat*: Blender's selection over edges flatter than an angle, the best of {angles} degrees, chosen with the truth.
-Time: processor time of ours, mean.
+`make bench-segments` makes this page. Shapes with known parts
+([segment_shapes.py](../tests/segment_shapes.py)), three densities, Gaussian noise in every coordinate of
+the given share of the mean edge, random rotations. Each cell: segments found, and the adjusted Rand index
+with the truth, the least of two noises and rotations; one set of defaults for all. Bold: the true count and
+at least 0.98 up to noise of 0.1, at least 0.92 at 0.2 ({total}). *As the paper*: `method="paper"` with ε
+down to 0.02, cut at 0.6, pieces under 20 faces merged. *trimesh facets*: faces in no facet count one by
+one. *Linked flat*: Blender's selection over edges flatter than an angle, the best of {angles} degrees,
+chosen with the truth. Time: processor time of ours, mean.
 
 """
 
 SPEED = """
 ## Time
 
-One thread. The yardstick is the quadratic problem (one column, one factorisation, one solution) on the same mesh.
+One thread. The yardstick is the quadratic problem (one column, one factorisation, one solution), same mesh.
 
 """
 

@@ -1,6 +1,6 @@
-"""Label the faces of all meshes of a folder by the facets of trimesh; runs in the environment of `requirements-segments.txt`.
+"""Label the faces of all meshes of a folder by the facets of trimesh; needs `requirements-segments.txt`.
 
-    python benchmarks/segments_peer.py FOLDER
+python benchmarks/segments_peer.py FOLDER
 """
 
 from __future__ import annotations

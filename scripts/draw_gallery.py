@@ -26,6 +26,7 @@ FIGURES = (
     "heights",
     "filled",
     "curves",
+    "segments",
 )
 
 

@@ -1,4 +1,4 @@
-"""A group of buildings as an aerial scan has it: gabled and flat blocks of several sizes, noise, missing parts."""
+"""A group of buildings as an aerial scan has it: gabled and flat blocks, noise, missing parts."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-CELLS = 130
+CELLS = 90
 """Cells of the grid from which the walls rise, along each side."""
 SIDE = 10.0
-EDGE = 0.09
+EDGE = 0.12
 """Edge length of the scan; the smallest roof is 1.6 by 1.2."""
 NOISE = 0.1
 """Standard deviation of the noise, as a share of the mean edge."""
@@ -25,7 +25,7 @@ GAPS = 14
 
 @dataclass(frozen=True)
 class Block:
-    """A building: centre, half length and half width, turn in degrees, height of the eaves, rise of the ridge."""
+    """A building: centre, half sides, turn in degrees, height of the eaves, rise of the ridge."""
 
     center: tuple[float, float]
     half: tuple[float, float]

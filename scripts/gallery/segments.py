@@ -1,4 +1,4 @@
-"""Figures 1 (right), 15, 17 and 18: segmented shapes, a scan of buildings, and what the length weight does."""
+"""Figures 1 (right), 15, 17 and 18: segmented shapes, a scan of buildings, length weights."""
 
 from __future__ import annotations
 
@@ -56,46 +56,63 @@ def segmented(vertices: Array, faces: Indices, **keywords: object) -> Segmentati
     return found
 
 
-def draw(folder: Path) -> dict[str, str]:
-    """The three figures, and the numbers of segments."""
+def row(words: str, vertices: Array, found: Segmentation) -> list[str]:
+    """A row of the table."""
+    return [words, str(len(vertices)), str(found.n_segments), f"{found.range[0]} to {found.range[1]}"]
+
+
+def draw_shapes(path: Path) -> list[list[str]]:
+    """A machine part from two sides, the bust, Spot; rows of the table."""
     from . import panels  # noqa: PLC0415
 
-    rows = []
     part = segment_shapes.fan(1).noisy(0.1, 1)
-    bust, spot = domains.source("bust"), domains.source("spot")
     views = {
         "machine part, noise 0.1": ((part.vertices, part.faces), {"view": (1.0, -1.5, 1.2)}),
         "its other side": ((part.vertices, part.faces), {"view": (-1.2, 1.0, -0.9)}),
-        "bust": (bust, {"view": BUST_VIEW}),
-        "Spot": (spot, {"view": SPOT_VIEW}),
+        "bust": (domains.source("bust"), {"view": BUST_VIEW}),
+        "Spot": (domains.source("spot"), {"view": SPOT_VIEW}),
     }
-    pictures = []
+    pictures, rows = [], []
     for words, ((vertices, faces), look) in views.items():
         found = segmented(vertices, faces)
-        pictures.append((f"{words}: {found.n_segments}", shown(vertices, faces, found.labels, size=270, **look)))
-        rows.append([words, str(len(vertices)), str(found.n_segments), f"{found.range[0]} to {found.range[1]}"])
-    panels.page(folder / "segments.png", pictures, 4)
+        picture = shown(vertices, faces, found.labels, size=270, **look)
+        pictures.append((f"{words}: {found.n_segments}", picture))
+        rows.append(row(words, vertices, found))
+    panels.page(path, pictures, len(pictures))
+    return rows
+
+
+def draw_buildings(path: Path) -> list[list[str]]:
+    """The scan and its segments; a row of the table."""
+    import pictures  # noqa: PLC0415
+
+    from . import panels  # noqa: PLC0415
 
     vertices, faces = buildings.buildings()
     found = segmented(vertices, faces)
     look = {"view": (0.5, -1.0, 1.1), "size": (540, 380), "frame": vertices, "margin": 0.01}
-    import pictures as draw_pictures  # noqa: PLC0415
+    segments = shown(vertices, faces, found.labels, **look)
+    scan = pictures.render(vertices, faces, **look)
+    panels.page(path, [("scan", scan), (f"{found.n_segments} segments", segments)], 2, shades=48)
+    return [row("buildings", vertices, found)]
 
-    panels.page(
-        folder / "segments_buildings.png",
-        [
-            ("scan", draw_pictures.render(vertices, faces, **look)),
-            (f"{found.n_segments} segments", shown(vertices, faces, found.labels, **look)),
-        ],
-        2,
-        shades=48,
-    )
-    rows.append(["buildings", str(len(vertices)), str(found.n_segments), f"{found.range[0]} to {found.range[1]}"])
 
+def draw_weights(path: Path) -> None:
+    """Spot with several length weights."""
+    from . import panels  # noqa: PLC0415
+
+    vertices, faces = domains.source("spot_low_resolution")
     pictures = []
     for weight in WEIGHTS:
-        found = segmented(*bust, length_weight=weight)
-        look = {"view": BUST_VIEW, "size": 230}
-        pictures.append((f"λ {weight:g}: {found.n_segments}", shown(*bust, found.labels, **look)))
-    panels.page(folder / "segments_weights.png", pictures, len(WEIGHTS))
+        found = segmented(vertices, faces, length_weight=weight)
+        picture = shown(vertices, faces, found.labels, view=SPOT_VIEW, size=230)
+        pictures.append((f"λ {weight:g}: {found.n_segments}", picture))
+    panels.page(path, pictures, len(WEIGHTS))
+
+
+def draw(folder: Path) -> dict[str, str]:
+    """The three figures, and the numbers of segments."""
+    rows = draw_shapes(folder / "segments.png")
+    rows += draw_buildings(folder / "segments_buildings.png")
+    draw_weights(folder / "segments_weights.png")
     return {"segments": table(["shape", "vertices", "segments", "nested, from to"], rows)}
