@@ -185,7 +185,7 @@ fn certificates_hold_and_gaps_are_reached_on_larger_problems() {
     let mut tally = Tally::default();
     (1000..1400).for_each(|seed| tally.check(seed, 3000.0));
     // Of gaps down to 1e-8 a few stop just short on slivers, and say so.
-    tally.conclude(0.97);
+    tally.conclude(0.98);
 }
 
 /// Everything in a solution, bit by bit.
