@@ -6,8 +6,8 @@ use super::triangulation::{minimum_weight, TABLE_LIMIT};
 use crate::mesh::vector::{add, area_vector, cross, distance, dot, norm, scale, sub, unit, Point};
 use crate::Progress;
 
-/// Vertices of the coarse polygon. Its table takes a third of the time of a full one.
-const COARSE: usize = 200;
+/// Vertices of the coarse polygon. Its table takes a quarter of the time of the largest full one.
+const COARSE: usize = 250;
 
 /// Triangles as places in the polygon; places from its length on are the extra points.
 pub(super) struct Triangulation {
@@ -23,7 +23,7 @@ pub(super) struct Triangulation {
 /// - Longer polygons: [`COARSE`] of the vertices, denser at corners, form a coarse polygon. The chords of its triangulation of
 ///   minimum weight cut the polygon into parts, one for each coarse triangle, with the whole run of vertices in place of a
 ///   coarse edge. The parts are triangulated in the same way, so that the time grows in proportion to the length; 5000 vertices
-///   take some 0.2 s. The weight is then not the least possible, but no fold across the hole is decided by less than all of it.
+///   take some 0.5 s. The weight is then not the least possible, but no fold across the hole is decided by less than all of it.
 /// - Where every triangulation needs an edge that is taken, a fan around one new point at the middle.
 pub(super) fn triangulate(polygon: &Polygon, rims: &Rims, progress: &Progress) -> Triangulation {
     let mut result = Triangulation { extra: Vec::new(), faces: Vec::new() };

@@ -7,9 +7,9 @@ use super::rims::Rims;
 use crate::mesh::vector::{area_vector, distance, dot, norm, scale, Point};
 use crate::Progress;
 
-/// Polygons of up to this many vertices are triangulated by the full table, whose time grows with the cube: some 0.1 s here.
+/// Polygons of up to this many vertices are triangulated by the full table, whose time grows with the cube: some 0.5 s here.
 /// Longer ones go through [`super::long_loops`].
-pub(super) const TABLE_LIMIT: usize = 300;
+pub(super) const TABLE_LIMIT: usize = 400;
 
 /// Folds are compared in steps of this part of `1 - cos(dihedral angle)`, 2.5 degrees where the surface is flat: finer would
 /// let rounding decide between triangulations of a flat polygon, and not the shape of their triangles.

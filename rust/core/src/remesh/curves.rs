@@ -4,8 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use crate::mesh::vector::{dot, norm, sub, Point};
 use crate::remesh::closest::ClosestPoint;
-use crate::remesh::editable::key;
-use crate::remesh::{Edge, EditableMesh};
+use crate::remesh::{key, Edge, EditableMesh};
 
 /// A vertex where a border or feature line turns by more than this (45 degrees) is a corner, and stays.
 const CORNER_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;

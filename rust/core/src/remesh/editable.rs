@@ -4,6 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use crate::error::MeshError;
 use crate::mesh::vector::{area_vector, Point};
+pub use crate::remesh::edge::{key, Edge, Wings};
 
 /// The corners of a face that was removed.
 const GONE: [u32; 3] = [u32::MAX; 3];
@@ -23,34 +24,6 @@ pub struct EditableMesh {
     faces_of: Vec<Vec<u32>>,
     forbidden: HashSet<[u32; 2]>,
     beyond: HashMap<[u32; 2], Point>,
-}
-
-/// The two faces of an interior edge `a b`, and the vertices opposite it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Wings {
-    /// The face in which `b` follows `a`, and the other one.
-    pub faces: [u32; 2],
-    /// The third vertices of those faces.
-    pub tips: [u32; 2],
-}
-
-/// What lies at a pair of vertices.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Edge {
-    /// No face has both.
-    None,
-    /// One face: its number and its third vertex.
-    Border(u32, u32),
-    /// Two faces that run through the edge in opposite directions.
-    Interior(Wings),
-    /// Three or more faces, or two that disagree on their orientation.
-    NonManifold,
-}
-
-/// The edge's two vertices, smaller first.
-#[must_use]
-pub fn key(a: u32, b: u32) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }
 
 impl EditableMesh {
@@ -89,6 +62,12 @@ impl EditableMesh {
     /// Says along which normal (of any length) a face lies beyond a border edge, in a larger mesh of which this is a part.
     pub fn set_beyond(&mut self, a: u32, b: u32, normal: Point) {
         self.beyond.insert(key(a, b), normal);
+    }
+
+    /// Whether this is a part of a larger mesh ([`EditableMesh::set_beyond`]).
+    #[must_use]
+    pub fn is_part(&self) -> bool {
+        !self.beyond.is_empty()
     }
 
     /// The area vector, or any other normal, of the face across the edge `a b` of a face in which `b` follows `a`; nothing

@@ -6,6 +6,7 @@
 pub mod closest;
 mod collapse;
 pub(crate) mod curves;
+mod edge;
 pub mod editable;
 mod flips;
 pub mod guard;
@@ -16,5 +17,5 @@ mod repair;
 pub(crate) mod sizing;
 mod split;
 
-pub use editable::{Edge, EditableMesh, Wings};
+pub use editable::{key, Edge, EditableMesh, Wings};
 pub use isotropic::{remesh, RemeshOptions, Remeshed};
