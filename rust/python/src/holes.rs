@@ -34,7 +34,7 @@ impl Hole {
 /// area. A tube has none: its two ends are holes. MeshError for a mesh without positions.
 #[pyfunction]
 pub fn find_holes(py: Python<'_>, mesh: &Mesh) -> PyResult<Vec<Hole>> {
-    let holes = doorway::call_briefly(py, || Ok(hole_filling::find_holes(mesh.inner())?))?;
+    let holes = doorway::call_briefly(py, || hole_filling::find_holes(mesh.inner()))?;
     let convert = |hole: hole_filling::Hole| Hole {
         vertices: index_array(py, &hole.vertices).unbind(),
         is_outer_border: hole.is_outer_border,

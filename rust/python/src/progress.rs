@@ -6,6 +6,9 @@ use ridgeform_core as core;
 
 use crate::arrays::{float_rows, index_rows};
 
+/// Vertices (k,3) and faces (j,3) as NumPy arrays.
+type Surface<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i32>>);
+
 /// A handle to pass as `progress=` and to use from another thread while the call runs; make a fresh one for each call.
 #[pyclass(frozen, module = "ridgeform")]
 #[derive(Default)]
@@ -68,7 +71,7 @@ impl Progress {
 
     /// The faces that a call which makes some (`fill_holes`) has made so far: their vertices (k,3) float64 and faces (j,3)
     /// int32 among these, fresh arrays; None before the first.
-    fn snapshot_surface<'py>(&self, py: Python<'py>) -> Option<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i32>>)> {
+    fn snapshot_surface<'py>(&self, py: Python<'py>) -> Option<Surface<'py>> {
         self.inner.surface().map(|(vertices, faces)| (float_rows(py, &vertices), index_rows(py, &faces)))
     }
 
