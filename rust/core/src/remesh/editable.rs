@@ -64,12 +64,6 @@ impl EditableMesh {
         self.beyond.insert(key(a, b), normal);
     }
 
-    /// Whether this is a part of a larger mesh ([`EditableMesh::set_beyond`]).
-    #[must_use]
-    pub fn is_part(&self) -> bool {
-        !self.beyond.is_empty()
-    }
-
     /// The area vector, or any other normal, of the face across the edge `a b` of a face in which `b` follows `a`; nothing
     /// if there is none or it is not known.
     #[must_use]

@@ -10,13 +10,8 @@ pub const LEAST_COSINE: f64 = 0.5;
 /// An edit may make one only if that is better than the worst face before.
 pub const SLIVER: f64 = 0.2;
 
-/// An edit that turns no face by more than this (11 degrees) is not looked at for bends: the surface that vertices are put back
-/// onto keeps small turns from adding up. In a part of a mesh they may add up to a fold against the faces beyond its border.
+/// An edit that turns no face by more than this (11 degrees) makes no fold, and need not be looked at for bends.
 const HARDLY_TURNED: f64 = 0.98;
-
-/// The least cosine between the normals of neighbours after an edit, if none was less before: 120 degrees. Right angles are
-/// common in patches over edges, and slivers beside them must be able to go.
-const SHARPEST: f64 = -0.5;
 
 /// Whether faces in shape `new` may replace what had the normal `normal` (of any length) and the least quality `worst`.
 fn replaces(new: [Point; 3], normal: Point, worst: f64) -> bool {
@@ -25,7 +20,7 @@ fn replaces(new: [Point; 3], normal: Point, worst: f64) -> bool {
 }
 
 /// Whether flipping the edge `a b` is possible ([`EditableMesh::flip`]) and folds nothing: both new faces look the way that
-/// the two old ones do on average, to [`LEAST_COSINE`], no edge around them bends by more than 120 degrees that did not bend
+/// the two old ones do on average, to [`LEAST_COSINE`], no edge around them bends by more than a right angle that did not bend
 /// so before, and no sliver is made where there was none.
 #[must_use]
 pub fn may_flip(mesh: &EditableMesh, a: u32, b: u32) -> bool {
@@ -46,11 +41,11 @@ pub fn may_flip(mesh: &EditableMesh, a: u32, b: u32) -> bool {
             bend = bend.min(cosine(across, after[is]));
         }
     }
-    bend >= before.min(SHARPEST)
+    bend >= before.min(0.0)
 }
 
 /// Whether `v` may move to `position`: no face around it turns by more than [`LEAST_COSINE`], none becomes a sliver that
-/// was none, and no edge there bends by more than 120 degrees if none did before.
+/// was none, and none comes to lie at more than a right angle to a neighbour if none did before.
 #[must_use]
 pub fn may_move(mesh: &EditableMesh, v: u32, position: Point) -> bool {
     keeps_shape(mesh, &[v], position)
@@ -80,8 +75,7 @@ fn keeps_shape(mesh: &EditableMesh, vertices: &[u32], position: Point) -> bool {
         }
         least = least.min(cosine(area_vector(new), old));
     }
-    least > HARDLY_TURNED && !mesh.is_part()
-        || bend_after(mesh, vertices, position) >= bend_before(mesh, vertices).min(SHARPEST)
+    least > HARDLY_TURNED || bend_after(mesh, vertices, position) >= bend_before(mesh, vertices).min(0.0)
 }
 
 /// The least cosine between the normals of neighbours anywhere, those beyond borders included.
