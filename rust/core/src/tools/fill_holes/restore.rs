@@ -33,8 +33,9 @@ const RESAMPLE_ROUNDS: usize = 2;
 /// than 0.6 radians.
 const RIDGE: f64 = 0.6;
 
-/// Rounds that make the parts between ridges smooth; the metric of each is that after the one before.
-const FAIR_ROUNDS: usize = 4;
+/// Rounds that make the parts between ridges smooth, and steps in each; the metric of each step is that after the one before.
+const FAIR_ROUNDS: usize = 3;
+const FAIR_STEPS: usize = 2;
 
 /// Sweeps of flips at most; they end by themselves after three or four.
 const SWEEPS: usize = 10;
@@ -42,9 +43,9 @@ const SWEEPS: usize = 10;
 /// A patch whose vertices all moved by less than this part of its mean edge in a cycle rests.
 const STILL: f64 = 1e-3;
 
-/// A patch with a bend beyond this (140 degrees) is folded, unless its smooth start or its rim had such a bend: the last one
+/// A patch with a bend beyond this (154 degrees) is folded, unless its smooth start or its rim had such a bend: the last one
 /// without is taken.
-const FOLD_COSINE: f64 = -0.77;
+const FOLD_COSINE: f64 = -0.9;
 
 /// How one patch ended.
 pub(super) struct Restored {
@@ -111,11 +112,10 @@ pub(super) fn restore(
         }
     }
     if sharpness > 0.0 && cycles > 0 {
-        resample(region, options.edge_length, ridge, RESAMPLE_ROUNDS, progress)?;
-        finish(region, ridge, progress)?;
+        finish(region, options, ridge, progress)?;
         if worst_bend(&region.mesh) < worst {
             region.clone_from(&sound);
-            finish(region, ridge, progress)?;
+            finish(region, options, ridge, progress)?;
         }
         watch(region, 1.0, restored.iterations, Some(restored.energy[1]));
     }
@@ -125,11 +125,14 @@ pub(super) fn restore(
     Ok(restored)
 }
 
-/// Makes the parts between ridges smooth.
-fn finish(region: &mut Region, ridge: f64, progress: &Progress) -> Result<()> {
+/// Makes the parts between ridges smooth. Between the rounds the patch is remeshed: thin triangles would hold the next one back.
+fn finish(region: &mut Region, options: &FillHolesOptions, ridge: f64, progress: &Progress) -> Result<()> {
     for _ in 0..FAIR_ROUNDS {
-        flip_along_ridges(region, SWEEPS);
-        fair(region, ridge, progress)?;
+        resample(region, options.edge_length, ridge, RESAMPLE_ROUNDS, progress)?;
+        for _ in 0..FAIR_STEPS {
+            flip_along_ridges(region, SWEEPS);
+            fair(region, ridge, progress)?;
+        }
     }
     Ok(())
 }

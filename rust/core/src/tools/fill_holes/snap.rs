@@ -1,5 +1,7 @@
 //! Snapping: vertices near a ridge move onto the intersection of the planes around them.
 
+use rayon::prelude::*;
+
 use super::guard::move_one;
 use super::region::Region;
 use super::surface::Surface;
@@ -54,6 +56,7 @@ pub(super) fn snap(region: &mut Region, how: &Snapping) -> f64 {
     let surface = Surface::of(region);
     let mut moves: Vec<(f64, u32, Point)> = region
         .free()
+        .into_par_iter()
         .map(|v| {
             let step = step(region, &surface, v, how);
             (norm(step), v, add(region.mesh.position(v), step))
