@@ -175,7 +175,7 @@ impl Tally {
 #[test]
 fn certificates_hold_and_gaps_are_reached() {
     let mut tally = Tally::default();
-    (0..100).for_each(|seed| tally.check(seed, 300.0));
+    (0..200).for_each(|seed| tally.check(seed, 300.0));
     tally.conclude(0.99);
 }
 
