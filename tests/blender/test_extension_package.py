@@ -12,7 +12,9 @@ REFUSED = {
     "sys.path": "changes the module search path",
     "sys.modules": "reaches into loaded modules",
     "urllib": "goes to the network",
-    "socket": "goes to the network",
+    # Not the bare word: nodes have sockets too.
+    "import socket": "goes to the network",
+    "from socket": "goes to the network",
     "subprocess": "starts other programs",
     "eval(": "runs text as code",
     "exec(": "runs text as code",
