@@ -212,7 +212,8 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             }
             if iterations == self.next_reweighting {
                 self.next_reweighting *= 3;
-                if left > FACTORISATION {
+                // The first new penalties always pay: the ones to start with are alike everywhere.
+                if iterations == REWEIGHT_COLD || left > FACTORISATION {
                     self.reweight()?;
                 }
             }
