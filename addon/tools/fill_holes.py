@@ -205,15 +205,14 @@ def _filled(
 def patch_of(filled: ridgeform.Filled, source: Source) -> Patch:
     """The new part of a filled mesh, in the vertices of the mesh before its split seams were joined."""
     weld, n = source.weld, len(source.coordinates)
-    n_welded, n_old = len(weld.first), len(weld.triangles)
-    new = filled.faces[n_old:]
-    triangles = _unwelded(new, source)
+    n_welded = len(weld.first)
+    triangles = _unwelded(filled.new_faces, source)
     ridges = filled.ridges
     old = weld.first[np.minimum(ridges, n_welded - 1)]
     return Patch(
-        filled.vertices[n_welded:],
+        filled.new_vertices,
         triangles,
-        filled.patch[n_old:],
+        filled.new_patch,
         np.where(ridges < n_welded, old, ridges - n_welded + n),
     )
 

@@ -206,3 +206,16 @@ def test_vertices_that_are_no_loop_are_refused():
     mesh, _ = turned_cube(12, [1, 1, 0.1], 0.5)
     with pytest.raises(ridgeform.MeshError, match="boundary"):
         ridgeform.fill_holes(mesh, loops=[[0, 1, 2]])
+
+
+def test_the_whole_is_the_mesh_and_what_is_new():
+    mesh, _ = turned_cube(8, [1, 1, 0.1], 0.5, 7)
+    filled = ridgeform.fill_holes(mesh)
+    assert filled.vertices is filled.vertices
+    np.testing.assert_array_equal(filled.vertices, np.concatenate([mesh.vertices, filled.new_vertices]))
+    np.testing.assert_array_equal(filled.faces, np.concatenate([mesh.faces, filled.new_faces]))
+    assert (filled.patch[: mesh.n_faces] == -1).all()
+    np.testing.assert_array_equal(filled.patch[mesh.n_faces :], filled.new_patch)
+    assert (filled.new_patch == 0).all()
+    assert filled.vertices.dtype == np.float64
+    assert filled.faces.dtype == filled.patch.dtype == np.int32

@@ -151,6 +151,19 @@ pub fn index_rows<'py, const N: usize>(py: Python<'py>, rows: &[[u32; N]]) -> Bo
     Array2::from(rows.iter().map(|row| row.map(u32::cast_signed)).collect::<Vec<_>>()).into_pyarray(py)
 }
 
+/// A fresh array of `rows`, converted by `convert`, and after them `more` rows, flat; written once.
+pub fn joined_rows<T: Copy, U: Element + Copy, const N: usize>(
+    py: Python<'_>,
+    rows: &[[T; N]],
+    convert: impl Fn(T) -> U,
+    more: &[U],
+) -> PyResult<Py<PyArray2<U>>> {
+    let mut whole = Vec::with_capacity(rows.len() + more.len() / N);
+    whole.extend(rows.iter().map(|row| row.map(&convert)));
+    whole.extend_from_slice(more.as_chunks::<N>().0);
+    Ok(Array2::from(whole).into_pyarray(py).unbind())
+}
+
 /// A fresh (k,) `int32` array.
 pub fn index_array<'py>(py: Python<'py>, indices: &[u32]) -> Bound<'py, PyArray1<i32>> {
     indices.iter().map(|&i| i.cast_signed()).collect::<Vec<_>>().into_pyarray(py)

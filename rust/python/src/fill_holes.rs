@@ -1,7 +1,8 @@
 //! `fill_holes`: patches that continue the surface around a hole, ridges included.
 
-use numpy::{IntoPyArray, PyArray1, PyArray2};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
 use ridgeform_core::tools::{self, HoleStatus, LoopChoice, Sharpness};
 
 use crate::errors::argument;
@@ -9,25 +10,72 @@ use crate::mesh::Mesh;
 use crate::progress::{handle, Progress};
 use crate::{arrays, doorway, options};
 
-/// What `fill_holes` returns: the mesh with its patches, and how each hole went.
-#[pyclass(frozen, get_all, module = "ridgeform")]
+/// What `fill_holes` returns: the patches, the mesh with its patches, and how each hole went.
+///
+/// `vertices`, `faces` and `patch` are the whole mesh and are made when they are first asked for; the arrays named `new_` are the
+/// patches alone, in time that does not depend on the mesh.
+#[pyclass(frozen, module = "ridgeform")]
 pub struct Filled {
-    /// The vertices, (n',3) float64: the input's first, bit by bit, then those of the patches, hole by hole.
-    vertices: Py<PyArray2<f64>>,
-    /// The faces, (m',3) int32: the input's first, unchanged, then those of the patches, oriented as the faces around.
-    faces: Py<PyArray2<i32>>,
-    /// For every face the entry of `holes` that it fills, or -1 for the input's, (m',) int32.
-    patch: Py<PyArray1<i32>>,
+    mesh: Py<Mesh>,
+    /// The vertices of the patches that are not the mesh's, (k,3) float64, hole by hole.
+    #[pyo3(get)]
+    new_vertices: Py<PyArray2<f64>>,
+    /// The faces of the patches, (p,3) int32, oriented as the faces around; new vertices are numbered from the mesh's count on.
+    #[pyo3(get)]
+    new_faces: Py<PyArray2<i32>>,
+    /// For every face of `new_faces` the entry of `holes` that it fills, (p,) int32.
+    #[pyo3(get)]
+    new_patch: Py<PyArray1<i32>>,
+    whole_vertices: PyOnceLock<Py<PyArray2<f64>>>,
+    whole_faces: PyOnceLock<Py<PyArray2<i32>>>,
+    whole_patch: PyOnceLock<Py<PyArray1<i32>>>,
     /// What became of every hole that was chosen, a list of FilledHole.
+    #[pyo3(get)]
     holes: Vec<Py<FilledHole>>,
     /// The edges of sharp patches, rim included, that are bent by more than 30 degrees, (k,2) int32, smaller vertex first.
+    #[pyo3(get)]
     ridges: Py<PyArray2<i32>>,
     /// "stopped" (`Progress.finish` was called), "finished" (a hole took all iterations) or "converged" (all patches rest).
+    #[pyo3(get)]
     status: &'static str,
 }
 
 #[pymethods]
 impl Filled {
+    /// The vertices, (n',3) float64: the input's first, bit by bit, then those of the patches, hole by hole.
+    #[getter]
+    fn vertices(&self, py: Python<'_>) -> PyResult<Py<PyArray2<f64>>> {
+        let make = || {
+            let new = self.new_vertices.bind(py).readonly();
+            let old = self.mesh.get().inner().positions().unwrap_or_default();
+            arrays::joined_rows(py, old, |x| x, new.as_slice()?)
+        };
+        Ok(self.whole_vertices.get_or_try_init(py, make)?.clone_ref(py))
+    }
+
+    /// The faces, (m',3) int32: the input's first, unchanged, then those of the patches, oriented as the faces around.
+    #[getter]
+    fn faces(&self, py: Python<'_>) -> PyResult<Py<PyArray2<i32>>> {
+        let make = || {
+            let new = self.new_faces.bind(py).readonly();
+            arrays::joined_rows(py, self.mesh.get().inner().connectivity().faces(), u32::cast_signed, new.as_slice()?)
+        };
+        Ok(self.whole_faces.get_or_try_init(py, make)?.clone_ref(py))
+    }
+
+    /// For every face the entry of `holes` that it fills, or -1 for the input's, (m',) int32.
+    #[getter]
+    fn patch(&self, py: Python<'_>) -> PyResult<Py<PyArray1<i32>>> {
+        let make = || {
+            let new = self.new_patch.bind(py).readonly();
+            let mut whole = Vec::with_capacity(self.mesh.get().n_faces() + new.len()?);
+            whole.resize(self.mesh.get().n_faces(), -1);
+            whole.extend_from_slice(new.as_slice()?);
+            PyResult::Ok(whole.into_pyarray(py).unbind())
+        };
+        Ok(self.whole_patch.get_or_try_init(py, make)?.clone_ref(py))
+    }
+
     fn __repr__(&self, py: Python<'_>) -> String {
         let refused = self.holes.iter().filter(|hole| hole.get().status == "refused").count();
         let sharp = self.holes.iter().filter(|hole| hole.get().sharpness > 0.0).count();
@@ -116,7 +164,7 @@ impl FilledHole {
 #[allow(clippy::too_many_arguments)]
 pub fn fill_holes(
     py: Python<'_>,
-    mesh: &Mesh,
+    mesh: &Bound<'_, Mesh>,
     loops: Option<&Bound<'_, PyAny>>,
     max_edges: Option<i64>,
     outer: bool,
@@ -135,7 +183,7 @@ pub fn fill_holes(
     progress: Option<&Bound<'_, Progress>>,
 ) -> PyResult<Filled> {
     let options = tools::FillHolesOptions {
-        loops: loops.map(|given| read_loops(given, mesh.n_vertices())).transpose()?,
+        loops: loops.map(|given| read_loops(given, mesh.get().n_vertices())).transpose()?,
         max_edges: max_edges.map(|count| options::at_least(py, "max_edges", count, 3)).transpose()?,
         outer,
         edge_length,
@@ -148,15 +196,20 @@ pub fn fill_holes(
         solve: options::solve(py, solver, tolerance, max_iterations, memory_limit, threads)?,
     };
     let progress = handle(progress);
-    let result = doorway::call(py, &progress, || tools::fill_holes(mesh.inner(), &options, &progress))?;
+    let inner = mesh.get().inner();
+    let result = doorway::call(py, &progress, || tools::fill_holes(inner, &options, &progress))?;
     let holes = result.holes.iter().map(|hole| Py::new(py, filled_hole(py, hole)));
     Ok(Filled {
-        vertices: arrays::float_rows(py, &result.vertices).unbind(),
-        faces: arrays::index_rows(py, &result.faces).unbind(),
+        mesh: mesh.clone().unbind(),
+        new_vertices: arrays::float_rows(py, &result.vertices).unbind(),
+        new_faces: arrays::index_rows(py, &result.faces).unbind(),
+        new_patch: arrays::index_array(py, &result.patch).unbind(),
+        whole_vertices: PyOnceLock::new(),
+        whole_faces: PyOnceLock::new(),
+        whole_patch: PyOnceLock::new(),
         holes: holes.collect::<PyResult<_>>()?,
         ridges: arrays::index_rows(py, &result.ridges).unbind(),
         status: result.status.name(),
-        patch: result.patch.into_pyarray(py).unbind(),
     })
 }
 

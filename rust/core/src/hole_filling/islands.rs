@@ -29,7 +29,7 @@ impl Outline {
 ///
 /// `components` is the component of every hole. A sheet is in a hole of another component if its border runs the other way
 /// around, lies near the hole's mean plane, and its centre is inside the hole in the projection onto that plane.
-pub(super) fn refuse_holes_with_islands(holes: &mut [Hole], components: &[usize], positions: &[Point]) {
+pub(super) fn refuse_holes_with_islands(holes: &mut [Hole], components: &[Option<usize>], positions: &[Point]) {
     let outlines: Vec<Outline> = holes.iter().map(|hole| Outline::of(&hole.vertices, positions)).collect();
     for i in 0..holes.len() {
         if holes[i].is_outer_border || holes[i].refusal.is_some() {

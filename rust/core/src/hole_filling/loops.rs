@@ -1,16 +1,13 @@
 //! Which boundary loops are holes.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
+use super::components::Components;
 use super::islands::refuse_holes_with_islands;
 use crate::error::{MeshError, Refusal};
-use crate::mesh::vector::{add, area_vector, cross, dot, norm, scale, sub, Point};
-use crate::mesh::{boundary_loops, Connectivity, EdgeKind, Mesh};
+use crate::mesh::vector::{add, cross, dot, scale, sub, Point};
+use crate::mesh::{boundary_loops, Connectivity, Mesh};
 use crate::Result;
-
-/// A component counts as an open sheet if its mean normal is longer than this (1 on a flat sheet, 0 on a closed surface or
-/// a tube). Between a hemisphere at 0.5, which is closed with a lid, and a sheet bent to half a tube at 0.64, which is not.
-const OPEN_SHEET: f64 = 0.57;
 
 /// A boundary loop and what it is.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,30 +37,27 @@ pub struct Hole {
 pub fn find_holes(mesh: &Mesh) -> Result<Vec<Hole>> {
     let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
     let connectivity = mesh.connectivity();
-    let (component_of, components) = components(connectivity, positions);
-    let halfedges: HashMap<[u32; 2], usize> = (0..connectivity.n_halfedges())
-        .filter(|&h| connectivity.kind(h) == EdgeKind::Boundary)
-        .map(|h| ([connectivity.tail(h), connectivity.head(h)], h))
-        .collect();
-    let mut outer: Vec<Option<(f64, usize)>> = vec![None; components.len()];
-    let (mut holes, mut owners) = (Vec::new(), Vec::new());
-    for vertices in boundary_loops(connectivity) {
+    let halfedges: HashMap<[u32; 2], usize> =
+        connectivity.boundary().map(|h| ([connectivity.tail(h), connectivity.head(h)], h)).collect();
+    let loops = boundary_loops(connectivity);
+    let mut components = Components::new(connectivity, positions, &loops);
+    let mut outer: BTreeMap<usize, (f64, usize)> = BTreeMap::new();
+    let (mut holes, mut owners) = (Vec::with_capacity(loops.len()), Vec::with_capacity(loops.len()));
+    for vertices in loops {
         let along = cycle(&vertices).find_map(|edge| halfedges.get(&edge));
         let against = || cycle(&vertices).find_map(|[a, b]| halfedges.get(&[b, a]));
-        let owner = along.or_else(against).map_or(usize::MAX, |&h| component_of[h / 3]);
-        owners.push(owner);
-        if let Some(component) = components.get(owner) {
-            if let Some(normal) = component.sheet_normal() {
-                let size = dot(loop_area_vector(&vertices, positions), normal).abs();
-                if outer[owner].is_none_or(|(largest, _)| size > largest) {
-                    outer[owner] = Some((size, holes.len()));
-                }
+        let owner = along.or_else(against).map(|&h| components.of_face(h / 3));
+        if let Some((owner, normal)) = owner.and_then(|owner| Some((owner, components.sheet_normal(owner)?))) {
+            let size = dot(loop_area_vector(&vertices, positions), normal).abs();
+            if outer.get(&owner).is_none_or(|&(largest, _)| size > largest) {
+                outer.insert(owner, (size, holes.len()));
             }
         }
+        owners.push(owner);
         let refusal = refusal(&vertices, positions, connectivity, &halfedges);
         holes.push(Hole { vertices, is_outer_border: false, refusal });
     }
-    for (_, hole) in outer.into_iter().flatten() {
+    for (_, hole) in outer.into_values() {
         holes[hole].is_outer_border = true;
     }
     refuse_holes_with_islands(&mut holes, &owners, positions);
@@ -117,48 +111,4 @@ pub(super) fn loop_area_vector(vertices: &[u32], positions: &[Point]) -> Point {
     let Some(&first) = vertices.first() else { return [0.0; 3] };
     let at = |v: u32| sub(positions[v as usize], positions[first as usize]);
     cycle(vertices).fold([0.0; 3], |sum, [a, b]| add(sum, scale(cross(at(a), at(b)), 0.5)))
-}
-
-/// A set of faces connected across edges.
-struct Component {
-    area: f64,
-    area_vector: Point,
-}
-
-impl Component {
-    /// The direction of the mean normal, of length 1, if the component is an open sheet.
-    fn sheet_normal(&self) -> Option<Point> {
-        let length = norm(self.area_vector);
-        (length > OPEN_SHEET * self.area).then(|| scale(self.area_vector, 1.0 / length))
-    }
-}
-
-/// The component of every face, and the components. A face that disagrees with its neighbours on the orientation counts
-/// the other way round.
-fn components(connectivity: &Connectivity, positions: &[Point]) -> (Vec<usize>, Vec<Component>) {
-    let n_faces = connectivity.n_faces();
-    let (mut component_of, mut components) = (vec![usize::MAX; n_faces], Vec::new());
-    for seed in 0..n_faces {
-        if component_of[seed] != usize::MAX {
-            continue;
-        }
-        let number = components.len();
-        let mut component = Component { area: 0.0, area_vector: [0.0; 3] };
-        component_of[seed] = number;
-        let mut stack = vec![(seed, 1.0)];
-        while let Some((f, sign)) = stack.pop() {
-            let area = area_vector(connectivity.faces()[f].map(|v| positions[v as usize]));
-            component.area += norm(area);
-            component.area_vector = add(component.area_vector, scale(area, sign));
-            for h in 3 * f..3 * f + 3 {
-                let Some(mate) = connectivity.mate(h) else { continue };
-                if component_of[mate / 3] == usize::MAX {
-                    component_of[mate / 3] = number;
-                    stack.push((mate / 3, if connectivity.kind(h) == EdgeKind::Interior { sign } else { -sign }));
-                }
-            }
-        }
-        components.push(component);
-    }
-    (component_of, components)
 }

@@ -10,11 +10,13 @@
 //! fillable_loops(mesh: &Mesh) -> Result<Vec<Vec<u32>>>
 //! fill_loop(mesh: &Mesh, boundary_loop: &[u32], options: &FillOptions, progress: &Progress) -> Result<Patch>
 //! fill_loops(mesh: &Mesh, loops: &[Vec<u32>], options: &FillOptions, progress: &Progress) -> Result<Vec<Patch>>
+//! faces_at(mesh: &Mesh, loops: &[Vec<u32>]) -> Result<Vec<u32>>
 //! ```
 //!
 //! The mesh with its patches is its vertices, then those of each patch; its faces, then those of each patch. Vertices on
 //! the rim are the mesh's own and do not move. No patch makes an edge that the mesh or another patch has.
 
+mod components;
 mod islands;
 mod long_loops;
 mod loops;
@@ -25,6 +27,7 @@ mod rims;
 mod triangulation;
 
 pub use loops::{fillable_loops, find_holes, Hole};
+pub use rims::faces_at;
 
 use crate::error::{MeshError, Refusal};
 use crate::mesh::vector::{area_vector, distance, norm, Point};
@@ -80,8 +83,19 @@ pub fn fill_loop(mesh: &Mesh, boundary_loop: &[u32], options: &FillOptions, prog
 /// [`MeshError::NoPositions`]; [`MeshError::Unfillable`] for the first loop that cannot be filled, with the reason;
 /// [`crate::Error::Cancelled`].
 pub fn fill_loops(mesh: &Mesh, loops: &[Vec<u32>], options: &FillOptions, progress: &Progress) -> Result<Vec<Patch>> {
+    fill_loops_at(mesh, loops, &faces_at(mesh, loops)?, options, progress)
+}
+
+/// [`fill_loops`], given the faces at the loops ([`faces_at`]) or at more than those.
+pub(crate) fn fill_loops_at(
+    mesh: &Mesh,
+    loops: &[Vec<u32>],
+    at: &[u32],
+    options: &FillOptions,
+    progress: &Progress,
+) -> Result<Vec<Patch>> {
     let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
-    let mut rims = Rims::new(mesh, loops)?;
+    let mut rims = Rims::new(mesh, loops, at)?;
     let mut n_vertices = positions.len() as u32;
     let mut patches = Vec::with_capacity(loops.len());
     for rim in loops {

@@ -8,9 +8,26 @@ use crate::mesh::vector::{area_vector, unit, Point};
 use crate::mesh::Mesh;
 use crate::Result;
 
+/// The faces with a vertex on one of `loops`, ascending, in one pass over the faces: the only one that filling makes.
+///
+/// # Errors
+/// [`MeshError::Unfillable`] for a loop that names a vertex which does not exist.
+pub fn faces_at(mesh: &Mesh, loops: &[Vec<u32>]) -> Result<Vec<u32>> {
+    // Zeros that are never read cost nothing.
+    let mut is_rim = vec![false; mesh.connectivity().n_vertices()];
+    for rim in loops {
+        for &vertex in rim {
+            let unknown = || MeshError::Unfillable { vertex, n_edges: rim.len(), reason: Refusal::NotALoop };
+            *is_rim.get_mut(vertex as usize).ok_or_else(unknown)? = true;
+        }
+    }
+    let at_rim = |face: &[u32; 3]| is_rim[face[0] as usize] | is_rim[face[1] as usize] | is_rim[face[2] as usize];
+    Ok((0..).zip(mesh.connectivity().faces()).filter(|(_, face)| at_rim(face)).map(|(f, _)| f).collect())
+}
+
 /// The faces at the loops and the edges between their vertices.
 pub(super) struct Rims {
-    is_rim: Vec<bool>,
+    n_vertices: u32,
     /// For every vertex of a loop, those to which an edge joins it.
     joined: HashMap<u32, Vec<u32>>,
     /// The unit normal of the face at the halfedge, for the halfedges between two vertices of loops.
@@ -20,29 +37,24 @@ pub(super) struct Rims {
 }
 
 impl Rims {
-    /// Reads the faces around `loops`, in one pass over the mesh.
-    pub(super) fn new(mesh: &Mesh, loops: &[Vec<u32>]) -> Result<Self> {
+    /// Reads the faces `at` the loops ([`faces_at`]).
+    pub(super) fn new(mesh: &Mesh, loops: &[Vec<u32>], at: &[u32]) -> Result<Self> {
         let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
         let mut rims = Self {
-            is_rim: vec![false; positions.len()],
+            n_vertices: positions.len() as u32,
             joined: HashMap::new(),
             normals: HashMap::new(),
             faces: HashSet::new(),
         };
-        for rim in loops {
-            for &vertex in rim {
-                let unknown = || MeshError::Unfillable { vertex, n_edges: rim.len(), reason: Refusal::NotALoop };
-                *rims.is_rim.get_mut(vertex as usize).ok_or_else(unknown)? = true;
-            }
-        }
-        for face in mesh.connectivity().faces() {
-            let on_rim = face.map(|v| rims.is_rim[v as usize]);
+        let vertices: HashSet<u32> = loops.iter().flatten().copied().collect();
+        for face in at.iter().map(|&f| mesh.connectivity().faces()[f as usize]) {
+            let on_rim = face.map(|v| vertices.contains(&v));
             let count = on_rim.iter().filter(|&&on| on).count();
             if count < 2 {
                 continue;
             }
             if count == 3 {
-                let mut sorted = *face;
+                let mut sorted = face;
                 sorted.sort_unstable();
                 rims.faces.insert(sorted);
             }
@@ -62,7 +74,7 @@ impl Rims {
     /// Takes the edges of a patch between old vertices.
     pub(super) fn add(&mut self, patch: &Patch) {
         for [a, b] in patch.faces.iter().flat_map(|face| [[face[0], face[1]], [face[1], face[2]], [face[2], face[0]]]) {
-            if ((a.max(b)) as usize) < self.is_rim.len() {
+            if a.max(b) < self.n_vertices {
                 self.join(a, b);
             }
         }

@@ -15,9 +15,9 @@ use crate::mesh::{Connectivity, EdgeKind};
 #[must_use]
 pub fn boundary_loops(connectivity: &Connectivity) -> Vec<Vec<u32>> {
     let mut visited = vec![false; connectivity.n_halfedges()];
-    let mut splitter = Splitter { loops: Vec::new(), place: vec![None; connectivity.n_vertices()] };
-    for start in 0..connectivity.n_halfedges() {
-        if connectivity.kind(start) != EdgeKind::Boundary || visited[start] {
+    let mut splitter = Splitter { loops: Vec::new(), place: vec![0; connectivity.n_vertices()] };
+    for start in connectivity.boundary() {
+        if visited[start] {
             continue;
         }
         let mut walk = Vec::new();
@@ -55,26 +55,27 @@ fn step(connectivity: &Connectivity, h: usize, forward: bool) -> Option<(usize, 
 /// Splits closed walks at the vertices that they visit twice.
 struct Splitter {
     loops: Vec<Vec<u32>>,
-    /// Where each vertex is in the walk so far.
-    place: Vec<Option<usize>>,
+    /// Where each vertex is in the walk so far, from 1 on; 0 if it is not. Memory of zeros costs nothing where it is not read.
+    place: Vec<u32>,
 }
 
 impl Splitter {
     fn push(&mut self, walk: &[u32]) {
         let mut open: Vec<u32> = Vec::with_capacity(walk.len());
         for &vertex in walk {
-            if let Some(place) = self.place[vertex as usize] {
-                self.close(open.split_off(place));
+            let place = self.place[vertex as usize] as usize;
+            if place > 0 {
+                self.close(open.split_off(place - 1));
             }
-            self.place[vertex as usize] = Some(open.len());
             open.push(vertex);
+            self.place[vertex as usize] = open.len() as u32;
         }
         self.close(open);
     }
 
     fn close(&mut self, vertices: Vec<u32>) {
         for &vertex in &vertices {
-            self.place[vertex as usize] = None;
+            self.place[vertex as usize] = 0;
         }
         self.loops.push(vertices);
     }

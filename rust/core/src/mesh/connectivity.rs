@@ -177,6 +177,17 @@ impl Connectivity {
         self.kinds[h]
     }
 
+    /// The halfedges at [`EdgeKind::Boundary`] edges, ascending.
+    pub fn boundary(&self) -> impl Iterator<Item = usize> + '_ {
+        self.kinds.iter().enumerate().filter(|(_, &kind)| kind == EdgeKind::Boundary).map(|(h, _)| h)
+    }
+
+    /// Whether an edge is of one of `kinds`.
+    #[must_use]
+    pub fn has_any(&self, kinds: &[EdgeKind]) -> bool {
+        self.kinds.iter().any(|kind| kinds.contains(kind))
+    }
+
     /// The vertex where `h` starts.
     #[must_use]
     pub fn tail(&self, h: usize) -> u32 {

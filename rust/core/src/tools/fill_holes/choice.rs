@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::FillHolesOptions;
 use crate::error::{MeshError, Refusal};
-use crate::hole_filling::{fill_loops, find_holes, FillOptions, Patch};
+use crate::hole_filling::{fill_loops_at, find_holes, FillOptions, Patch};
 use crate::mesh::Mesh;
 use crate::progress::Progress;
 use crate::{Error, Result};
@@ -23,13 +23,14 @@ pub(super) type Chosen = (Vec<u32>, Option<Refusal>);
 
 /// The loops that `options` ask for.
 pub(super) fn choose(mesh: &Mesh, options: &FillHolesOptions) -> Result<Vec<Chosen>> {
-    let holes = find_holes(mesh)?;
     let Some(choices) = &options.loops else {
-        let wanted = holes.into_iter().filter(|hole| {
+        let wanted = find_holes(mesh)?.into_iter().filter(|hole| {
             (options.outer || !hole.is_outer_border) && options.max_edges.is_none_or(|most| hole.vertices.len() <= most)
         });
         return Ok(wanted.map(|hole| (hole.vertices, hole.refusal)).collect());
     };
+    let by_index = choices.iter().any(|choice| matches!(choice, LoopChoice::Index(_)));
+    let holes = if by_index { find_holes(mesh)? } else { Vec::new() };
     let choose = |choice: &LoopChoice| match choice {
         LoopChoice::Vertices(vertices) => Ok((vertices.clone(), None)),
         LoopChoice::Index(index) => {
@@ -41,18 +42,19 @@ pub(super) fn choose(mesh: &Mesh, options: &FillHolesOptions) -> Result<Vec<Chos
     choices.iter().map(choose).collect()
 }
 
-/// The patch of every loop; an empty one for those that cannot be filled, which is noted. Vertices that are no loop at all are
-/// an error.
+/// The patch of every loop, given the faces `at` them; an empty one for those that cannot be filled, which is noted. Vertices that
+/// are no loop at all are an error.
 pub(super) fn triangulate(
     mesh: &Mesh,
     chosen: &mut [Chosen],
+    at: &[u32],
     options: &FillOptions,
     progress: &Progress,
 ) -> Result<Vec<Patch>> {
     loop {
         let loops: Vec<Vec<u32>> =
             chosen.iter().filter(|(_, refusal)| refusal.is_none()).map(|(vertices, _)| vertices.clone()).collect();
-        match fill_loops(mesh, &loops, options, progress) {
+        match fill_loops_at(mesh, &loops, at, options, progress) {
             Ok(patches) => {
                 let mut patches = patches.into_iter();
                 let next = |(_, refusal): &Chosen| match refusal {

@@ -29,7 +29,7 @@ use std::collections::HashSet;
 use super::options::check_range;
 use super::{Scale, SolveOptions};
 use crate::error::{MeshError, Refusal};
-use crate::hole_filling::{FillOptions, Patch};
+use crate::hole_filling::{faces_at, FillOptions, Patch};
 use crate::mesh::vector::Point;
 use crate::mesh::Mesh;
 use crate::operators::Dual;
@@ -144,15 +144,15 @@ pub struct FilledHole {
     pub iterations: usize,
 }
 
-/// A mesh with its holes filled.
+/// The patches of a mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Filled {
-    /// The input's vertices, unchanged, then those of the patches.
+    /// The vertices of the patches that are not the mesh's; their numbers follow on those of the mesh.
     pub vertices: Vec<Point>,
-    /// The input's faces, unchanged, then those of the patches.
+    /// The faces of the patches, oriented as the faces around.
     pub faces: Vec<[u32; 3]>,
-    /// For each face the entry of `holes` that it fills, or -1.
-    pub patch: Vec<i32>,
+    /// For each of these faces the entry of `holes` that it fills.
+    pub patch: Vec<u32>,
     /// The holes that were chosen.
     pub holes: Vec<FilledHole>,
     /// How the holes ended: stopped if one was, else finished if one was, else converged.
@@ -190,16 +190,18 @@ fn fill(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) -> Result<
     report(progress, 0.0, "triangulating", 0, None);
     let geometry = FillOptions { edge_length: options.edge_length, ..FillOptions::default() };
     let mut chosen = choice::choose(mesh, options)?;
-    let patches = choice::triangulate(mesh, &mut chosen, &geometry, progress)?;
+    let loops: Vec<Vec<u32>> = chosen.iter().map(|(vertices, _)| vertices.clone()).collect();
+    let at_loops = faces_at(mesh, &loops)?;
+    let patches = choice::triangulate(mesh, &mut chosen, &at_loops, &geometry, progress)?;
     let mut filled = Filled {
-        vertices: positions.to_vec(),
-        faces: mesh.connectivity().faces().to_vec(),
-        patch: vec![-1; mesh.connectivity().n_faces()],
+        vertices: Vec::new(),
+        faces: Vec::new(),
+        patch: Vec::new(),
         holes: Vec::with_capacity(chosen.len()),
         status: HoleStatus::Converged,
         ridges: Vec::new(),
     };
-    let near = Neighbourhoods::new(mesh.connectivity());
+    let near = Neighbourhoods::new(mesh.connectivity(), &at_loops);
     let shared = choice::on_several(&chosen);
     let total = patches.iter().map(|patch| patch.faces.len()).sum::<usize>().max(1) as f64;
     let mut done = 0.0;
@@ -211,8 +213,7 @@ fn fill(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) -> Result<
             Some(reason) => Err(reason),
             None => {
                 let watch = |part: f64, steps, energy| report(progress, done + share * part, "filling", steps, energy);
-                let hole = filled.holes.len() as i32;
-                Ok(fill_one(mesh, &near, &shared, &patch, from, hole, &mut filled, options, progress, &watch)?)
+                Ok(fill_one(mesh, &near, &shared, &patch, from, &mut filled, options, progress, &watch)?)
             }
         };
         done += share;
@@ -249,14 +250,13 @@ fn fill_one(
     shared: &HashSet<u32>,
     patch: &Patch,
     patches_from: u32,
-    hole: i32,
     filled: &mut Filled,
     options: &FillHolesOptions,
     progress: &Progress,
     watch: &dyn Fn(f64, usize, Option<f64>),
 ) -> Result<Restored> {
     let mut region = Region::new(mesh, near, patch, patches_from, RINGS, shared)?;
-    region.first_new = filled.vertices.len() as u32;
+    region.first_new = (mesh.connectivity().n_vertices() + filled.vertices.len()) as u32;
     let restored = restore(&mut region, options, progress, &mut |region, part, steps, energy| {
         let (vertices, faces, _) = region.patch();
         progress.set_surface(vertices, faces);
@@ -264,7 +264,7 @@ fn fill_one(
     })?;
     filled.vertices.extend(region.free().map(|v| region.mesh.position(v)));
     filled.faces.extend(region.patch_faces().map(|(_, face)| face.map(|v| region.global(v))));
-    filled.patch.resize(filled.faces.len(), hole);
+    filled.patch.resize(filled.faces.len(), filled.holes.len() as u32);
     if restored.sharpness > 0.0 {
         filled.ridges.extend(surface::ridges(&region, RIDGE));
     }
