@@ -374,3 +374,14 @@ def test_undo_takes_slots_attribute_and_seams_back():
     obj = bpy.data.objects["Cube"]
     assert len(obj.data.materials) == SIDES
     assert flags(obj, "use_seam").sum() == 12 * 6
+
+
+def test_the_cube_that_a_new_scene_has_gets_six_materials():
+    bpy.ops.mesh.primitive_cube_add(rotation=(0.3, 0.5, 0.9))
+    obj = bpy.context.active_object
+    assert bpy.ops.ridgeform.segment() == {"FINISHED"}
+    assert len(obj.material_slots) == SIDES
+    assert sorted(slot_of_faces(obj)) == list(range(SIDES))
+    bpy.ops.mesh.primitive_cylinder_add(vertices=32)
+    assert bpy.ops.ridgeform.segment() == {"FINISHED"}
+    assert len(bpy.context.active_object.material_slots) == 3

@@ -102,7 +102,8 @@ impl Segmentation {
 ///     the mesh is fine
 /// inner_tolerance : the mean squared change of v at which epsilon is halved
 /// cut_threshold : 0 to 1, edges with a lower v are cut; for "paper"
-/// min_faces : segments of fewer faces are merged; None: 20, and for "fitted" down to 4 the less noise there is
+/// min_faces : segments of fewer faces are merged; None: 20, and for "fitted" down to 4 the less noise there is, and 0 for
+///     modelled shapes
 /// scale : "extent" (a cube has its side, whatever its rotation), "bounding_box" (the longest side is 1), "area" or "max_edge"
 /// method : "fitted" (watershed of v, merging of what bends little, border faces moved to the segment that they fit best) or "paper"
 ///     (cuts below the threshold, small pieces merged by majority)

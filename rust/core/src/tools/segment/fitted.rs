@@ -1,6 +1,7 @@
 //! From the indicator to segments and their hierarchy.
 
 use super::crease::Signal;
+use super::exact::Planes;
 use super::hierarchy::Hierarchy;
 use super::merge::{rename, Merge, Merging};
 use super::options::{SegmentMethod, SegmentOptions};
@@ -17,7 +18,7 @@ use crate::Result;
 const PERSISTENCE: f64 = 0.03;
 
 /// A border stands if it bends by more than this share of the length weight.
-const BEND: f64 = 0.8;
+pub(super) const BEND: f64 = 0.8;
 
 /// Shares of that bend up to which borders fall before each refit: with cleaner borders the later ones are measured better.
 const SHARES: [f64; 4] = [0.4, 0.7, 1.0, 1.0];
@@ -35,6 +36,8 @@ pub(super) struct Fitted<'a> {
     pub is_shape: bool,
     pub noise: f64,
     pub indicator: &'a [f64],
+    /// The planes of an exact shape, which are segments to begin with.
+    pub planes: Option<&'a Planes>,
     pub options: &'a SegmentOptions,
     pub progress: &'a Progress,
 }
@@ -52,21 +55,25 @@ impl Fitted<'_> {
     /// [`crate::Error::Cancelled`].
     pub fn segments(&self) -> Result<Finished> {
         self.report(0.9, "segments");
-        let signal = if self.is_shape {
-            Signal::of_shape(self.surface, self.noise)
-        } else {
-            Signal::of_values(self.surface, self.start, self.noise)
+        let signal = match self.planes {
+            Some(planes) => Signal::of_planes(self.surface, &planes.normals),
+            None if self.is_shape => Signal::of_shape(self.surface, self.noise),
+            None => Signal::of_values(self.surface, self.start, self.noise),
         };
         let merging = Merging { surface: self.surface, signal: &signal, groups: None, progress: self.progress };
-        let leaves = match self.options.method {
-            SegmentMethod::Paper => {
+        let leaves = match (self.planes, self.options.method) {
+            (Some(planes), _) => planes.labels.clone(),
+            (None, SegmentMethod::Paper) => {
                 let (threshold, least) = (self.options.cut_threshold, self.least_faces());
                 cut_and_merge(self.surface, self.indicator, threshold, least).0
             }
-            SegmentMethod::Fitted => watershed(self.surface, self.indicator, PERSISTENCE).0,
+            (None, SegmentMethod::Fitted) => watershed(self.surface, self.indicator, PERSISTENCE).0,
         };
         let mut labels = leaves.clone();
-        if self.options.method == SegmentMethod::Fitted {
+        if self.planes.is_some() {
+            merging.below(&mut labels, BEND * self.options.length_weight)?;
+            merging.absorb_small(&mut labels, self.options.min_faces.unwrap_or(0))?;
+        } else if self.options.method == SegmentMethod::Fitted {
             self.fit(&merging, &mut labels)?;
         }
         if let Some(n) = self.options.n_segments {

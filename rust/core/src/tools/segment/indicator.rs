@@ -90,6 +90,31 @@ impl Functional<'_> {
         }
         Ok(run.reached)
     }
+
+    /// The minimiser over `v` alone, for the last `ε` and the values as they are: where nothing is to be smoothed.
+    ///
+    /// # Errors
+    /// A failed factorisation, or [`crate::Error::Cancelled`].
+    pub fn indicate(&self, progress: &Progress) -> Result<Minimiser> {
+        progress.check()?;
+        let surface = self.surface;
+        let operator = HessianPattern::new(surface.connectivity).assemble(
+            surface.connectivity,
+            &surface.lengths,
+            Dual::Barycentric,
+        )?;
+        let mut step = IndicatorStep::new(surface, self.length_weight, self.face_costs)?;
+        if let Some(epsilon) = self.epsilons.last() {
+            step.prepare(*epsilon);
+        }
+        Ok(Minimiser {
+            values: self.values.clone(),
+            indicator: step.minimise(&block_norms(&operator, self.values, Coupling::Joint))?,
+            fidelity: self.fidelity,
+            alternations: 1,
+            status: Status::Solved,
+        })
+    }
 }
 
 struct Run<'a> {

@@ -2,9 +2,11 @@
 //!
 //! [`indicator`] minimises the functional (41), whose `v` is low at borders. From there on the paper's way is [`threshold`]; the
 //! other one is [`watershed`], then merging across borders that bend little ([`crease`], [`merge`]), and moving faces at borders
-//! to the segment that they fit best ([`refit`]). Either way a [`hierarchy`] of nested segmentations comes with it.
+//! to the segment that they fit best ([`refit`]). Sides of a few triangles, which the Hessian cannot see, are told by their planes
+//! ([`exact`]). In any case a [`hierarchy`] of nested segmentations comes with it.
 
 mod crease;
+mod exact;
 mod fit;
 mod fitted;
 mod hierarchy;
@@ -17,6 +19,7 @@ mod part;
 mod refit;
 mod surface;
 mod threshold;
+mod walk;
 mod watershed;
 
 pub use hierarchy::Hierarchy;
@@ -28,7 +31,8 @@ use crate::progress::Progress;
 use crate::solve::{Columns, Settings, Status};
 use crate::tools::Scale;
 use crate::Result;
-use fitted::{Finished, Fitted};
+use exact::coarse_planes;
+use fitted::{Finished, Fitted, BEND};
 use indicator::Functional;
 use noise::noise_level;
 use surface::Surface;
@@ -106,10 +110,15 @@ fn whole(
     }
     let signal = values.map(Signal::of);
     let start = signal.as_ref().map_or_else(|| Columns::from_points(&surface.positions), |s| s.normalised.clone());
+    let plain = values.is_none() && options.fidelity.is_none() && options.method == SegmentMethod::Fitted;
+    let planes = if plain { coarse_planes(&surface, BEND * options.length_weight) } else { None };
     let degrees = values.map_or(1, |v| v.n_columns);
-    let noise = noise_level(&surface, &start, degrees);
-    let epsilons = options.epsilons(LEAST_EPSILON * surface.mean_edge);
-    let found = Functional {
+    let noise = if planes.is_some() { 0.0 } else { noise_level(&surface, &start, degrees) };
+    let mut epsilons = options.epsilons(LEAST_EPSILON * surface.mean_edge);
+    if planes.is_some() {
+        epsilons.drain(..epsilons.len() - 1);
+    }
+    let functional = Functional {
         surface: &surface,
         values: &start,
         length_weight: options.length_weight,
@@ -120,14 +129,15 @@ fn whole(
         inner_tolerance: options.inner_tolerance,
         solver: options.solve.solver,
         settings: *settings,
-    }
-    .minimise(progress)?;
+    };
+    let found = if planes.is_some() { functional.indicate(progress)? } else { functional.minimise(progress)? };
     let fitted = Fitted {
         surface: &surface,
         start: &start,
         is_shape: values.is_none(),
         noise,
         indicator: &found.indicator,
+        planes: planes.as_ref(),
         options,
         progress,
     };
@@ -135,6 +145,7 @@ fn whole(
     let labels = hierarchy.labels_at(n_segments)?;
     let unscaled = |columns: &Columns| match &signal {
         Some(signal) => signal.restored(columns),
+        None if planes.is_some() => Columns::from_points(positions),
         None => Columns { data: columns.data.iter().map(|x| unit * x).collect(), ..columns.clone() },
     };
     Ok(Segmentation {
