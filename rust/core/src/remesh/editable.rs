@@ -143,21 +143,6 @@ impl EditableMesh {
         found
     }
 
-    /// The faces with a vertex at most `rings - 1` edges away from one of `seeds`, ascending.
-    #[must_use]
-    pub fn faces_within(&self, seeds: &[u32], rings: usize) -> Vec<u32> {
-        let (mut faces, mut front) = (Vec::new(), seeds.to_vec());
-        for _ in 0..rings {
-            faces = front.iter().flat_map(|&v| self.faces_of(v)).copied().collect();
-            faces.sort_unstable();
-            faces.dedup();
-            front = faces.iter().flat_map(|&f| self.faces[f as usize]).collect();
-            front.sort_unstable();
-            front.dedup();
-        }
-        faces
-    }
-
     /// All edges, smaller vertex first, ascending.
     #[must_use]
     pub fn edges(&self) -> Vec<[u32; 2]> {

@@ -14,8 +14,10 @@ pub(crate) mod isotropic;
 mod relax;
 pub(crate) mod remesher;
 mod repair;
+mod rings;
 pub(crate) mod sizing;
 mod split;
 
 pub use editable::{key, Edge, EditableMesh, Wings};
 pub use isotropic::{remesh, RemeshOptions, Remeshed};
+pub use rings::Rings;

@@ -6,6 +6,7 @@ use super::guard::move_one;
 use super::region::Region;
 use super::surface::Surface;
 use crate::mesh::vector::{add, distance, dot, norm, scale, sub, Point};
+use crate::remesh::Rings;
 
 /// What snapping is done with.
 #[derive(Debug, Clone, Copy)]
@@ -54,30 +55,49 @@ impl Snapping {
 /// leave free, it goes to the centroid of its neighbours: ridges and plane parts keep their triangles in shape.
 pub(super) fn snap(region: &mut Region, how: &Snapping) -> f64 {
     let surface = Surface::of(region);
+    let bent = near_bends(region, &surface, how);
     let mut moves: Vec<(f64, u32, Point)> = region
         .free()
         .into_par_iter()
-        .map(|v| {
-            let step = step(region, &surface, v, how);
-            (norm(step), v, add(region.mesh.position(v), step))
-        })
+        .map_init(
+            || Rings::new(&region.mesh),
+            |rings, v| {
+                let step = step(region, &surface, &bent, rings, v, how);
+                (norm(step), v, add(region.mesh.position(v), step))
+            },
+        )
         .collect();
     // The nearest first: of several vertices that a corner attracts, only one finds room there.
     moves.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
     moves.into_iter().fold(0.0, |longest: f64, (_, v, goal)| longest.max(move_one(region, v, goal)))
 }
 
-fn step(region: &Region, surface: &Surface, v: u32, how: &Snapping) -> Point {
+/// Which vertices have an edge bent by more than the threshold on a face within `near` rings.
+fn near_bends(region: &Region, surface: &Surface, how: &Snapping) -> Vec<bool> {
+    let mut bent = vec![false; region.mesh.n_vertices()];
+    let is_bent = |f: u32| surface.face_angles[f as usize] > how.threshold;
+    for (_, face) in region.mesh.faces().filter(|&(f, _)| is_bent(f)) {
+        face.iter().for_each(|&v| bent[v as usize] = true);
+    }
+    for _ in 1..how.near {
+        let before = bent.clone();
+        for (_, face) in region.mesh.faces().filter(|(_, face)| face.iter().any(|&v| before[v as usize])) {
+            face.iter().for_each(|&v| bent[v as usize] = true);
+        }
+    }
+    bent
+}
+
+fn step(region: &Region, surface: &Surface, bent: &[bool], around: &mut Rings<'_>, v: u32, how: &Snapping) -> Point {
     let mesh = &region.mesh;
     let at = mesh.position(v);
     let neighbours = mesh.neighbours(v);
     let count = neighbours.len().max(1) as f64;
     let edge = neighbours.iter().map(|&w| distance(at, mesh.position(w))).sum::<f64>() / count;
     let (mut quadric, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
-    let is_bent = |f: &u32| surface.face_angles[*f as usize] > how.threshold;
-    let near_ridge = mesh.faces_within(&[v], how.near).iter().any(is_bent);
+    let near_ridge = bent[v as usize];
     let rings = if near_ridge { how.rings } else { 1 };
-    for f in mesh.faces_within(&[v], rings).into_iter().map(|f| f as usize) {
+    for f in around.within(v, rings).iter().map(|&f| f as usize) {
         let Some(face) = mesh.face(f as u32) else { continue };
         let normal = surface.normals[f];
         let away = distance(surface.centres[f], at) / (how.width * edge);
