@@ -9,19 +9,13 @@ use crate::mesh::vector::{distance, norm, Point};
 use crate::remesh::curves::Keep;
 use crate::remesh::isotropic::run;
 use crate::remesh::remesher::{Remesher, Surface};
-use crate::remesh::sizing::Sizing;
+use crate::remesh::sizing::{growth, Sizing};
 use crate::remesh::{guard, EditableMesh};
 use crate::{Progress, Result};
-
-/// Edges grow by at most this for every unit of distance from the rim: faster, and the triangles lose their shape.
-const STEEPEST_GROWTH: f64 = 0.5;
 
 /// A patch with a bend beyond this (120 degrees) that was not there before it was remeshed is taken as it was: narrow
 /// tongues of surface that reach into a hole can make the passes lay faces against them.
 const FOLD_COSINE: f64 = -0.5;
-
-/// The area of an equilateral triangle of edge length 1.
-const EQUILATERAL: f64 = 0.433;
 
 /// Refines and remeshes a triangulation. Returns the new points, and the faces as places in the polygon; places from its
 /// length on are the new points.
@@ -51,12 +45,7 @@ pub(super) fn refined(
     let rim_size = |i: usize| 0.5 * (rim_edges[i] + rim_edges[(i + n - 1) % n]);
     let typical = options.edge_length.unwrap_or(rim_length / n as f64);
     let area: f64 = mesh.faces().map(|(f, _)| norm(mesh.area_vector(f))).sum();
-    let most = options.max_faces.max(1) as f64;
-    let growth = if area / (EQUILATERAL * typical * typical) > most {
-        (rim_length / (EQUILATERAL * typical * most)).min(STEEPEST_GROWTH)
-    } else {
-        0.0
-    };
+    let growth = growth(area, rim_length, typical, options.max_faces);
     let mut sizes: Vec<f64> = (0..n)
         .map(|i| options.edge_length.map_or(rim_size(i), |length| length.max(rim_size(i))))
         .chain(flat.extra.iter().map(|_| typical))

@@ -10,6 +10,25 @@ use crate::remesh::EditableMesh;
 /// Sweeps that spread the sizes of the rim over the patch, in every update: they start from the last ones.
 const SWEEPS: usize = 20;
 
+/// Edges grow by at most this for every unit of distance from the rim: faster, and the triangles lose their shape.
+const STEEPEST_GROWTH: f64 = 0.5;
+
+/// The area of an equilateral triangle of edge length 1.
+const EQUILATERAL: f64 = 0.433;
+
+/// How much edges must grow for every unit of distance from a rim of this length, with edges of length `edge`, so that a patch
+/// of this area has about `max_faces` faces at most; 0 if it has no more anyway.
+///
+/// With growth g and a rim of length P some `P / (0.433 g edge)` faces are made, however large the hole.
+pub(crate) fn growth(area: f64, rim: f64, edge: f64, max_faces: usize) -> f64 {
+    let most = max_faces.max(1) as f64;
+    if area / (EQUILATERAL * edge * edge) > most {
+        (rim / (EQUILATERAL * edge * most)).min(STEEPEST_GROWTH)
+    } else {
+        0.0
+    }
+}
+
 /// The target edge length at every vertex.
 #[derive(Debug, Clone)]
 pub(crate) struct Sizing {
@@ -53,6 +72,14 @@ impl Sizing {
         Self { sizes, anchors, uniform: None, growth }
     }
 
+    /// [`Sizing::graded`] with first targets that grow from `length` at the locked edges.
+    pub(crate) fn grown(length: f64, growth: f64, mesh: &EditableMesh, curves: &Curves) -> Self {
+        let mut sizing = Self::graded(vec![length; mesh.n_vertices()], growth, mesh, curves);
+        let far = sizing.distances(mesh, &neighbours(mesh));
+        sizing.sizes.iter_mut().zip(far).for_each(|(size, far)| *size += growth * far);
+        sizing
+    }
+
     /// The target at the edge.
     pub(crate) fn target(&self, a: u32, b: u32) -> f64 {
         0.5 * (self.sizes[a as usize] + self.sizes[b as usize])
@@ -72,7 +99,7 @@ impl Sizing {
     /// Spreads the sizes over the mesh as it is now.
     pub(crate) fn update(&mut self, mesh: &EditableMesh) {
         let neighbours: Vec<Vec<u32>> = if self.uniform.is_none() || self.growth > 0.0 {
-            (0..mesh.n_vertices() as u32).map(|v| mesh.neighbours(v)).collect()
+            neighbours(mesh)
         } else {
             vec![Vec::new(); mesh.n_vertices()]
         };
@@ -128,6 +155,11 @@ impl Sizing {
         far.iter_mut().filter(|d| !d.is_finite()).for_each(|d| *d = 0.0);
         far
     }
+}
+
+/// The neighbours of every vertex.
+fn neighbours(mesh: &EditableMesh) -> Vec<Vec<u32>> {
+    (0..mesh.n_vertices() as u32).map(|v| mesh.neighbours(v)).collect()
 }
 
 /// A number in its total order.

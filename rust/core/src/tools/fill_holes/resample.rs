@@ -1,22 +1,24 @@
 //! The patch with edges as long as those of its rim again, its ridges kept.
 
 use super::region::Region;
-use crate::mesh::vector::distance;
+use crate::mesh::vector::{distance, norm};
 use crate::progress::Progress;
 use crate::remesh::curves::Keep;
 use crate::remesh::editable::Edge;
 use crate::remesh::isotropic::run;
 use crate::remesh::remesher::{Remesher, Surface};
-use crate::remesh::sizing::Sizing;
+use crate::remesh::sizing::{growth, Sizing};
 use crate::remesh::EditableMesh;
 use crate::Result;
 
 /// Remeshes the patch [Botsch and Kobbelt 2004] in `rounds` rounds: where vertices have met on a ridge edges collapse, where the
-/// ridge has stretched the patch they split. Edges bent by more than `ridge` radians stay as curves.
+/// ridge has stretched the patch they split. Edges bent by more than `ridge` radians stay as curves. Where the patch would have
+/// more than about `max_faces` faces, edges grow with their distance from the rim.
 pub(super) fn resample(
     region: &mut Region,
     edge_length: Option<f64>,
     ridge: f64,
+    max_faces: usize,
     rounds: usize,
     progress: &Progress,
 ) -> Result<()> {
@@ -50,8 +52,10 @@ pub(super) fn resample(
     let fixed: Vec<bool> = (0..mesh.n_vertices()).map(|v| v < n).collect();
     let keep = Keep { fixed: &fixed, fixed_faces: false, feature_cosine: ridge.cos() };
     let typical = typical_edge(&mesh);
+    let (growth, rim_edge) = growth_from_rim(&mesh, edge_length, max_faces);
     let mut remesher = Remesher::new(mesh, &surface, &keep, |mesh, curves| match edge_length {
-        Some(length) => Sizing::uniform(length, 0.0, mesh, curves),
+        Some(length) => Sizing::uniform(length, growth, mesh, curves),
+        None if growth > 0.0 => Sizing::grown(rim_edge, growth, mesh, curves),
         None => Sizing::graded(vec![typical; mesh.n_vertices()], 0.0, mesh, curves),
     });
     run(&mut remesher, rounds, &progress.quiet())?;
@@ -59,9 +63,52 @@ pub(super) fn resample(
     Ok(region.replace_patch(&points, &faces, &rim)?)
 }
 
+/// By how much edges of the patch `mesh` must grow for every unit of distance from its rim, and how long those at the rim are.
+fn growth_from_rim(mesh: &EditableMesh, edge_length: Option<f64>, max_faces: usize) -> (f64, f64) {
+    let is_border = |&[a, b]: &[u32; 2]| matches!(mesh.edge(a, b), Edge::Border(..));
+    let length = |[a, b]: [u32; 2]| distance(mesh.position(a), mesh.position(b));
+    let rim: Vec<f64> = mesh.edges().into_iter().filter(is_border).map(length).collect();
+    let total: f64 = rim.iter().sum();
+    let edge = edge_length.unwrap_or(total / rim.len().max(1) as f64);
+    let area: f64 = mesh.faces().map(|(f, _)| norm(mesh.area_vector(f))).sum();
+    (growth(area, total, edge, max_faces), edge)
+}
+
 /// The mean edge length.
 pub(super) fn typical_edge(mesh: &EditableMesh) -> f64 {
     let edges = mesh.edges();
     let sum: f64 = edges.iter().map(|&[a, b]| distance(mesh.position(a), mesh.position(b))).sum();
     sum / f64::max(edges.len() as f64, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use std::collections::HashSet;
+
+    use super::super::neighbourhoods::Neighbourhoods;
+    use super::*;
+    use crate::hole_filling::{faces_at, fill_loop, find_holes, FillOptions};
+    use crate::shapes::grid;
+
+    #[test]
+    fn the_patch_of_a_wide_hole_stays_coarse_until_it_may_be_fine() {
+        let inside = |f: usize| (2..62).contains(&(f / 2 % 64)) && (2..62).contains(&(f / 128));
+        let mesh = grid(64, 64).without_faces(inside).mesh().unwrap();
+        let hole = find_holes(&mesh).unwrap().into_iter().find(|hole| !hole.is_outer_border).unwrap().vertices;
+        let (progress, coarse) = (Progress::new(), FillOptions { max_faces: 1500, ..FillOptions::default() });
+        let patch = fill_loop(&mesh, &hole, &coarse, &progress).unwrap();
+        let at = faces_at(&mesh, std::slice::from_ref(&hole)).unwrap();
+        let near = Neighbourhoods::new(mesh.connectivity(), &at);
+        let n = mesh.connectivity().n_vertices() as u32;
+        let mut region = Region::new(&mesh, &near, &patch, n, 2, &HashSet::new()).unwrap();
+        let mut faces_after = |max_faces| {
+            resample(&mut region, None, 1.0, max_faces, 4, &progress).unwrap();
+            assert!(region.patch_faces().all(|(f, _)| norm(region.mesh.area_vector(f)) > 0.0));
+            region.patch_faces().count()
+        };
+        let counts = [faces_after(1500), faces_after(1500), faces_after(100_000)];
+        assert!(counts[0] < 2500 && counts[1] < 2500, "{counts:?}");
+        assert!(counts[2] > 5000, "{counts:?}");
+    }
 }

@@ -33,6 +33,12 @@ const RESAMPLE_ROUNDS: usize = 2;
 /// than 0.6 radians.
 const RIDGE: f64 = 0.6;
 
+/// Faces that a patch has at most, about, while its ridges form: where it would have more, its edges grow with their distance from
+/// the rim, and become as short as they may be at the end.
+const COARSE_FACES: usize = 8000;
+const FINE_FACES: usize = 40_000;
+const FINE_ROUNDS: usize = 4;
+
 /// Rounds that make the parts between ridges smooth, and steps in each; the metric of each step is that after the one before.
 const FAIR_ROUNDS: usize = 3;
 const FAIR_STEPS: usize = 2;
@@ -79,6 +85,10 @@ pub(super) fn restore(
         return Ok(restored);
     }
     let ridge = RIDGE * least.unwrap_or(1.0);
+    let is_large = region.mesh.n_faces() - region.n_outer > 2 * COARSE_FACES;
+    if is_large {
+        resample(region, options.edge_length, ridge, COARSE_FACES, FINE_ROUNDS, progress)?;
+    }
     let mut sound = region.clone();
     let worst = worst_bend(&region.mesh).min(FOLD_COSINE);
     restored.status = HoleStatus::Finished;
@@ -107,7 +117,7 @@ pub(super) fn restore(
             break;
         }
         if sharpness > 0.0 && cycle % RESAMPLE_EVERY == 0 {
-            resample(region, options.edge_length, ridge, RESAMPLE_ROUNDS, progress)?;
+            resample(region, options.edge_length, ridge, COARSE_FACES, RESAMPLE_ROUNDS, progress)?;
             flip_along_ridges(region, SWEEPS);
         }
     }
@@ -118,6 +128,11 @@ pub(super) fn restore(
             finish(region, options, ridge, progress)?;
         }
         watch(region, 1.0, restored.iterations, Some(restored.energy[1]));
+        if is_large {
+            resample(region, options.edge_length, ridge, FINE_FACES, FINE_ROUNDS, progress)?;
+            flip_along_ridges(region, SWEEPS);
+            fair(region, ridge, progress)?;
+        }
     }
     if worst_bend(&region.mesh) < worst {
         *region = sound;
@@ -128,7 +143,7 @@ pub(super) fn restore(
 /// Makes the parts between ridges smooth. Between the rounds the patch is remeshed: thin triangles would hold the next one back.
 fn finish(region: &mut Region, options: &FillHolesOptions, ridge: f64, progress: &Progress) -> Result<()> {
     for _ in 0..FAIR_ROUNDS {
-        resample(region, options.edge_length, ridge, RESAMPLE_ROUNDS, progress)?;
+        resample(region, options.edge_length, ridge, COARSE_FACES, RESAMPLE_ROUNDS, progress)?;
         for _ in 0..FAIR_STEPS {
             flip_along_ridges(region, SWEEPS);
             fair(region, ridge, progress)?;
