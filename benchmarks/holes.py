@@ -1,12 +1,13 @@
 """Fill holes with known truth by every tool, and write the tables: `holes.md`, `holes.json`.
 
     python scripts/setup_env.py benchmarks/holes.py [--only WORDS] [--tools TOOL ...] [--stress [COUNT]]
-        [--site FOLDER]
+        [--again] [--limits KIND ...] [--site FOLDER]
 
 `--only` takes the kinds of holes with these words in their name, `--tools` some tools, `--stress` random
-holes only: these print and keep nothing. `--site` names a folder with the package `ridgeform`, instead of
-building the wheel. The peers get an environment of their own; what cannot be installed, crashes or takes too
-long is named in the table.
+holes only: these print and keep nothing. `--again` measures all of ours again and keeps the rows of the
+peers, `--limits` only how filling grows, or the random holes. `--site` names a folder with the package
+`ridgeform`, instead of building the wheel. The peers get an environment of their own; what cannot be
+installed, crashes or takes too long is named in the table.
 """
 
 from __future__ import annotations
@@ -32,6 +33,8 @@ from run import machine  # noqa: E402
 from workspace import WHEEL_SITE  # noqa: E402
 
 RESULTS = ROOT / "benchmarks/holes"
+LIMITS = ("locality", "long", "stress")
+"""What `holes_limits.py` measures."""
 
 
 def measure(words: str, tools: list[str], site: Path, scratch: Path) -> list[Record]:
@@ -60,6 +63,8 @@ def main() -> None:
     parser.add_argument(
         "--stress", nargs="?", const="500", metavar="COUNT", help="only random holes; keeps nothing"
     )
+    parser.add_argument("--again", action="store_true", help="measure ours again, keep the peers")
+    parser.add_argument("--limits", nargs="+", choices=LIMITS, help="measure these again, keep the rest")
     choice = parser.parse_args()
     tools = choice.tools or list(holes_table.NAMES)
     if holes_run.OURS in tools and choice.site is None:
@@ -67,13 +72,20 @@ def main() -> None:
     site = choice.site or WHEEL_SITE
     full = not (choice.only or choice.tools or choice.stress)
     results: Record = {"machine": machine(), "cases": []}
-    if choice.stress:
+    if choice.limits or choice.again:
+        results = json.loads(RESULTS.with_suffix(".json").read_text(encoding="utf-8"))
+    if choice.again:
+        with tempfile.TemporaryDirectory() as scratch:
+            again = measure("", [holes_run.OURS], site, Path(scratch))
+        for old, new in zip(results["cases"], again, strict=True):
+            old["tools"] |= new["tools"]
+    elif choice.stress:
         results["stress"] = holes_run.limit("stress", site, choice.stress)
-    else:
+    elif not choice.limits:
         with tempfile.TemporaryDirectory() as scratch:
             results["cases"] = measure(choice.only, tools, site, Path(scratch))
     if full:
-        for kind in ("locality", "long", "stress"):
+        for kind in choice.limits or LIMITS:
             print(f"== {kind}", flush=True)
             results[kind] = holes_run.limit(kind, site)
     text = holes_table.full(results)

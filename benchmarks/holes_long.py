@@ -48,7 +48,7 @@ def spiral(count: int) -> Arrays:
     inside = np.zeros((size, size), bool)
     reach = range(-WIDTH // 2, WIDTH // 2 + 1)
     for dx, dy in ((x, y) for x in reach for y in reach if x * x + y * y <= WIDTH**2 / 4):
-        inside[tuple((path + [dx, dy]).astype(int).T)] = True
+        inside[tuple((path + np.array([dx, dy])).astype(int).T)] = True
     cell = np.minimum(vertices[faces][..., :2].min(axis=1).astype(int), size - 1)
     return without(_folded(vertices, 0.5 * size + 0.3), faces, inside[tuple(cell.T)])
 

@@ -103,47 +103,65 @@ def failures(results: Record) -> str:
     return "\n".join(lines) + "\n" if lines else ""
 
 
+LOCALITY = """Processor time on one thread, median of five. *Filling* is the call `fill_holes` on a mesh that
+was read; *reading* makes a `Mesh` of two arrays, *joining* makes the arrays of the whole mesh with its patch,
+where they are asked for.
+"""
+LONG = "Processor time on one thread.\n"
+STRESS = "Processor time on one thread.\n"
+
+
 def limits(results: Record) -> list[str]:
     """Growth with the mesh and with the hole, and the random holes."""
     parts = []
-    for key, title, head in (
-        ("locality", "The same hole in larger meshes", ["vertices", "new faces", "time", "of the first"]),
-        ("long", "Long loops", ["loop", "its vertices", "new faces", "worst triangle", "time"]),
+    for key, title, about, table in (
+        ("locality", "The same hole in larger meshes", LOCALITY, _locality),
+        ("long", "Long loops", LONG, _long),
+        ("stress", "Random holes", STRESS, _stress),
     ):
-        if key not in results:
-            continue
-        parts.append(f"## {title}\n")
-        found = results[key].get("found")
-        if found is None:
-            parts.append(results[key]["error"] + "\n")
-        elif key == "locality":
-            first = found[0]["seconds"]
-            rows = [
-                [r["vertices"], r["new_faces"], duration(r["seconds"]), f"{r['seconds'] / first:.2f}"]
-                for r in found
-            ]
-            parts.append(grid(head, rows))
-        else:
-            rows = [
-                [
-                    r["loop"],
-                    r["loop_vertices"],
-                    r["new_faces"],
-                    f"{r['worst_quality']:.2f}",
-                    duration(r["seconds"]),
-                ]
-                for r in found
-            ]
-            parts.append(grid(head, rows))
-    if "stress" in results:
-        parts += ["## Random holes\n", _stress(results["stress"])]
+        if key in results:
+            found = results[key].get("found")
+            parts += [f"## {title}\n", about, table(found) if found else results[key]["error"] + "\n"]
     return parts
 
 
-def _stress(record: Record) -> str:
-    found = record.get("found")
-    if found is None:
-        return record["error"] + "\n"
+def _locality(found: list[Record]) -> str:
+    head = [
+        "hole",
+        "edges around it",
+        "vertices",
+        "new faces",
+        "filling",
+        "of the first",
+        "reading",
+        "joining",
+    ]
+    first = {}
+    rows = [
+        [
+            r["hole"],
+            r["loop_vertices"],
+            r["vertices"],
+            r["new_faces"],
+            duration(r["seconds"]),
+            f"{r['seconds'] / first.setdefault(r['hole'], r['seconds']):.2f}",
+            duration(r["reading"]),
+            duration(r["joining"]),
+        ]
+        for r in found
+    ]
+    return grid(head, rows)
+
+
+def _long(found: list[Record]) -> str:
+    rows = [
+        [r["loop"], r["loop_vertices"], r["new_faces"], f"{r['worst_quality']:.2f}", duration(r["seconds"])]
+        for r in found
+    ]
+    return grid(["loop", "its vertices", "new faces", "worst triangle", "time"], rows)
+
+
+def _stress(found: Record) -> str:
     text = f"{found['holes']} holes in {found['meshes']} meshes, cut out of ten: "
     text += f"{len(found['wrong'])} meshes with a fault. "
     if found["median_seconds"] is not None:
