@@ -85,10 +85,35 @@ pub(super) fn restore(
         return Ok(restored);
     }
     let ridge = RIDGE * least.unwrap_or(1.0);
-    let is_large = region.mesh.n_faces() - region.n_outer > 2 * COARSE_FACES;
-    if is_large {
-        resample(region, options.edge_length, ridge, COARSE_FACES, FINE_ROUNDS, progress)?;
+    let is_remeshed = sharpness > 0.0 && options.iterations > 0;
+    if !is_remeshed || region.mesh.n_faces() - region.n_outer <= 2 * COARSE_FACES {
+        form_ridges(region, least, &mut restored, options, progress, watch)?;
+        return Ok(restored);
     }
+    resample(region, options.edge_length, ridge, COARSE_FACES, FINE_ROUNDS, progress)?;
+    form_ridges(region, least, &mut restored, options, progress, watch)?;
+    let coarse = region.clone();
+    resample(region, options.edge_length, ridge, FINE_FACES, FINE_ROUNDS, progress)?;
+    flip_along_ridges(region, SWEEPS);
+    fair(region, ridge, progress)?;
+    if worst_bend(&region.mesh) < worst_bend(&coarse.mesh).min(FOLD_COSINE) {
+        *region = coarse;
+    }
+    watch(region, 1.0, restored.iterations, Some(restored.energy[1]));
+    Ok(restored)
+}
+
+/// The cycles that bring the ridges back; `least` is the least bend of those around the hole.
+fn form_ridges(
+    region: &mut Region,
+    least: Option<f64>,
+    restored: &mut Restored,
+    options: &FillHolesOptions,
+    progress: &Progress,
+    watch: &mut Watch<'_>,
+) -> Result<()> {
+    let sharpness = restored.sharpness;
+    let ridge = RIDGE * least.unwrap_or(1.0);
     let mut sound = region.clone();
     let worst = worst_bend(&region.mesh).min(FOLD_COSINE);
     restored.status = HoleStatus::Finished;
@@ -97,7 +122,7 @@ pub(super) fn restore(
         progress.check()?;
         if progress.is_finishing() {
             restored.status = HoleStatus::Stopped;
-            return Ok(restored);
+            return Ok(());
         }
         let steps = STEPS.min(options.iterations - restored.iterations);
         let flowed = flow(region, steps, sharpness, options, progress)?;
@@ -128,16 +153,11 @@ pub(super) fn restore(
             finish(region, options, ridge, progress)?;
         }
         watch(region, 1.0, restored.iterations, Some(restored.energy[1]));
-        if is_large {
-            resample(region, options.edge_length, ridge, FINE_FACES, FINE_ROUNDS, progress)?;
-            flip_along_ridges(region, SWEEPS);
-            fair(region, ridge, progress)?;
-        }
     }
     if worst_bend(&region.mesh) < worst {
         *region = sound;
     }
-    Ok(restored)
+    Ok(())
 }
 
 /// Makes the parts between ridges smooth. Between the rounds the patch is remeshed: thin triangles would hold the next one back.
