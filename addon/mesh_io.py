@@ -35,6 +35,8 @@ def object_mode() -> Iterator[None]:
 
 def triangles(mesh: bpy.types.Mesh) -> np.ndarray:
     """The loop triangles (m, 3) int32: vertices of the triangles that Blender draws for faces of any size."""
+    if len(mesh.loops) == 3 * len(mesh.polygons):
+        return corner_vertices(mesh).reshape(-1, 3)
     return corner_vertices(mesh)[triangle_corners(mesh)]
 
 

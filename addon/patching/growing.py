@@ -79,7 +79,7 @@ def _with_edges(
     n = n_old + len(extension.patch.points)
     touched = np.zeros(n, bool)
     touched[triangles] = True
-    old = np.flatnonzero(touched[edges].all(axis=1))
+    old = np.flatnonzero(touched[edges[:, 0]] & touched[edges[:, 1]])
 
     def key(ends: np.ndarray) -> np.ndarray:
         return np.sort(ends, axis=1).astype(np.int64) @ (n, 1)

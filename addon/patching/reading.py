@@ -14,20 +14,19 @@ FLAT = "sharp_face"
 
 
 def read_source(
-    mesh: bpy.types.Mesh, coordinates: np.ndarray, corners: np.ndarray, weld: Weld, rims: np.ndarray
+    mesh: bpy.types.Mesh, coordinates: np.ndarray, triangles: np.ndarray, weld: Weld, rims: np.ndarray
 ) -> Source:
-    """Read a mesh with coordinates (n, 3), those of `reference_coordinates`, and triangle corners (m, 3).
+    """Read a mesh with coordinates (n, 3), those of `reference_coordinates`, and loop triangles (m, 3).
 
     Of vertex groups only what lies around `rims` (r,) is read, welded vertices.
     """
-    triangles = mesh_io.corner_vertices(mesh)[corners]
-    ring = np.flatnonzero(ring_triangles(weld.vertex[triangles], rims) & weld.kept)
+    ring = np.flatnonzero(ring_triangles(weld.of(triangles), rims) & weld.kept)
     near = np.unique(triangles[ring])
     return Source(
         coordinates,
         triangles,
         triangles[ring],
-        corners[ring],
+        mesh_io.triangle_corners(mesh)[ring],
         mesh_io.triangle_faces(mesh)[ring],
         mesh_io.edges(mesh),
         weld,

@@ -52,8 +52,10 @@ def ring_triangles(triangles: np.ndarray, vertices: np.ndarray) -> np.ndarray:
     """Which triangles (m,) bool lie in the rings around some of the vertices of triangles (m, 3)."""
     near = np.zeros(int(triangles.max()) + 1, bool)
     near[vertices] = True
+    a, b, c = triangles.T
     for _ in range(RINGS):
-        kept = near[triangles].any(axis=1)
+        # Column by column: NumPy takes ten times as long along an axis of three.
+        kept = near[a] | near[b] | near[c]
         near[triangles[kept]] = True
     return kept
 

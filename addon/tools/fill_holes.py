@@ -71,8 +71,7 @@ class HoleFilling(Run):
     def prepare(self, obj: bpy.types.Object) -> HolePart:
         """Read one mesh, and choose which of its holes are filled."""
         coordinates = reference_coordinates(obj.data)
-        corners = mesh_io.triangle_corners(obj.data)
-        weld, _ = welded(obj, coordinates, mesh_io.corner_vertices(obj.data)[corners])
+        weld, triangles = welded(obj, coordinates)
         try:
             mesh = ridgeform.Mesh(coordinates[weld.first].astype(np.float64), weld.triangles)
             holes = ridgeform.find_holes(mesh)
@@ -90,7 +89,7 @@ class HoleFilling(Run):
         if not chosen:
             raise RefusedError(f'No hole of "{obj.name}" was filled: {"; ".join(reasons)}')
         loops = [hole.vertices for hole in chosen]
-        source = read_source(obj.data, coordinates, corners, weld, np.concatenate(loops))
+        source = read_source(obj.data, coordinates, triangles, weld, np.concatenate(loops))
         part = HolePart(obj, Task(obj.name, None), len(coordinates), reasons, source=source, loops=loops)
         part.task.call = partial(_filled, part, mesh, hole_options(self.settings), self.settings.material)
         return part

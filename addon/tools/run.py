@@ -156,8 +156,8 @@ def welded(
     triangles = mesh_io.triangles(obj.data) if triangles is None else triangles
     if len(triangles) == 0:
         raise RefusedError(f'"{obj.name}" has no faces')
-    broken = np.flatnonzero(~np.isfinite(coordinates).all(axis=1))
-    if len(broken):
+    if not np.isfinite(coordinates).all():
+        broken = np.flatnonzero(~np.isfinite(coordinates).all(axis=1))
         raise RefusedError(
             f'Vertex {broken[0]} of "{obj.name}" has a coordinate that is not a finite number '
             f"({len(broken)} in all): delete or move it"

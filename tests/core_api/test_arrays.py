@@ -154,3 +154,9 @@ def test_bad_masks_are_refused(fixed, message):
         ridgeform.denoise(mesh, VERTICES, fidelity=1.0, fixed=fixed)
     with pytest.raises(ridgeform.ArgumentError, match=message):
         ridgeform.stylize(mesh, fixed=fixed)
+
+
+@pytest.mark.parametrize("dtype", [np.int32, np.int64])
+def test_a_negative_vertex_is_named(dtype):
+    with pytest.raises(ridgeform.MeshError, match=r"face 1 names vertex -7"):
+        ridgeform.Mesh(np.eye(3), np.array([[0, 1, 2], [0, 1, -7]], dtype))

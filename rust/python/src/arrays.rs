@@ -2,8 +2,8 @@
 
 use numpy::ndarray::Array2;
 use numpy::{
-    dtype, Element, IntoPyArray, PyArray1, PyArray2, PyArrayDescr, PyArrayDescrMethods, PyReadonlyArrayDyn,
-    PyUntypedArray, PyUntypedArrayMethods,
+    dtype, Element, IntoPyArray, PyArray1, PyArray2, PyArrayDescr, PyArrayDescrMethods, PyReadonlyArray2,
+    PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -47,6 +47,12 @@ impl<T: Copy> Numbers<T> {
         }
         Ok(self.data)
     }
+}
+
+/// The array itself if it is one of shape (k, N) in C order with entries of type `T`, to be read without a copy.
+pub fn plain_rows<'py, T: Element, const N: usize>(object: &Bound<'py, PyAny>) -> Option<PyReadonlyArray2<'py, T>> {
+    let array: PyReadonlyArray2<'py, T> = object.extract().ok()?;
+    (array.shape()[1] == N && array.is_c_contiguous() && array.as_slice().is_ok()).then_some(array)
 }
 
 /// Read floating-point numbers.

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use ridgeform_core::error::MeshError;
 use ridgeform_core::{mesh as core, Error};
 
-use crate::arrays::{float_rows, floats, index_array, index_rows, integers};
+use crate::arrays::{float_rows, floats, index_array, index_rows, integers, plain_rows};
 use crate::{doorway, errors, options};
 
 /// An immutable triangle mesh from vertices (n,3), any length unit, and faces (m,3), counter-clockwise vertex indices.
@@ -48,7 +48,10 @@ impl Mesh {
 impl Mesh {
     #[new]
     fn from_arrays(py: Python<'_>, vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let vertices = floats("vertices", vertices)?.rows(py, "vertices")?;
+        let vertices = match plain_rows::<f64, 3>(vertices) {
+            Some(array) => array.as_slice()?.as_chunks().0.to_vec(),
+            None => floats("vertices", vertices)?.rows(py, "vertices")?,
+        };
         let faces = read_faces(faces, Some(vertices.len()))?;
         doorway::call_briefly(py, || Ok(core::Mesh::new(vertices, faces)?)).map(Self::new)
     }
@@ -173,17 +176,29 @@ impl MeshReport {
 /// Read faces; indices that the core's type cannot hold are refused here, the others by the core.
 fn read_faces(faces: &Bound<'_, PyAny>, n_vertices: Option<usize>) -> PyResult<Vec<[u32; 3]>> {
     let py = faces.py();
-    let rows = integers("faces", faces)?.rows::<3>(py, "faces")?;
-    let convert = |(face, row): (usize, &[i64; 3])| {
-        let mut indices = [0; 3];
-        for (index, &vertex) in indices.iter_mut().zip(row) {
-            // Half of the range is the most that int32 arrays can give back.
-            *index = u32::try_from(vertex).ok().filter(|&v| v <= i32::MAX as u32).ok_or_else(|| {
-                let n_vertices = n_vertices.unwrap_or(i32::MAX as usize);
-                errors::exception(py, &Error::Mesh(MeshError::VertexOutOfRange { face, vertex, n_vertices }))
-            })?;
-        }
-        Ok(indices)
-    };
-    rows.iter().enumerate().map(convert).collect()
+    // The two usual types are read where they are: a copy of each kind costs as much as all else here.
+    if let Some(array) = plain_rows::<i32, 3>(faces) {
+        return vertex_rows(py, array.as_slice()?.as_chunks().0, n_vertices);
+    }
+    if let Some(array) = plain_rows::<i64, 3>(faces) {
+        return vertex_rows(py, array.as_slice()?.as_chunks().0, n_vertices);
+    }
+    vertex_rows(py, &integers("faces", faces)?.rows::<3>(py, "faces")?, n_vertices)
+}
+
+/// The rows in the core's type.
+fn vertex_rows<T: Copy + Into<i64>>(
+    py: Python<'_>,
+    rows: &[[T; 3]],
+    n_vertices: Option<usize>,
+) -> PyResult<Vec<[u32; 3]>> {
+    // Half of the range is the most that int32 arrays can give back.
+    let fits = |&vertex: &T| (0..=i64::from(i32::MAX)).contains(&vertex.into());
+    if let Some(face) = rows.iter().position(|row| !row.iter().all(fits)) {
+        let vertex = rows[face].iter().find(|&vertex| !fits(vertex)).map_or(-1, |&vertex| vertex.into());
+        let n_vertices = n_vertices.unwrap_or(i32::MAX as usize);
+        return Err(errors::exception(py, &Error::Mesh(MeshError::VertexOutOfRange { face, vertex, n_vertices })));
+    }
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    Ok(rows.iter().map(|row| row.map(|vertex| vertex.into() as u32)).collect())
 }
