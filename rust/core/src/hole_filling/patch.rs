@@ -57,7 +57,7 @@ pub(super) fn refined(
     refine(&mut mesh, &mut sizes, size_between, progress)?;
     let refined = (mesh.clone(), guard::worst_bend(&mesh));
     let fixed: Vec<bool> = (0..mesh.n_vertices()).map(|v| v < n).collect();
-    let keep = Keep { fixed: &fixed, fixed_faces: false, feature_cosine: -2.0 };
+    let keep = Keep { fixed: &fixed, fixed_faces: false, feature_cosine: -2.0, features: None };
     let mut remesher = Remesher::new(mesh, &surface, &keep, |mesh, curves| match options.edge_length {
         Some(length) => Sizing::uniform(length, growth, mesh, curves),
         None => Sizing::graded(sizes.clone(), growth, mesh, curves),

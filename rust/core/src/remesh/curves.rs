@@ -42,6 +42,8 @@ pub(crate) struct Keep<'a> {
     pub(crate) fixed_faces: bool,
     /// Edges whose faces' normals have less than this cosine are features.
     pub(crate) feature_cosine: f64,
+    /// Edges, smaller vertex first, that are features in any case.
+    pub(crate) features: Option<&'a HashSet<[u32; 2]>>,
 }
 
 impl Curves {
@@ -66,6 +68,7 @@ impl Curves {
                 Edge::Interior(wings) => {
                     let [m, n] = wings.faces.map(|f| mesh.area_vector(f));
                     dot(m, n) < keep.feature_cosine * norm(m) * norm(n)
+                        || keep.features.is_some_and(|features| features.contains(&[a, b]))
                 }
             };
             if is_line && is_fixed(a) && is_fixed(b) {

@@ -85,7 +85,7 @@ pub fn remesh(mesh: &Mesh, options: &RemeshOptions, progress: &Progress) -> Resu
         Some(angle) if (0.0..=std::f64::consts::PI).contains(&angle) => angle.cos(),
         Some(angle) => return Err(Error::argument("feature_angle", format!("got {angle}; pass 0 to 180 degrees"))),
     };
-    let keep = Keep { fixed: &fixed, fixed_faces: true, feature_cosine };
+    let keep = Keep { fixed: &fixed, fixed_faces: true, feature_cosine, features: None };
     let surface = Surface::of(&editable);
     let mut remesher =
         Remesher::new(editable, &surface, &keep, |mesh, curves| Sizing::uniform(edge_length, 0.0, mesh, curves));

@@ -164,7 +164,7 @@ fn neighbours(mesh: &EditableMesh) -> Vec<Vec<u32>> {
 
 /// A number in its total order.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Ordered(f64);
+pub(crate) struct Ordered(pub(crate) f64);
 
 impl Eq for Ordered {}
 

@@ -5,6 +5,7 @@ mod denoise;
 mod diffusion_curves;
 mod energy_options;
 mod fill_holes;
+mod heights;
 mod interpolate;
 mod modes;
 mod options;

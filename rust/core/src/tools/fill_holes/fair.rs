@@ -94,7 +94,7 @@ impl Cut {
     }
 }
 
-fn root(parents: &mut [u32], mut x: u32) -> u32 {
+pub(super) fn root(parents: &mut [u32], mut x: u32) -> u32 {
     while parents[x as usize] != x {
         parents[x as usize] = parents[parents[x as usize] as usize];
         x = parents[x as usize];

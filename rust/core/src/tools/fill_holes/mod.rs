@@ -7,13 +7,17 @@
 //! parts between the ridges become smooth ([`fair`]) and the ridges go on as those around ([`ridge_curves`]). No move
 //! folds the surface ([`guard`]).
 
+mod assign;
 mod choice;
 mod decide;
+mod extend;
 mod fair;
 mod flips;
 mod flow;
 mod guard;
+mod model;
 mod neighbourhoods;
+mod parts;
 mod region;
 mod resample;
 mod restore;

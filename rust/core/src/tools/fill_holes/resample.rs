@@ -1,23 +1,42 @@
 //! The patch with edges as long as those of its rim again, its ridges kept.
 
+use std::collections::{HashMap, HashSet};
+
 use super::region::Region;
 use crate::mesh::vector::{distance, norm};
 use crate::progress::Progress;
 use crate::remesh::curves::Keep;
-use crate::remesh::editable::Edge;
+use crate::remesh::editable::{key, Edge};
 use crate::remesh::isotropic::run;
 use crate::remesh::remesher::{Remesher, Surface};
 use crate::remesh::sizing::{growth, Sizing};
 use crate::remesh::EditableMesh;
 use crate::Result;
 
+/// What a remeshing keeps and joins.
+pub(super) struct Kept<'a> {
+    /// Edges bent by more than this (radians) stay as curves,
+    pub ridge: f64,
+    /// and so do these, smaller vertex first.
+    pub borders: &'a [[u32; 2]],
+    /// Free vertices and the neighbours with which they are joined first.
+    pub merges: &'a [[u32; 2]],
+}
+
+impl Kept<'_> {
+    /// Keeps edges bent by more than `ridge` radians.
+    pub(super) fn ridges(ridge: f64) -> Self {
+        Self { ridge, borders: &[], merges: &[] }
+    }
+}
+
 /// Remeshes the patch [Botsch and Kobbelt 2004] in `rounds` rounds: where vertices have met on a ridge edges collapse, where the
-/// ridge has stretched the patch they split. Edges bent by more than `ridge` radians stay as curves. Where the patch would have
-/// more than about `max_faces` faces, edges grow with their distance from the rim.
+/// ridge has stretched the patch they split. Where the patch would have more than about `max_faces` faces, edges grow with their
+/// distance from the rim.
 pub(super) fn resample(
     region: &mut Region,
     edge_length: Option<f64>,
-    ridge: f64,
+    kept: &Kept<'_>,
     max_faces: usize,
     rounds: usize,
     progress: &Progress,
@@ -48,9 +67,22 @@ pub(super) fn resample(
             }
         }
     }
+    let shift = region.anchors.len() as u32 - n as u32;
+    let number = |v: u32| if region.is_anchor(v) { place(v) } else { Some(v - shift) };
+    let mut merged = HashMap::new();
+    for &[from, to] in kept.merges {
+        if let (Some(from), Some(to)) = (number(from), number(to)) {
+            if !merged.contains_key(&to) && mesh.collapse(from, to, mesh.position(to)) {
+                merged.insert(from, to);
+            }
+        }
+    }
+    let number = |v: u32| number(v).map(|v| merged.get(&v).copied().unwrap_or(v));
+    let features: HashSet<[u32; 2]> =
+        kept.borders.iter().filter_map(|&[a, b]| Some(key(number(a)?, number(b)?))).filter(|[a, b]| a != b).collect();
     let surface = Surface::of(&mesh);
     let fixed: Vec<bool> = (0..mesh.n_vertices()).map(|v| v < n).collect();
-    let keep = Keep { fixed: &fixed, fixed_faces: false, feature_cosine: ridge.cos() };
+    let keep = Keep { fixed: &fixed, fixed_faces: false, feature_cosine: kept.ridge.cos(), features: Some(&features) };
     let typical = typical_edge(&mesh);
     let (growth, rim_edge) = growth_from_rim(&mesh, edge_length, max_faces);
     let mut remesher = Remesher::new(mesh, &surface, &keep, |mesh, curves| match edge_length {
@@ -103,7 +135,7 @@ mod tests {
         let n = mesh.connectivity().n_vertices() as u32;
         let mut region = Region::new(&mesh, &near, &patch, n, 2, &HashSet::new()).unwrap();
         let mut faces_after = |max_faces| {
-            resample(&mut region, None, 1.0, max_faces, 4, &progress).unwrap();
+            resample(&mut region, None, &Kept::ridges(1.0), max_faces, 4, &progress).unwrap();
             assert!(region.patch_faces().all(|(f, _)| norm(region.mesh.area_vector(f)) > 0.0));
             region.patch_faces().count()
         };

@@ -1,11 +1,12 @@
 //! One hole: the smooth patch, and from it the sharp one where the surroundings ask for it.
 
 use super::decide::least_ridge;
+use super::extend::extend;
 use super::fair::fair;
 use super::flips::flip_along_ridges;
 use super::flow::flow;
 use super::region::Region;
-use super::resample::{resample, typical_edge};
+use super::resample::{resample, typical_edge, Kept};
 use super::snap::{snap, Snapping};
 use super::start::smooth;
 use super::{FillHolesOptions, HoleStatus, Sharpness};
@@ -25,9 +26,12 @@ const STEPS: usize = 3;
 const SNAP_FROM: usize = 3;
 const SNAPS: usize = 2;
 
+/// Cycles before the parts around the hole are extended into it.
+const EXTEND_AFTER: usize = 2;
+
 /// Every so many cycles the patch is remeshed: snapping crowds vertices on ridges, and ridges stretch the patch.
 const RESAMPLE_EVERY: usize = 4;
-const RESAMPLE_ROUNDS: usize = 2;
+pub(super) const RESAMPLE_ROUNDS: usize = 2;
 
 /// Edges of the patch bent by more than this part of the ridges around the hole are ridges; where those are unknown, by more
 /// than 0.6 radians.
@@ -35,7 +39,7 @@ const RIDGE: f64 = 0.6;
 
 /// Faces that a patch has at most, about, while its ridges form: where it would have more, its edges grow with their distance from
 /// the rim, and become as short as they may be at the end.
-const COARSE_FACES: usize = 8000;
+pub(super) const COARSE_FACES: usize = 8000;
 const FINE_FACES: usize = 40_000;
 const FINE_ROUNDS: usize = 4;
 
@@ -90,10 +94,10 @@ pub(super) fn restore(
         form_ridges(region, least, &mut restored, options, progress, watch)?;
         return Ok(restored);
     }
-    resample(region, options.edge_length, ridge, COARSE_FACES, FINE_ROUNDS, progress)?;
+    resample(region, options.edge_length, &Kept::ridges(ridge), COARSE_FACES, FINE_ROUNDS, progress)?;
     form_ridges(region, least, &mut restored, options, progress, watch)?;
     let coarse = region.clone();
-    resample(region, options.edge_length, ridge, FINE_FACES, FINE_ROUNDS, progress)?;
+    resample(region, options.edge_length, &Kept::ridges(ridge), FINE_FACES, FINE_ROUNDS, progress)?;
     flip_along_ridges(region, SWEEPS);
     fair(region, ridge, progress)?;
     if worst_bend(&region.mesh) < worst_bend(&coarse.mesh).min(FOLD_COSINE) {
@@ -141,8 +145,22 @@ fn form_ridges(
             restored.status = HoleStatus::Converged;
             break;
         }
+        if sharpness > 0.0 && least.is_some() && cycle == EXTEND_AFTER {
+            let mut extended = region.clone();
+            if let Some(flat) = extend(&mut extended, ridge, options.edge_length, progress)? {
+                if !flat {
+                    finish(&mut extended, options, ridge, progress)?;
+                }
+                if worst_bend(&extended.mesh) >= worst {
+                    *region = extended;
+                    watch(region, 1.0, restored.iterations, Some(restored.energy[1]));
+                    restored.status = HoleStatus::Converged;
+                    return Ok(());
+                }
+            }
+        }
         if sharpness > 0.0 && cycle % RESAMPLE_EVERY == 0 {
-            resample(region, options.edge_length, ridge, COARSE_FACES, RESAMPLE_ROUNDS, progress)?;
+            resample(region, options.edge_length, &Kept::ridges(ridge), COARSE_FACES, RESAMPLE_ROUNDS, progress)?;
             flip_along_ridges(region, SWEEPS);
         }
     }
@@ -163,7 +181,7 @@ fn form_ridges(
 /// Makes the parts between ridges smooth. Between the rounds the patch is remeshed: thin triangles would hold the next one back.
 fn finish(region: &mut Region, options: &FillHolesOptions, ridge: f64, progress: &Progress) -> Result<()> {
     for _ in 0..FAIR_ROUNDS {
-        resample(region, options.edge_length, ridge, COARSE_FACES, RESAMPLE_ROUNDS, progress)?;
+        resample(region, options.edge_length, &Kept::ridges(ridge), COARSE_FACES, RESAMPLE_ROUNDS, progress)?;
         for _ in 0..FAIR_STEPS {
             flip_along_ridges(region, SWEEPS);
             fair(region, ridge, progress)?;

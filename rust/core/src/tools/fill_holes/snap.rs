@@ -136,7 +136,7 @@ fn step(region: &Region, surface: &Surface, bent: &[bool], around: &mut Rings<'_
 const ROTATIONS: usize = 30;
 
 /// Eigenvalues and unit eigenvectors of a symmetric matrix, by Jacobi rotations.
-fn eigen(mut a: [[f64; 3]; 3]) -> ([f64; 3], [Point; 3]) {
+pub(super) fn eigen(mut a: [[f64; 3]; 3]) -> ([f64; 3], [Point; 3]) {
     let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     for _ in 0..ROTATIONS {
         let off = a[0][1].abs() + a[0][2].abs() + a[1][2].abs();

@@ -1,9 +1,10 @@
 //! What a segment would look like at a face if it went on there: a plane, or a quadratic function fitted to its faces nearby.
 
 use super::surface::Surface;
-use crate::mesh::vector::{add, cross, dot, norm, scale, sub, unit, Point};
+use crate::mesh::vector::{add, dot, norm, scale, sub, unit, Point};
 use crate::solve::eigen::symmetric_eigen;
 use crate::solve::Columns;
+use crate::tools::heights::{frame, solve, TERMS};
 
 /// Faces of a segment that a local fit looks at: few where the surface is clean and may be curved, more where noise has to be
 /// averaged out; as many more for each mean edge of noise, up to a limit.
@@ -15,9 +16,6 @@ const MOST_NEARBY: f64 = 60.0;
 pub(super) fn patch_size(noise: f64) -> usize {
     (NEARBY + NEARBY_OF_NOISE * noise).min(MOST_NEARBY) as usize
 }
-
-/// Coefficients of `1, s, t, s², st, t²`.
-const TERMS: usize = 6;
 
 /// Weight of the pull of the quadratic terms to zero, in squared lengths of the fitted patch: it decides where few faces do not.
 const STIFFNESS: f64 = 1e-3;
@@ -165,37 +163,6 @@ impl Patch {
     }
 }
 
-/// Two unit vectors in the plane of the unit `normal`, and the normal.
-fn frame(normal: [f64; 3]) -> [[f64; 3]; 3] {
-    let least = (0..3).min_by(|&i, &j| normal[i].abs().total_cmp(&normal[j].abs())).unwrap_or(0);
-    let mut axis = [0.0; 3];
-    axis[least] = 1.0;
-    let across = dot(axis, normal);
-    let s = unit(sub(axis, scale(normal, across)));
-    [s, cross(normal, s), normal]
-}
-
-/// Solves a small positive definite system by Cholesky's factorisation.
-fn solve(mut a: [[f64; TERMS]; TERMS], mut b: [f64; TERMS]) -> [f64; TERMS] {
-    for j in 0..TERMS {
-        for k in 0..j {
-            let factor = a[j][k];
-            (j..TERMS).for_each(|i| a[i][j] -= factor * a[i][k]);
-        }
-        let pivot = a[j][j].max(f64::MIN_POSITIVE).sqrt();
-        (j..TERMS).for_each(|i| a[i][j] /= pivot);
-    }
-    for i in 0..TERMS {
-        (0..i).for_each(|k| b[i] -= a[i][k] * b[k]);
-        b[i] /= a[i][i];
-    }
-    for i in (0..TERMS).rev() {
-        (i + 1..TERMS).for_each(|k| b[i] -= a[k][i] * b[k]);
-        b[i] /= a[i][i];
-    }
-    b
-}
-
 /// The `count` faces of the segment of `start` that are nearest to it in steps over edges. Those at the border may be in the wrong
 /// segment and are left out, unless they are most of those nearby. `seen` marks faces by `stamp`.
 pub(super) fn nearby(
@@ -228,21 +195,5 @@ pub(super) fn nearby(
         queue
     } else {
         inside
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_small_system_is_solved() {
-        let a: [[f64; TERMS]; TERMS] = std::array::from_fn(|i| {
-            std::array::from_fn(|j| if i == j { 8.0 } else { 1.0 / (1.0 + i as f64 + j as f64) })
-        });
-        let x: [f64; TERMS] = std::array::from_fn(|i| i as f64 - 2.5);
-        let b = std::array::from_fn(|i| (0..TERMS).map(|j| a[i][j] * x[j]).sum());
-        let found = solve(a, b);
-        assert!(found.iter().zip(x).all(|(a, b)| (a - b).abs() < 1e-13), "{found:?}");
     }
 }

@@ -1,0 +1,241 @@
+//! Patches in which the parts around a hole go on until they meet: planes and gently bent surfaces, joined in their ridges.
+
+use super::assign::{assign, borders, parts_at};
+use super::flips::flip_along_ridges;
+use super::guard::move_guarded;
+use super::parts::Parts;
+use super::region::Region;
+use super::resample::{resample, typical_edge, Kept};
+use super::restore::{COARSE_FACES, RESAMPLE_ROUNDS};
+use super::snap::eigen;
+use crate::mesh::vector::{add, area_vector, between, centroid, distance, dot, norm, quality, scale, unit, Point};
+use crate::progress::Progress;
+use crate::Result;
+
+/// Rounds of assigning faces to parts, moving vertices onto them and remeshing.
+const ROUNDS: usize = 12;
+
+/// Sweeps of flips after every round.
+const SWEEPS: usize = 10;
+
+/// A patch whose vertices all moved by less than this part of an edge rests.
+const STILL: f64 = 1e-6;
+
+/// Passes over the vertices in a round: a vertex finds room once its neighbours have moved.
+const PASSES: usize = 3;
+
+/// A face is turned away from its part if it looks along it by less than this (60 degrees), and in order from this quality on.
+const TURNED: f64 = 0.5;
+const IN_ORDER: f64 = 0.2;
+
+/// Newton steps onto the surfaces: for planes one is enough.
+const STEPS: usize = 5;
+
+/// Eigenvalues under this part of the largest are dropped: surfaces that meet at less than some twelve degrees have no line.
+const DROP: f64 = 0.01;
+
+/// A patch has reached its surfaces if its vertices lie on them, no face is turned from its own by more than 45 degrees, and none is
+/// thinner than this.
+const THIN: f64 = 0.02;
+const LEAST_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// A corner this near to another one, in edges, is the same.
+const CLOSE: f64 = 0.4;
+
+/// Borders between two vertices on the rim are cut from this length on, in edges: as remeshing splits others.
+const LONG: f64 = 4.0 / 3.0;
+
+/// How often triangles are cut before the faces are assigned anew.
+const CUTS: usize = 3;
+
+/// Lets the parts around the patch go on in it. Returns whether it ended where they meet, and if so, whether all are planes.
+pub(super) fn extend(
+    region: &mut Region,
+    ridge: f64,
+    edge_length: Option<f64>,
+    progress: &Progress,
+) -> Result<Option<bool>> {
+    let edge = typical_edge(&region.mesh);
+    let Some(parts) = Parts::around(region, ridge, edge) else { return Ok(None) };
+    let mut labels = Vec::new();
+    for round in 0..ROUNDS {
+        progress.check()?;
+        if round > 0 {
+            let borders = borders(region, &parts, &labels);
+            let kept =
+                Kept { borders: &borders, merges: &merges(region, &parts, &labels, edge), ridge: std::f64::consts::PI };
+            resample(region, edge_length, &kept, COARSE_FACES, RESAMPLE_ROUNDS, progress)?;
+        }
+        labels = assign(region, &parts, edge);
+        for _ in 0..CUTS {
+            if !cut(region, &parts, &mut labels, edge) {
+                break;
+            }
+            labels = assign(region, &parts, edge);
+        }
+        let mut moved = settle(region, &parts, &labels);
+        if flip_along_ridges(region, SWEEPS) > 0 {
+            labels = assign(region, &parts, edge);
+            moved = moved.max(settle(region, &parts, &labels));
+        }
+        if moved < STILL * edge && has_arrived(region, &parts, &labels, edge) {
+            break;
+        }
+    }
+    let is_there = has_arrived(region, &parts, &labels, edge);
+    Ok(is_there.then(|| parts.models.iter().all(|model| model.is_flat)))
+}
+
+/// Cuts triangles that cannot lie on their part whatever their free vertices do, because they have none or because all their
+/// vertices are where the part meets another one; and long borders that have no free vertex. Returns whether anything was cut.
+fn cut(region: &mut Region, parts: &Parts, labels: &mut Vec<u32>, edge: f64) -> bool {
+    let first = region.n_outer as u32;
+    let before = labels.len();
+    let is_off = |region: &Region, v: u32, part: u32| {
+        region.is_anchor(v) && !parts.at(region, v).contains(&part) && !parts.has(part, region.mesh.position(v), edge)
+    };
+    let split = |region: &mut Region, labels: &mut Vec<u32>, a: u32, b: u32| {
+        let Some(wings) = region.mesh.wings(a, b).filter(|w| w.faces.iter().all(|&f| region.is_patch(f))) else {
+            return;
+        };
+        let middle = between(region.mesh.position(a), region.mesh.position(b), 0.5);
+        if region.mesh.split(a, b, middle).is_some() {
+            wings.faces.iter().for_each(|&f| labels.push(labels[(f - first) as usize]));
+        }
+    };
+    for f in first..first + before as u32 {
+        let Some(face) = region.mesh.face(f) else { continue };
+        let part = labels[(f - first) as usize];
+        let off = face.map(|v| is_off(region, v, part));
+        let on = [0, 1, 2].map(|i| region.is_anchor(face[i]) && !off[i]);
+        if let Some(i) = (0..3).find(|&i| off[i] && on[(i + 1) % 3] || on[i] && off[(i + 1) % 3]) {
+            let [a, b] = [face[i], face[(i + 1) % 3]];
+            let shared = parts.at(region, a).iter().any(|part| parts.at(region, b).contains(part));
+            if !shared {
+                split(region, labels, a, b);
+                continue;
+            }
+        }
+        let is_stiff = off.contains(&true) && face.iter().all(|&v| region.is_anchor(v));
+        if is_stiff && region.mesh.split_face(f, centroid(region.mesh.corners(face))).is_some() {
+            labels.extend([part; 2]);
+        }
+    }
+    for [a, b] in region.mesh.edges() {
+        let Some(wings) = region.mesh.wings(a, b) else { continue };
+        if !wings.faces.iter().all(|&f| region.is_patch(f)) {
+            continue;
+        }
+        let [own, other] = wings.faces.map(|f| labels[(f - first) as usize]);
+        let ends = [a, b].map(|v| parts_at(region, parts, labels, v));
+        let is_chord = own == other && ends[0].iter().any(|part| *part != own && ends[1].contains(part));
+        let is_stiff =
+            own != other && [a, b].iter().all(|&v| region.is_anchor(v)) && length(region, a, b) > LONG * edge;
+        if is_chord || is_stiff {
+            split(region, labels, a, b);
+        }
+    }
+    labels.len() > before
+}
+
+/// Free vertices that belong where a neighbour is, and that neighbour: remeshing does not join two vertices that are both fixed.
+fn merges(region: &Region, parts: &Parts, labels: &[u32], edge: f64) -> Vec<[u32; 2]> {
+    let found = |v: u32| {
+        let own = parts_at(region, parts, labels, v);
+        let joins = |w: u32| {
+            length(region, v, w) < CLOSE * edge
+                && if region.is_anchor(w) {
+                    own.len() > 1 && own.iter().all(|&part| parts.has(part, region.mesh.position(w), edge))
+                } else {
+                    w < v && own.len() > 2 && own == parts_at(region, parts, labels, w)
+                }
+        };
+        region.mesh.neighbours(v).into_iter().find(|&w| joins(w))
+    };
+    region.free().filter_map(|v| Some([v, found(v)?])).collect()
+}
+
+fn length(region: &Region, a: u32, b: u32) -> f64 {
+    distance(region.mesh.position(a), region.mesh.position(b))
+}
+
+/// Moves free vertices where the surfaces of the parts that meet at them meet, the nearest first, as far as that leaves the faces
+/// around them in order; returns the longest move.
+///
+/// First all together, which finds its way where the patch is far from its surfaces, then one by one.
+fn settle(region: &mut Region, parts: &Parts, labels: &[u32]) -> f64 {
+    let goals: Vec<Point> = (0..region.mesh.n_vertices() as u32)
+        .map(|v| if region.is_anchor(v) { region.mesh.position(v) } else { meeting_point(region, parts, labels, v) })
+        .collect();
+    let mut longest = move_guarded(region, &goals);
+    for _ in 0..PASSES {
+        let mut moves: Vec<(f64, u32, Point)> = region
+            .free()
+            .map(|v| {
+                let (at, goal) = (region.mesh.position(v), meeting_point(region, parts, labels, v));
+                (distance(at, goal), v, goal)
+            })
+            .collect();
+        moves.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+        for (_, v, goal) in moves {
+            let start = region.mesh.position(v);
+            let before = order(region, parts, labels, v).min(IN_ORDER);
+            for part in [1.0, 0.5, 0.25] {
+                region.mesh.set_position(v, between(start, goal, part));
+                if order(region, parts, labels, v) >= before {
+                    longest = longest.max(part * distance(start, goal));
+                    break;
+                }
+                region.mesh.set_position(v, start);
+            }
+        }
+    }
+    longest
+}
+
+/// How good the worst face at `v` is: its quality, or how much it looks along its part, less what is allowed, if that is not enough.
+fn order(region: &Region, parts: &Parts, labels: &[u32], v: u32) -> f64 {
+    let faces = region.mesh.faces_of(v).iter();
+    let order = |&f: &u32| {
+        let corners = region.mesh.face(f).map(|face| region.mesh.corners(face))?;
+        let model = parts.models.get(*labels.get((f as usize).checked_sub(region.n_outer)?)? as usize)?;
+        let cosine = dot(unit(area_vector(corners)), model.at(centroid(corners)).1);
+        Some(if cosine < TURNED { cosine - TURNED } else { quality(corners) })
+    };
+    faces.filter_map(order).fold(1.0, f64::min)
+}
+
+/// Where the surfaces of the parts that meet at free vertex `v` meet.
+fn meeting_point(region: &Region, parts: &Parts, labels: &[u32], v: u32) -> Point {
+    let own = parts_at(region, parts, labels, v);
+    (0..STEPS).fold(region.mesh.position(v), |p, _| add(p, step(parts, &own, p)))
+}
+
+/// The shortest step from `p` onto the tangent planes of some parts.
+fn step(parts: &Parts, own: &[u32], p: Point) -> Point {
+    let (mut quadric, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
+    for &part in own {
+        let (off, normal) = parts.models[part as usize].at(p);
+        for i in 0..3 {
+            right[i] -= off * normal[i];
+            (0..3).for_each(|j| quadric[i][j] += normal[i] * normal[j]);
+        }
+    }
+    let (values, vectors) = eigen(quadric);
+    let largest = values.iter().fold(0.0, |a: f64, &x| a.max(x));
+    let kept = values.into_iter().zip(vectors).filter(|(value, _)| *value > DROP * largest);
+    kept.fold([0.0; 3], |sum, (value, vector)| add(sum, scale(vector, dot(vector, right) / value)))
+}
+
+/// Whether all faces lie on their part, and are in order.
+fn has_arrived(region: &Region, parts: &Parts, labels: &[u32], edge: f64) -> bool {
+    region.patch_faces().zip(labels).all(|((_, face), &part)| {
+        let Some(model) = parts.models.get(part as usize) else { return false };
+        let corners = region.mesh.corners(face);
+        let area = area_vector(corners);
+        let normal = model.at(centroid(corners)).1;
+        corners.into_iter().all(|p| parts.has(part, p, edge))
+            && dot(area, normal) > LEAST_COSINE * norm(area)
+            && quality(corners) > THIN
+    })
+}

@@ -1,0 +1,93 @@
+//! How a part of the surface around a hole goes on: as a plane, or as a quadratic height over one.
+
+use crate::mesh::vector::{add, dot, scale, sub, unit, Point};
+use crate::tools::heights::{frame, solve, TERMS};
+
+/// The pull of the quadratic terms to zero, relative to what they explain: it decides where few points do not.
+const STIFFNESS: f64 = 1e-4;
+
+/// A part is flat if a plane misses its vertices by no more than this part of an edge, or no more than this many times what the
+/// quadratic misses: noise.
+const FLAT: f64 = 0.01;
+const AS_GOOD: f64 = 1.5;
+
+/// A surface that goes on as the points do that it was fitted to.
+#[derive(Debug, Clone)]
+pub(super) struct Model {
+    origin: Point,
+    axes: [Point; 3],
+    scale: f64,
+    coefficients: [f64; TERMS],
+    /// Whether it is a plane.
+    pub is_flat: bool,
+    /// Root mean square of what it misses the points by.
+    pub misfit: f64,
+}
+
+impl Model {
+    /// The fit to weighted points of a surface that looks along the unit `normal`, where edges are about `edge` long; nothing
+    /// where there are fewer than three points with weight.
+    pub(super) fn fit(points: &[(Point, f64)], normal: Point, edge: f64) -> Option<Self> {
+        let total: f64 = points.iter().map(|(_, weight)| weight).sum();
+        if points.len() < 3 || total <= 0.0 {
+            return None;
+        }
+        let origin = points.iter().fold([0.0; 3], |sum, &(p, weight)| add(sum, scale(p, weight / total)));
+        let spread: f64 = points.iter().map(|&(p, weight)| weight / total * dot(sub(p, origin), sub(p, origin))).sum();
+        let mut flat = Self {
+            origin,
+            axes: frame(normal),
+            scale: spread.sqrt().max(f64::MIN_POSITIVE),
+            coefficients: [0.0; TERMS],
+            is_flat: true,
+            misfit: 0.0,
+        };
+        flat.solve(points, total, 1e12);
+        // Heights are measured along the normal of the plane that the first fit found.
+        flat.axes = frame(flat.at(origin).1);
+        flat.solve(points, total, 1e12);
+        let mut bent = Self { is_flat: false, ..flat.clone() };
+        bent.solve(points, total, STIFFNESS);
+        let is_flat = points.len() <= TERMS || flat.misfit <= (FLAT * edge).max(AS_GOOD * bent.misfit);
+        Some(if is_flat { flat } else { bent })
+    }
+
+    fn solve(&mut self, points: &[(Point, f64)], total: f64, stiffness: f64) {
+        let (mut matrix, mut right) = ([[0.0; TERMS]; TERMS], [0.0; TERMS]);
+        for &(p, weight) in points {
+            let (terms, height) = self.terms(p);
+            for i in 0..TERMS {
+                (0..TERMS).for_each(|j| matrix[i][j] += weight / total * terms[i] * terms[j]);
+                right[i] += weight / total * terms[i] * height;
+            }
+        }
+        for (i, row) in matrix.iter_mut().enumerate() {
+            // The constant and the slopes need it only where the points lie on a line.
+            row[i] += if i < 3 { 1e-12 } else { stiffness };
+        }
+        self.coefficients = solve(matrix, right);
+        if self.is_flat {
+            self.coefficients[3..].fill(0.0);
+        }
+        let squares: f64 = points.iter().map(|&(p, weight)| weight / total * self.at(p).0.powi(2)).sum();
+        self.misfit = squares.sqrt();
+    }
+
+    fn terms(&self, p: Point) -> ([f64; TERMS], f64) {
+        let d = sub(p, self.origin);
+        let [s, t, height] = self.axes.map(|axis| dot(axis, d) / self.scale);
+        ([1.0, s, t, s * s, s * t, t * t], height)
+    }
+
+    /// The signed distance of `p`, to first order, and the unit normal of the surface there.
+    pub(super) fn at(&self, p: Point) -> (f64, Point) {
+        let (terms, height) = self.terms(p);
+        let c = &self.coefficients;
+        let off = height - terms.iter().zip(c).map(|(t, c)| t * c).sum::<f64>();
+        let slope = [c[1] + 2.0 * c[3] * terms[1] + c[4] * terms[2], c[2] + c[4] * terms[1] + 2.0 * c[5] * terms[2]];
+        let [first, second, up] = self.axes;
+        let steepness = (1.0 + slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
+        let normal = unit(sub(up, add(scale(first, slope[0]), scale(second, slope[1]))));
+        (self.scale * off / steepness, normal)
+    }
+}

@@ -1,0 +1,128 @@
+//! The smooth parts that the surface around a hole falls into along its ridges, each with the surface that it goes on as.
+
+use super::fair::root;
+use super::model::Model;
+use super::region::Region;
+use super::surface::Surface;
+use crate::mesh::vector::{add, norm, scale, unit, Point};
+
+/// Faces count less the more rings they are away from the hole: a Gaussian of this width.
+const WIDTH: f64 = 3.0;
+
+/// A part that no surface of ours fits better than to this part of an edge is none that we know how to go on.
+const WORST_FIT: f64 = 0.3;
+
+/// A point is on a surface if it is no farther from it than this part of an edge, beyond what it misses its own points by.
+const NEAR: f64 = 0.1;
+
+/// No part.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// The parts that reach a hole.
+pub(super) struct Parts {
+    /// The part of every face around the patch; [`NONE`] if it does not reach the hole.
+    pub of_face: Vec<u32>,
+    /// What each goes on as.
+    pub models: Vec<Model>,
+}
+
+impl Parts {
+    /// The parts around the patch of `region`, between edges bent by more than `ridge` radians. Nothing if a ridge at the hole
+    /// has the same part on both sides, or a part is not smooth enough: then they do not say how the surface goes on.
+    pub(super) fn around(region: &Region, ridge: f64, edge: f64) -> Option<Self> {
+        let mesh = &region.mesh;
+        let surface = Surface::of(region);
+        let mut on_rim = vec![false; mesh.n_vertices()];
+        region.patch_faces().for_each(|(_, face)| face.into_iter().for_each(|v| on_rim[v as usize] = true));
+        let mut roots: Vec<u32> = (0..region.n_outer as u32).collect();
+        let mut ridges = Vec::new();
+        let mut seeds = Vec::new();
+        for [a, b] in mesh.edges() {
+            let Some(wings) = mesh.wings(a, b) else { continue };
+            let [f, g] = wings.faces;
+            match [f, g].map(|f| region.is_patch(f)) {
+                [true, true] => {}
+                [true, false] => seeds.push(g),
+                [false, true] => seeds.push(f),
+                [false, false] if surface.dihedral([f, g]) > ridge => {
+                    if on_rim[a as usize] || on_rim[b as usize] {
+                        ridges.push([f, g]);
+                    }
+                }
+                [false, false] => {
+                    let (x, y) = (root(&mut roots, f), root(&mut roots, g));
+                    roots[x.max(y) as usize] = x.min(y);
+                }
+            }
+        }
+        let roots: Vec<u32> = (0..region.n_outer as u32).map(|f| root(&mut roots, f)).collect();
+        if ridges.iter().any(|&[f, g]| roots[f as usize] == roots[g as usize]) {
+            return None;
+        }
+        let mut reached: Vec<u32> = seeds.into_iter().map(|f| roots[f as usize]).collect();
+        reached.sort_unstable();
+        reached.dedup();
+        let of_face: Vec<u32> =
+            roots.iter().map(|r| reached.binary_search(r).map_or(NONE, |part| part as u32)).collect();
+        let rings = rings(region, &on_rim);
+        let models = (0..reached.len() as u32).map(|part| model(region, &surface, &of_face, &rings, part, edge));
+        let models = models.collect::<Option<Vec<_>>>()?;
+        Some(Self { of_face, models })
+    }
+
+    /// Whether `p` lies on the surface that `part` goes on as.
+    pub(super) fn has(&self, part: u32, p: Point, edge: f64) -> bool {
+        let model = &self.models[part as usize];
+        model.at(p).0.abs() < NEAR * edge + 3.0 * model.misfit
+    }
+
+    /// The parts of the faces around the patch that `v` has.
+    pub(super) fn at(&self, region: &Region, v: u32) -> Vec<u32> {
+        let outer = region.mesh.faces_of(v).iter().filter_map(|&f| self.of_face.get(f as usize));
+        outer.copied().filter(|&part| part != NONE).collect()
+    }
+}
+
+/// The number of edges between every vertex and the hole.
+fn rings(region: &Region, on_rim: &[bool]) -> Vec<u32> {
+    let mut rings: Vec<u32> = on_rim.iter().map(|&at| if at { 0 } else { u32::MAX }).collect();
+    let mut front: Vec<u32> = (0..rings.len() as u32).filter(|&v| on_rim[v as usize]).collect();
+    let mut ring = 0;
+    while !front.is_empty() {
+        ring += 1;
+        let mut next = Vec::new();
+        for w in front.into_iter().flat_map(|v| region.mesh.neighbours(v)) {
+            if rings[w as usize] == u32::MAX {
+                rings[w as usize] = ring;
+                next.push(w);
+            }
+        }
+        front = next;
+    }
+    rings
+}
+
+fn model(region: &Region, surface: &Surface, of_face: &[u32], rings: &[u32], part: u32, edge: f64) -> Option<Model> {
+    let mut weights = vec![0.0; region.anchors.len()];
+    let mut normal = [0.0; 3];
+    for (f, face) in region.mesh.faces().take(region.n_outer) {
+        if of_face[f as usize] != part {
+            continue;
+        }
+        for v in face {
+            let away = f64::from(rings[v as usize]) / WIDTH;
+            let weight = surface.areas[f as usize] * (-0.5 * away * away).exp();
+            weights[v as usize] += weight;
+            normal = add(normal, scale(surface.normals[f as usize], weight));
+        }
+    }
+    if norm(normal) <= 0.0 {
+        return None;
+    }
+    let points: Vec<_> = (0..)
+        .zip(weights)
+        .filter(|&(_, weight)| weight > 0.0)
+        .map(|(v, weight)| (region.mesh.position(v), weight))
+        .collect();
+    Model::fit(&points, unit(normal), edge).filter(|model| model.misfit < WORST_FIT * edge)
+}
