@@ -2,8 +2,8 @@
 """The border between Blender and NumPy for diffusion curves: curve objects with colours on both sides.
 
 They are objects of Blender's newer type Curves, poly curves through vertices of the mesh: the points of the
-older type Curve have no attributes, in no version. Each point has the attributes `left` and `right`, colours,
-and `vertex`, the vertex of the mesh that it stands for. A curve of one point is a colour for that vertex.
+older type Curve have no attributes, in no version. Each point has the attributes `left` and `right`, colours.
+A curve of one point is a colour for the vertex there.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-LEFT, RIGHT, VERTEX = "left", "right", "vertex"
+LEFT, RIGHT = "left", "right"
 MARK = "ridgeform_diffusion"
 """The property of the curves that tells them from others: the name of the colours that they stand for."""
 
@@ -22,7 +22,7 @@ class CurvesRefusedError(Exception):
 
 @dataclass
 class CurvePoints:
-    """Curves, point after point."""
+    """Curves through vertices of a mesh, point after point."""
 
     sizes: np.ndarray
     """Points of each curve (q,) int."""
@@ -30,6 +30,22 @@ class CurvePoints:
     """Which curves (q,) bool are closed."""
     vertices: np.ndarray
     """The vertex of the mesh of each point (p,) int."""
+    left: np.ndarray
+    """Colours (p, 4) on the left."""
+    right: np.ndarray
+    """Colours (p, 4) on the right."""
+
+
+@dataclass
+class DrawnCurves:
+    """Curves as they were left by hand, point after point: anywhere near the mesh."""
+
+    sizes: np.ndarray
+    """Points of each curve (q,) int."""
+    cyclic: np.ndarray
+    """Which curves (q,) bool are closed."""
+    places: np.ndarray
+    """Where each point is (p, 3), in the space of the mesh."""
     left: np.ndarray
     """Colours (p, 4) on the left."""
     right: np.ndarray
@@ -61,7 +77,6 @@ def write_curves(obj: bpy.types.Object, points: CurvePoints, name: str) -> bpy.t
         if hasattr(data, "set_types"):
             data.set_types(type="POLY")
         _store(data, "cyclic", ("BOOLEAN", "CURVE"), points.cyclic)
-        _store(data, VERTEX, ("INT", "POINT"), points.vertices.astype(np.int32))
         for side, colors in ((LEFT, points.left), (RIGHT, points.right)):
             _store(data, side, ("FLOAT_COLOR", "POINT"), colors.astype(np.float32).ravel())
         data.attributes.active = data.attributes[LEFT]
@@ -90,32 +105,26 @@ def _child(obj: bpy.types.Object, data: bpy.types.Curves) -> bpy.types.Object:
     return child
 
 
-def read_curves(child: bpy.types.Object, n_vertices: int) -> CurvePoints:
-    """The curves of an object, also in Edit Mode; `CurvesRefusedError` unless they fit so many vertices."""
+def read_curves(child: bpy.types.Object) -> DrawnCurves:
+    """The curves of an object, also in Edit Mode. Colours that were never given are 0.
+
+    Where the object stands does not count, so that the curves may be set aside to see both.
+    """
     data = child.data
     n = len(data.points)
-    missing = [name for name in (LEFT, RIGHT, VERTEX) if n and name not in data.attributes]
-    if missing:
-        raise CurvesRefusedError(f'"{child.name}" has no attribute "{missing[0]}": make the curves again')
-    vertices = np.zeros(n, np.int32)
+    places = np.zeros(3 * n, np.float32)
     if n:
-        data.attributes[VERTEX].data.foreach_get("value", vertices)
-    outside = np.flatnonzero((vertices < 0) | (vertices >= n_vertices))
-    if len(outside):
-        raise CurvesRefusedError(
-            f'Point {outside[0]} of "{child.name}" stands for vertex {vertices[outside[0]]}, which the mesh '
-            "does not have: the mesh was changed, make the curves again"
-        )
+        data.position_data.foreach_get("vector", places)
     sizes = np.array([curve.points_length for curve in data.curves], np.int64)
     cyclic = np.zeros(len(sizes), bool)
     if "cyclic" in data.attributes:
         data.attributes["cyclic"].data.foreach_get("value", cyclic)
     left, right = (_colors(data, side, n) for side in (LEFT, RIGHT))
-    return CurvePoints(sizes, cyclic, vertices, left, right)
+    return DrawnCurves(sizes, cyclic, places.reshape(-1, 3).astype(np.float64), left, right)
 
 
 def _colors(data: bpy.types.Curves, side: str, n: int) -> np.ndarray:
     values = np.zeros(4 * n, np.float32)
-    if n:
+    if n and side in data.attributes:
         data.attributes[side].data.foreach_get("color", values)
     return values.reshape(-1, 4).astype(np.float64)

@@ -18,14 +18,15 @@ SHARPEST_MITER = 0.25
 """At sharper turns the bands are not as wide as elsewhere, so that their corners do not run away."""
 
 
-def drawing(obj: bpy.types.Object, child: bpy.types.Object, width: float, fill: bool) -> str:
-    """The drawing of the curves of a flat mesh object, seen from the side that its faces show.
+def drawing(
+    obj: bpy.types.Object, child: bpy.types.Object, points: CurvePoints, width: float, fill: bool
+) -> str:
+    """The drawing of curves on the vertices of a flat mesh object, seen from the side that its faces show.
 
     Bands are `width` wide, a part of the longer side; with `fill` the redrawn colors of the faces lie under
-    them. `CurvesRefusedError` if the mesh is not flat or the curves do not fit it.
+    them. `CurvesRefusedError` if the mesh is not flat.
     """
     with mesh_io.object_mode():
-        points = curves_io.read_curves(child, len(obj.data.vertices))
         places = flattened(obj)
         longest = float(np.ptp(places, axis=0).max()) or 1.0
         scale = PIXELS / longest

@@ -8,10 +8,11 @@ import ridgeform
 from bpy.props import BoolProperty, FloatProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
+from .. import mesh_io
 from ..diffusion import curves_io, drawing, svg
 from ..diffusion_settings import DiffusionSettings
 from ..tools.diffusion_curves import DiffusionCurves
-from ..tools.redraw_curves import redraw
+from ..tools.redraw_curves import read_on_mesh, redraw
 from ..tools.run import RefusedError
 from ..ui.diffusion_settings import draw_settings
 from .tool_operator import ToolOperator
@@ -128,9 +129,11 @@ class RIDGEFORM_OT_export_diffusion_svg(_OnCurves, bpy.types.Operator, ExportHel
         """Write the file."""
         obj, child = _pair(context)
         try:
-            text = svg.drawing(obj, child, self.width / 100.0, self.fill)
+            with mesh_io.object_mode():
+                _, points = read_on_mesh(obj, child)
+            text = svg.drawing(obj, child, points, self.width / 100.0, self.fill)
             Path(self.filepath).write_text(text, encoding="utf-8")
-        except (curves_io.CurvesRefusedError, OSError) as error:
+        except (RefusedError, curves_io.CurvesRefusedError, ridgeform.RidgeformError, OSError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         self.report({"INFO"}, f"Wrote {len(child.data.curves)} curves to {self.filepath}")

@@ -6,20 +6,30 @@ import ridgeform
 
 from .. import mesh_io
 from ..diffusion import curves_io
+from ..diffusion.curves_io import CurvePoints
 from ..diffusion.drawing import write_corners
 from ..diffusion.layout import colored_edges
-from .attribute_run import surface_of
+from ..diffusion.tracing import curves_on_mesh
+from .attribute_run import Surface, surface_of
+
+
+def read_on_mesh(obj: bpy.types.Object, child: bpy.types.Object) -> tuple[Surface, CurvePoints]:
+    """The surface of a mesh object, in Object Mode, and its curves as they are now, on vertices of the mesh.
+
+    The errors are those of `redraw`.
+    """
+    surface = surface_of(obj)
+    return surface, curves_on_mesh(obj, child, surface.weld, surface.mesh)
 
 
 def redraw(obj: bpy.types.Object, child: bpy.types.Object) -> str:
     """Redraw the colours of a mesh object from its curves as they are now; returns the attribute's name.
 
     `RefusedError` of the tools for a mesh that cannot be used, `CurvesRefusedError` for such curves, and the
-    errors of `ridgeform.redraw`.
+    errors of `ridgeform.trace_curves` and `ridgeform.redraw`.
     """
     with mesh_io.object_mode():
-        points = curves_io.read_curves(child, len(obj.data.vertices))
-        surface = surface_of(obj)
+        surface, points = read_on_mesh(obj, child)
         given = colored_edges(points, surface.weld)
         drawn = ridgeform.redraw(
             surface.mesh,

@@ -84,7 +84,6 @@ def test_the_curve_and_the_colours_are_those_of_the_wheel():
     assert child.users_collection == obj.users_collection
     assert [curve.points_length for curve in child.data.curves] == [CELLS + 1]
     (line,) = expected.polylines
-    assert (point_values(child, "vertex", "value", 1)[:, 0] == line).all()
     assert np.allclose([point.position for point in child.data.points], kit.coordinates(obj)[line])
     assert np.allclose(point_values(child, "left")[:-1, :3], expected.left[:, 0])
     assert np.allclose(point_values(child, "right")[-1, :3], expected.right[-1, 1])
@@ -253,8 +252,9 @@ def test_refusals(tmp_path):
     assert not bpy.ops.ridgeform.redraw_diffusion_curves.poll()
     find()
     child = curves_io.curves_of(obj)
-    child.data.attributes["vertex"].data.foreach_set("value", [10**6])
-    with pytest.raises(RuntimeError, match="the mesh was changed"):
+    child.data.attributes.remove(child.data.attributes["left"])
+    obj.data.attributes.remove(obj.data.attributes["paint"])
+    with pytest.raises(RuntimeError, match='has no colors, and "paint"'):
         bpy.ops.ridgeform.redraw_diffusion_curves()
     ball = kit.bumpy_box()
     store_colors(ball, np.tile(np.float32(RED), (len(ball.data.vertices), 1)))

@@ -41,6 +41,7 @@ from ._native import (
     remesh,
     segment,
     stylize,
+    trace_curves,
     vibration_modes,
     voronoi_mass,
 )
@@ -81,6 +82,7 @@ __all__ = [
     "remesh",
     "segment",
     "stylize",
+    "trace_curves",
     "vibration_modes",
     "voronoi_mass",
 ]

@@ -399,6 +399,13 @@ def redraw(
     sides: ArrayLike | None = None,
     progress: Progress | None = None,
 ) -> Redrawn: ...
+def trace_curves(
+    mesh: Mesh,
+    points: ArrayLike,
+    *,
+    starts: ArrayLike | None = None,
+    closed: ArrayLike | None = None,
+) -> tuple[Indices, Indices, Floats]: ...
 def fill_holes(
     mesh: Mesh,
     *,

@@ -3,6 +3,7 @@
 //!
 //! [`regions`] → [`chains`] (the edges between them, as curves) → [`fit`] (colours along the curves, (27)) → [`borders`],
 //! [`thinning`] (what is stored) → [`redraw()`] ((26)); fit and drawing on the Laplacian of [`membrane`].
+//! [`trace`] brings curves that were drawn or moved by hand onto the edges.
 
 mod borders;
 mod chains;
@@ -11,9 +12,11 @@ mod membrane;
 mod redraw;
 mod regions;
 mod thinning;
+mod trace;
 
 pub use redraw::{redraw, ColoredCurves, Redrawn};
 pub use regions::{color_regions, follow_colors};
+pub use trace::{trace_curves, TracedCurve};
 
 use super::options::check_range;
 use crate::error::MeshError;

@@ -1,0 +1,150 @@
+"""Diffusion curves that were moved, drawn or subdivided by hand, and meshes that changed under them."""
+
+import bpy
+import numpy as np
+import pytest
+from bl_ext.user_default.ridgeform.diffusion import curves_io
+from test_diffusion_curves import (
+    BLUE,
+    CELLS,
+    RED,
+    add_plane,
+    corner_colors,
+    find,
+    halves,
+    point_values,
+    split_materials,
+)
+
+GREEN = (0.1, 0.6, 0.2, 1.0)
+
+
+@pytest.fixture
+def plane():
+    """A plane, red on the left and blue on the right, and the curve between."""
+    obj = add_plane(halves)
+    split_materials(obj)
+    assert find() == {"FINISHED"}
+    return obj, curves_io.curves_of(obj)
+
+
+def redrawn(obj):
+    """The colours of the quads (f, 4, 4) after redrawing."""
+    assert bpy.ops.ridgeform.redraw_diffusion_curves() == {"FINISHED"}
+    return corner_colors(obj).reshape(-1, 4, 4)
+
+
+def centers(obj):
+    return np.array([face.center for face in obj.data.polygons])
+
+
+def add_line(child, places, **colors):
+    """Add a curve of points at these places, as drawing by hand does, with colours if there are any."""
+    begin = len(child.data.points)
+    child.data.add_curves([len(places)])
+    for i, place in enumerate(places):
+        child.data.points[begin + i].position = place
+        for side, color in colors.items():
+            child.data.attributes[side].data[begin + i].color = color
+
+
+def test_a_moved_curve_takes_its_colours_along(plane):
+    obj, child = plane
+    for point in child.data.points:
+        # Off the mesh and between its vertices: a fifth of a cell.
+        point.position = point.position[0] + 4.2 / CELLS, point.position[1], 0.01
+    colors = redrawn(obj)
+    left = centers(obj)[:, 0] < 0.5 + 4 / CELLS
+    assert np.abs(colors[left] - RED).max() < 1e-5
+    assert np.abs(colors[~left] - BLUE).max() < 1e-5
+
+
+def test_where_the_curves_object_stands_does_not_count(plane):
+    obj, child = plane
+    before = corner_colors(obj)
+    child.location = (3.0, 0.0, 0.0)
+    assert np.abs(redrawn(obj).reshape(-1, 4) - before).max() < 1e-6
+
+
+def test_a_curve_of_two_points_is_drawn_along_the_edges(plane):
+    obj, child = plane
+    y = 0.5 + 0.3 / CELLS
+    add_line(child, [(0.0, y, 0.0), (0.4, y, 0.0)], left=GREEN, right=RED)
+    colors = redrawn(obj)
+    x, y, _ = centers(obj).T
+    # Beside the new curve; colours flow around its open end.
+    beside = (x < 0.25) & (np.abs(y - 0.5) < 1 / CELLS)
+    assert np.abs(colors[beside & (y > 0.5)] - GREEN).max() < 0.2
+    assert np.abs(colors[beside & (y < 0.5)] - RED).max() < 0.2
+    assert np.abs(colors[x > 0.5] - BLUE).max() < 1e-5
+
+
+def test_a_curve_drawn_without_colours_takes_those_of_the_paint():
+    obj = add_plane(halves)
+    find()
+    child = curves_io.curves_of(obj)
+    assert [curve.points_length for curve in child.data.curves] == [1]
+    bpy.ops.object.select_all(action="DESELECT")
+    bpy.context.view_layer.objects.active = child
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.curves.select_all(action="SELECT")
+    bpy.ops.curves.delete()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert not len(child.data.curves)
+    add_line(child, [(0.49, 0.0, 0.0), (0.5, 0.5, 0.02), (0.51, 1.0, 0.0)])
+    colors = redrawn(obj)
+    x = centers(obj)[:, 0]
+    assert np.abs(colors[x < 0.5] - RED).max() < 1e-5
+    assert np.abs(colors[x > 0.5] - BLUE).max() < 1e-5
+    # The curve itself stays as it was drawn.
+    assert [curve.points_length for curve in child.data.curves] == [3]
+
+
+def test_closed_curves_are_traced_all_around(plane):
+    obj, child = plane
+    add_line(child, [(0.7, 0.3, 0), (0.9, 0.3, 0), (0.9, 0.7, 0), (0.7, 0.7, 0)], left=GREEN, right=BLUE)
+    cyclic = child.data.attributes["cyclic"].data
+    cyclic[1].value = True
+    colors = redrawn(obj)
+    inside = (np.abs(centers(obj)[:, :2] - (0.8, 0.5)) < (0.05, 0.15)).all(axis=1)
+    assert np.abs(colors[inside] - GREEN).max() < 1e-5
+    outside = centers(obj)[:, 1] > 0.8
+    assert np.abs(colors[outside & (centers(obj)[:, 0] > 0.5)] - BLUE).max() < 1e-5
+
+
+def test_curves_fit_a_mesh_that_was_subdivided_since(plane):
+    obj, child = plane
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.mesh.subdivide()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    colors = redrawn(obj)
+    left = centers(obj)[:, 0] < 0.5
+    assert np.abs(colors[left] - RED).max() < 1e-5
+    assert np.abs(colors[~left] - BLUE).max() < 1e-5
+    assert len(point_values(child, "left")) == CELLS + 1
+
+
+def test_the_drawing_shows_moved_curves(plane, tmp_path):
+    _, child = plane
+    for point in child.data.points:
+        point.position = point.position[0] + 4 / CELLS, point.position[1], 0.0
+    path = tmp_path / "curves.svg"
+    assert bpy.ops.ridgeform.export_diffusion_svg(filepath=str(path), fill=False) == {"FINISHED"}
+    line = path.read_text().split('class="curve" d="M')[1].split('"')[0]
+    places = [float(pair.split()[0]) for pair in line.split("L")]
+    assert np.allclose(places, 8 + 1000 * (0.5 + 4 / CELLS), atol=0.1)
+
+
+def test_a_curve_between_loose_parts_is_refused(plane):
+    obj, child = plane
+    other = add_plane()
+    other.location = (3.0, 0.0, 0.0)
+    bpy.ops.object.select_all(action="DESELECT")
+    for part in (other, obj):
+        part.select_set(True)
+    bpy.context.view_layer.objects.active = obj
+    bpy.ops.object.join()
+    add_line(child, [(0.9, 0.5, 0.0), (3.1, 0.5, 0.0)], left=RED, right=RED)
+    with pytest.raises(RuntimeError, match="no edges join"):
+        bpy.ops.ridgeform.redraw_diffusion_curves()
