@@ -43,7 +43,7 @@ class DiffusionSettings:
         search=search_face_numbers,
     )
     count: IntProperty(
-        name="Number of Regions",
+        name="Count",
         description="How many regions to find. 0: as many as the colors call for",
         default=0,
         min=0,

@@ -20,6 +20,10 @@ from .attribute_run import Surface, surface_of
 from .run import Part, RefusedError, Run, meshes_phrase
 
 
+EXACT = 120.0
+"""Decibels beyond which colours are exact, but for the rounding of single precision."""
+
+
 @dataclass(kw_only=True)
 class DiffusionPart(Part):
     """One mesh of a run."""
@@ -106,7 +110,7 @@ class DiffusionCurves(Run):
             "result": part.target,
             "curves": len(found.starts) - 1,
             "regions": len(np.unique(found.labels)),
-            "psnr": float(found.psnr) if np.isfinite(found.psnr) else None,
+            "psnr": float(found.psnr) if found.psnr < EXACT else None,
             "numbers_before": int(found.n_numbers_before),
             "numbers_after": int(found.n_numbers),
             "steps": len(found.starts) - 1,
