@@ -33,7 +33,7 @@ GROWTH = (24, 76, 240)
 HOLES = {
     "across an edge": (np.array([0.5, 0.0, 0.5]), np.array([0.0, 0.1, 0.0]), 0.4),
     "across an edge, larger": (np.array([0.5, 0.0, 0.5]), np.array([0.0, 0.1, 0.0]), 0.8),
-    "in a side": (np.array([0.5, 0.5, 1.0]), np.zeros(3), 0.4),
+    "in a side": (np.array([0.0, 0.0, 0.5]), np.array([0.03, 0.05, 0.0]), 0.4),
 }
 """Place as part of the side, place beside it and radius."""
 LONG = 5000
