@@ -114,7 +114,7 @@ fn certified<const K: usize>(
         bound_along_ray(reduced, &dual_point, y, &g, &u)
     };
     let mut dual = bound(q);
-    if reduced.fidelity.iter().all(|a| *a > 0.0) {
+    if reduced.has_fidelity_everywhere {
         // No equations to keep: shortening each block by itself costs less than shortening all alike.
         let clip = |(q, w): (&Block<K>, &f64)| scaled((w / norm(q).max(f64::MIN_POSITIVE)).min(1.0), q);
         let clipped: Vec<Block<K>> = q.iter().zip(reduced.weights.iter()).map(clip).collect();

@@ -107,6 +107,8 @@ pub struct Reduced<'a, const K: usize> {
     pub weights: Cow<'a, [f64]>,
     /// `a` on the free rows.
     pub fidelity: Vec<f64>,
+    /// Whether every free row has some: then every dual point with blocks short enough gives a bound.
+    pub has_fidelity_everywhere: bool,
     /// `t` on the free rows.
     pub target: Vec<[f64; K]>,
     /// `A` and `b` on the free rows.
@@ -123,7 +125,8 @@ impl<'a, const K: usize> Reduced<'a, K> {
             std::array::from_fn(|c| columns.get(c).map_or(0.0, |&column| problem.target.column(column)[i]))
         };
         let target: Vec<[f64; K]> = free.free.iter().map(|&i| row_of(i as usize)).collect();
-        let fidelity = free.free.iter().map(|&i| problem.fidelity[i as usize]).collect();
+        let fidelity: Vec<f64> = free.free.iter().map(|&i| problem.fidelity[i as usize]).collect();
+        let has_fidelity_everywhere = fidelity.iter().all(|a| *a > 0.0);
         let mut constant = Vec::new();
         let mut offset = 0.0;
         if let Some(blocks) = &free.blocks {
@@ -148,7 +151,17 @@ impl<'a, const K: usize> Reduced<'a, K> {
             Some((matrix, right)) => Some(LinearConstraints::new(matrix, right, free, columns, &row_of)?),
         };
         let weights = free.of_blocks(&problem.weights);
-        Ok(Self { free, n_columns: columns.len(), constant, offset, weights, fidelity, target, constraints })
+        Ok(Self {
+            free,
+            n_columns: columns.len(),
+            constant,
+            offset,
+            weights,
+            fidelity,
+            has_fidelity_everywhere,
+            target,
+            constraints,
+        })
     }
 
     /// Number of free rows.
@@ -204,7 +217,7 @@ impl<'a, const K: usize> Reduced<'a, K> {
                 sum
             })
             .collect();
-        gather(&mut sums, self.n());
+        gather(&mut sums);
         *out = sums.swap_remove(0);
     }
 
@@ -245,12 +258,11 @@ impl<'a, const K: usize> Reduced<'a, K> {
     }
 }
 
-/// Adds all partial sums of `n` rows to the first, in their order.
-pub fn gather<const K: usize>(parts: &mut [Vec<[f64; K]>], n: usize) {
+/// Adds all partial sums to the first, in their order.
+pub fn gather<const K: usize>(parts: &mut [Vec<[f64; K]>]) {
     let Some((whole, rest)) = parts.split_first_mut() else {
         return;
     };
-    whole.resize(n, [0.0; K]);
     for part in rest {
         for (sum, more) in whole.iter_mut().zip(part.iter()) {
             sum.iter_mut().zip(more).for_each(|(s, x)| *s += x);

@@ -35,7 +35,7 @@ pub struct Sums {
     pub split: f64,
     /// The dual point `p + R (H u + c − z)` with `z` and `p` before the pass; only when asked to check.
     pub from_equations: DualPoint,
-    /// The dual point `p` after the pass; only when asked to check.
+    /// The dual point `p` after the pass; only when asked to check, and where there is fidelity everywhere.
     pub multipliers: DualPoint,
 }
 
@@ -96,7 +96,7 @@ impl<const K: usize> Sweep<K> {
         &self.from_equations[0]
     }
 
-    /// `Hᵀp` for [`Sums::multipliers`] after a pass that was asked to check.
+    /// `Hᵀp` for [`Sums::multipliers`] after a pass that was asked to check; only where there is fidelity everywhere.
     #[must_use]
     pub fn multipliers(&self) -> &[[f64; K]] {
         &self.multipliers[0]
@@ -123,17 +123,17 @@ impl<const K: usize> Sweep<K> {
                 clear(right, n);
                 if CHECK {
                     clear(from_equations, n);
-                    clear(multipliers, n);
+                    clear(multipliers, if reduced.has_fidelity_everywhere { n } else { 0 });
                 }
                 let first = part * parts.size;
                 let products = [from_equations, multipliers];
                 Arch::new().dispatch(Pass::<K, CHECK> { reduced, r, u, first, state, right, products })
             })
             .collect();
-        gather(&mut self.right, n);
+        gather(&mut self.right);
         if CHECK {
-            gather(&mut self.from_equations, n);
-            gather(&mut self.multipliers, n);
+            gather(&mut self.from_equations);
+            gather(&mut self.multipliers);
         }
         sums.into_iter().fold(Sums::default(), Sums::and)
     }
@@ -183,9 +183,11 @@ impl<const K: usize, const CHECK: bool> WithSimd for Pass<'_, K, CHECK> {
             if CHECK {
                 let p = combine(r, v, -r, &z);
                 sums.split += w * norm(&combine(1.0, &h, -1.0, &z));
-                sums.multipliers.add(&p, w, &c);
-                for (&column, value) in columns.iter().zip(values) {
-                    add_outer_transposed(&mut multipliers[column as usize], value, &p);
+                if !multipliers.is_empty() {
+                    sums.multipliers.add(&p, w, &c);
+                    for (&column, value) in columns.iter().zip(values) {
+                        add_outer_transposed(&mut multipliers[column as usize], value, &p);
+                    }
                 }
             }
             // R(z − c) − p

@@ -9,6 +9,9 @@ use pulp::{Arch, Simd, WithSimd};
 /// Columns of a panel that are applied together: fewer passes over the right sides, few enough for the registers.
 const COLUMNS: usize = 4;
 
+/// Sums that are carried along together: one alone waits for itself, more than these do not fit the registers.
+const ACCUMULATORS: usize = 12;
+
 /// The most numbers in a vector register. Columns are read in whole registers, past their end: what stands there meets only
 /// padding.
 pub const LANES: usize = 8;
@@ -222,13 +225,21 @@ impl Panel<'_> {
     #[inline(always)]
     fn substitute<S: Simd, const J: usize, const K: usize>(&self, simd: S, j: usize, space: &mut [f64]) {
         let (n, stride) = (self.n_rows(), self.stride());
+        let mut right: [&[f64]; K] = [&[]; K];
+        for (c, right) in right.iter_mut().enumerate() {
+            *right = &space[c * stride + j + J..(c + 1) * stride];
+        }
+        let mut columns: [&[S::f64s]; J] = [&[]; J];
+        for (a, column) in columns.iter_mut().enumerate() {
+            *column = self.column::<S>(j + a, j + J);
+        }
         let mut sums = [[0.0; K]; J];
-        for (a, sums) in sums.iter_mut().enumerate() {
-            let mut right: [&[f64]; K] = [&[]; K];
-            for (c, right) in right.iter_mut().enumerate() {
-                *right = &space[c * stride + j + J..(c + 1) * stride];
+        if J * K <= ACCUMULATORS {
+            sums = products(simd, columns, right);
+        } else {
+            for (sums, &column) in sums.iter_mut().zip(&columns) {
+                [*sums] = products(simd, [column], right);
             }
-            *sums = products(simd, self.column::<S>(j + a, j + J), right);
         }
         for c in 0..K {
             let top = &mut space[c * stride + j..c * stride + j + J];
@@ -265,22 +276,29 @@ fn subtract<S: Simd, const J: usize>(simd: S, columns: [&[S::f64s]; J], x: &[f64
     }
 }
 
-/// `⟨column, t⟩` for every `t`.
+/// `⟨column, t⟩` for every column and every `t`.
 #[inline(always)]
-fn products<S: Simd, const K: usize>(simd: S, column: &[S::f64s], t: [&[f64]; K]) -> [f64; K] {
+fn products<S: Simd, const J: usize, const K: usize>(
+    simd: S,
+    columns: [&[S::f64s]; J],
+    t: [&[f64]; K],
+) -> [[f64; K]; J] {
+    let n = columns[0].len();
+    let mut left: [&[S::f64s]; J] = [&[]; J];
+    for j in 0..J {
+        left[j] = &columns[j][..n];
+    }
     let mut right: [&[S::f64s]; K] = [&[]; K];
     for c in 0..K {
-        right[c] = &S::as_simd_f64s(t[c]).0[..column.len()];
+        right[c] = &S::as_simd_f64s(t[c]).0[..n];
     }
-    let mut sums = [simd.splat_f64s(0.0); K];
-    for (i, &entry) in column.iter().enumerate() {
-        for c in 0..K {
-            sums[c] = simd.mul_add_e_f64s(entry, right[c][i], sums[c]);
+    let mut sums = [[simd.splat_f64s(0.0); K]; J];
+    for i in 0..n {
+        for j in 0..J {
+            for c in 0..K {
+                sums[j][c] = simd.mul_add_e_f64s(left[j][i], right[c][i], sums[j][c]);
+            }
         }
     }
-    let mut total = [0.0; K];
-    for c in 0..K {
-        total[c] = simd.reduce_sum_f64s(sums[c]);
-    }
-    total
+    sums.map(|sums| sums.map(|sum| simd.reduce_sum_f64s(sum)))
 }

@@ -63,7 +63,7 @@ impl<const K: usize> Run<'_, '_, K> {
         self.add_constraints(&mut g);
         self.refine_if_worth(&g, settings);
         self.bound_from(&q, &g);
-        if self.reduced.fidelity.iter().all(|a| *a > 0.0) {
+        if self.reduced.has_fidelity_everywhere {
             let (q, mut g) = model.dual_point(&self.reduced, &h, true);
             self.add_constraints(&mut g);
             self.bound_from(&q, &g);

@@ -257,7 +257,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         self.add_constraints(&mut g);
         self.refine_if_worth(&g, settings);
         self.bound_from(&sums.from_equations, &g);
-        if self.reduced.fidelity.iter().all(|a| *a > 0.0) {
+        if self.reduced.has_fidelity_everywhere {
             let mut g = self.sweep.multipliers().to_vec();
             self.add_constraints(&mut g);
             self.bound_from(&sums.multipliers, &g);
