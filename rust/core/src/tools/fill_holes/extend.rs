@@ -239,3 +239,81 @@ fn has_arrived(region: &Region, parts: &Parts, labels: &[u32], edge: f64) -> boo
             && quality(corners) > THIN
     })
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::region::tests::around_hole;
+    use super::super::start::smooth;
+    use super::*;
+    use crate::operators::Energy;
+    use crate::shapes::{self, Shape};
+
+    /// The region of a hole after its smooth start and the extension, and what this said.
+    fn extended(shape: &Shape, place: Point, radius: f64) -> (Region, Option<bool>) {
+        let mut region = around_hole(shape, place, radius);
+        smooth(&mut region, Energy::L2Laplacian, 3, &Progress::new()).unwrap();
+        let found = extend(&mut region, 0.9, None, &Progress::new()).unwrap();
+        (region, found)
+    }
+
+    fn nearest(region: &Region, place: Point) -> f64 {
+        region.mesh.positions().iter().map(|&p| distance(p, place)).fold(f64::INFINITY, f64::min)
+    }
+
+    fn off_cube(p: Point) -> f64 {
+        (p.iter().fold(0.0, |a: f64, x| a.max(x.abs())) - 1.0).abs()
+    }
+
+    #[test]
+    fn a_cubes_edge_and_corner_are_exact() {
+        for (n, place, radius) in
+            [(12, [1.0, 1.0, 0.1], 0.5), (12, [1.0; 3], 0.29), (12, [1.0; 3], 0.6), (24, [1.0; 3], 0.5)]
+        {
+            let (region, found) = extended(&shapes::cube(n), place, radius);
+            assert_eq!(found, Some(true));
+            for (f, face) in region.patch_faces() {
+                let corners = region.mesh.corners(face);
+                assert!(off_cube(centroid(corners)) < 1e-9, "face {f}: {corners:?}");
+                assert!(quality(corners) > 0.1, "face {f}: {corners:?}");
+            }
+            assert!(place != [1.0; 3] || nearest(&region, place) < 1e-9);
+        }
+    }
+
+    #[test]
+    fn the_rim_of_a_cylinder_bends_on() {
+        let shape = shapes::cylinder(48, 12, 1.0, 1.5);
+        let bottom = shape.vertices.iter().zip(0..).filter(|(p, _)| p[2] == 0.0).map(|(_, v)| v).collect::<Vec<u32>>();
+        let mut capped = shape.clone();
+        // Rings towards the centre, as wide as the edges of the rim.
+        let mut ring = bottom.clone();
+        for k in 1..7 {
+            let next: Vec<u32> = (0..48).map(|i| capped.vertices.len() as u32 + i).collect();
+            let shrunk: Vec<Point> =
+                bottom.iter().map(|&v| scale(shape.vertices[v as usize], 1.0 - 0.13 * f64::from(k))).collect();
+            capped.vertices.extend(shrunk);
+            for i in 0..48 {
+                let j = (i + 1) % 48;
+                capped.faces.extend([[ring[j], ring[i], next[i]], [ring[j], next[i], next[j]]]);
+            }
+            ring = next;
+        }
+        let place = shape.vertices[bottom[5] as usize];
+        let (region, found) = extended(&capped, place, 0.35);
+        assert_eq!(found, Some(false));
+        for (f, face) in region.patch_faces() {
+            let p = centroid(region.mesh.corners(face));
+            let (radius, z) = (p[0].hypot(p[1]), p[2]);
+            assert!(z.abs() < 0.02 || (radius - 1.0).abs() < 0.02, "face {f}: {p:?}");
+        }
+    }
+
+    #[test]
+    fn a_smooth_surface_is_one_part_that_goes_on_smoothly() {
+        let (region, found) = extended(&shapes::icosphere(3), [0.0, 0.0, 1.0], 0.4);
+        assert_eq!(found, Some(false));
+        let off = |v| (norm(region.mesh.position(v)) - 1.0).abs();
+        assert!(region.free().all(|v| off(v) < 0.03));
+    }
+}

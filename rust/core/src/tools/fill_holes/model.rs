@@ -91,3 +91,51 @@ impl Model {
         (self.scale * off / steepness, normal)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::shapes::Random;
+
+    /// Points of a height over a plane, which lies askew.
+    fn points(height: impl Fn(f64, f64) -> f64) -> Vec<(Point, f64)> {
+        let [s, t, n] = frame(unit([1.0, 2.0, -0.5]));
+        let mut random = Random::new(7);
+        (0..200)
+            .map(|_| {
+                let (x, y) = (random.symmetric(), random.symmetric());
+                let p = add(add(scale(s, x), scale(t, y)), scale(n, height(x, y)));
+                (add(p, [3.0, 1.0, 2.0]), 1.0 + random.uniform())
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_plane_is_found_exactly_from_a_normal_that_is_off() {
+        let model = Model::fit(&points(|_, _| 0.0), unit([1.2, 2.0, -0.2]), 0.1).unwrap();
+        assert!(model.is_flat && model.misfit < 1e-12, "{model:?}");
+        let (off, normal) = model.at(add([3.0, 1.0, 2.0], scale(unit([1.0, 2.0, -0.5]), 0.7)));
+        assert!((off - 0.7).abs() < 1e-12);
+        assert!(dot(normal, unit([1.0, 2.0, -0.5])) > 1.0 - 1e-12);
+    }
+
+    #[test]
+    fn noise_is_no_curvature() {
+        let random = std::cell::RefCell::new(Random::new(3));
+        let model = Model::fit(&points(|_, _| 0.03 * random.borrow_mut().symmetric()), unit([1.0, 2.0, -0.5]), 0.1);
+        assert!(model.unwrap().is_flat);
+    }
+
+    #[test]
+    fn a_bent_surface_goes_on_bent() {
+        let model = Model::fit(&points(|x, y| 0.3 * x * x - 0.1 * x * y), unit([1.0, 2.0, -0.5]), 0.1).unwrap();
+        assert!(!model.is_flat && model.misfit < 1e-3, "{model:?}");
+        assert!(points(|x, y| 0.3 * x * x - 0.1 * x * y).iter().all(|&(p, _)| model.at(p).0.abs() < 3e-3));
+    }
+
+    #[test]
+    fn two_points_are_no_surface() {
+        assert!(Model::fit(&points(|_, _| 0.0)[..2], [0.0, 0.0, 1.0], 0.1).is_none());
+    }
+}

@@ -140,3 +140,35 @@ impl Region {
         Ok(())
     }
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::hole_filling::{faces_at, fill_loop, find_holes, FillOptions};
+    use crate::mesh::vector::{centroid, distance};
+    use crate::shapes::Shape;
+    use crate::Progress;
+
+    /// The region of the hole that is left where the faces of a closed shape within `radius` of `place` are taken away.
+    pub fn around_hole(shape: &Shape, place: Point, radius: f64) -> Region {
+        let away = |f: usize| distance(centroid(shape.faces[f].map(|v| shape.vertices[v as usize])), place);
+        let mesh = shape.clone().without_faces(|f| away(f) < radius).mesh().unwrap();
+        let hole = find_holes(&mesh).unwrap().remove(0).vertices;
+        let patch = fill_loop(&mesh, &hole, &FillOptions::default(), &Progress::new()).unwrap();
+        let at = faces_at(&mesh, std::slice::from_ref(&hole)).unwrap();
+        let near = Neighbourhoods::new(mesh.connectivity(), &at);
+        let n = mesh.connectivity().n_vertices() as u32;
+        Region::new(&mesh, &near, &patch, n, super::super::RINGS, &HashSet::new()).unwrap()
+    }
+
+    #[test]
+    fn a_patch_replaced_by_itself_is_the_same() {
+        let mut region = around_hole(&crate::shapes::icosphere(3), [0.0, 0.0, 1.0], 0.4);
+        let before = (region.mesh.positions().to_vec(), region.faces());
+        let (points, faces, rim) = region.patch();
+        assert!(rim.iter().all(|&v| region.is_anchor(v)));
+        region.replace_patch(&points, &faces, &rim).unwrap();
+        assert_eq!((region.mesh.positions().to_vec(), region.faces()), before);
+    }
+}

@@ -1,6 +1,6 @@
 //! One hole: the smooth patch, and from it the sharp one where the surroundings ask for it.
 
-use super::decide::least_ridge;
+use super::decide::{ridges_around, Ridges};
 use super::extend::extend;
 use super::fair::fair;
 use super::flips::flip_along_ridges;
@@ -66,6 +66,13 @@ pub(super) struct Restored {
     pub iterations: usize,
 }
 
+impl Restored {
+    /// The end of a patch that stays smooth.
+    fn smooth() -> Self {
+        Self { sharpness: 0.0, status: HoleStatus::Converged, energy: [0.0; 2], gap: 0.0, iterations: 0 }
+    }
+}
+
 /// Hears of every cycle: the region, how much is done, the steps so far, the energy.
 pub(super) type Watch<'a> = dyn FnMut(&Region, f64, usize, Option<f64>) + 'a;
 
@@ -78,24 +85,29 @@ pub(super) fn restore(
 ) -> Result<Restored> {
     smooth(region, Energy::L2Laplacian, SMOOTH_ROUNDS, progress)?;
     watch(region, 0.05, 0, None);
-    let least = least_ridge(region);
+    let ridges = ridges_around(region);
     let sharpness = match options.sharpness {
-        Sharpness::Auto if least.is_some() => SHARP,
+        Sharpness::Auto if ridges.is_some() => SHARP,
         Sharpness::Auto => 0.0,
         Sharpness::Value(sharpness) => sharpness,
     };
-    let mut restored = Restored { sharpness, status: HoleStatus::Converged, energy: [0.0; 2], gap: 0.0, iterations: 0 };
+    let mut restored = Restored { sharpness, ..Restored::smooth() };
     if options.sharpness == Sharpness::Auto && sharpness == 0.0 {
         return Ok(restored);
     }
-    let ridge = RIDGE * least.unwrap_or(1.0);
+    let ridge = RIDGE * ridges.map_or(1.0, |ridges| ridges.least);
     let is_remeshed = sharpness > 0.0 && options.iterations > 0;
     if !is_remeshed || region.mesh.n_faces() - region.n_outer <= 2 * COARSE_FACES {
-        form_ridges(region, least, &mut restored, options, progress, watch)?;
+        form_ridges(region, ridges, &mut restored, options, progress, watch)?;
         return Ok(restored);
     }
+    let smooth = region.clone();
     resample(region, options.edge_length, &Kept::ridges(ridge), COARSE_FACES, FINE_ROUNDS, progress)?;
-    form_ridges(region, least, &mut restored, options, progress, watch)?;
+    form_ridges(region, ridges, &mut restored, options, progress, watch)?;
+    if restored.sharpness == 0.0 {
+        *region = smooth;
+        return Ok(restored);
+    }
     let coarse = region.clone();
     resample(region, options.edge_length, &Kept::ridges(ridge), FINE_FACES, FINE_ROUNDS, progress)?;
     flip_along_ridges(region, SWEEPS);
@@ -107,18 +119,18 @@ pub(super) fn restore(
     Ok(restored)
 }
 
-/// The cycles that bring the ridges back; `least` is the least bend of those around the hole.
+/// The cycles that bring the `ridges` around the hole back.
 fn form_ridges(
     region: &mut Region,
-    least: Option<f64>,
+    ridges: Option<Ridges>,
     restored: &mut Restored,
     options: &FillHolesOptions,
     progress: &Progress,
     watch: &mut Watch<'_>,
 ) -> Result<()> {
     let sharpness = restored.sharpness;
-    let ridge = RIDGE * least.unwrap_or(1.0);
-    let mut sound = region.clone();
+    let ridge = RIDGE * ridges.map_or(1.0, |ridges| ridges.least);
+    let (smooth, mut sound) = (region.clone(), region.clone());
     let worst = worst_bend(&region.mesh).min(FOLD_COSINE);
     restored.status = HoleStatus::Finished;
     let cycles = options.iterations.div_ceil(STEPS);
@@ -145,7 +157,7 @@ fn form_ridges(
             restored.status = HoleStatus::Converged;
             break;
         }
-        if sharpness > 0.0 && least.is_some() && cycle == EXTEND_AFTER {
+        if sharpness > 0.0 && ridges.is_some() && cycle == EXTEND_AFTER {
             let mut extended = region.clone();
             if let Some(flat) = extend(&mut extended, ridge, options.edge_length, progress)? {
                 if !flat {
@@ -157,6 +169,11 @@ fn form_ridges(
                     restored.status = HoleStatus::Converged;
                     return Ok(());
                 }
+            }
+            if options.sharpness == Sharpness::Auto && ridges.is_some_and(|ridges| !ridges.are_clear) {
+                *region = smooth;
+                *restored = Restored::smooth();
+                return Ok(());
             }
         }
         if sharpness > 0.0 && cycle % RESAMPLE_EVERY == 0 {

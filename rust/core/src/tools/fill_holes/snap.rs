@@ -163,3 +163,30 @@ pub(super) fn eigen(mut a: [[f64; 3]; 3]) -> ([f64; 3], [Point; 3]) {
     }
     ([a[0][0], a[1][1], a[2][2]], [0, 1, 2].map(|j| [v[0][j], v[1][j], v[2][j]]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn eigenvectors_are_orthonormal_and_rebuild_the_matrix() {
+        let matrices = [
+            [[2.0, -1.0, 0.5], [-1.0, 3.0, 0.25], [0.5, 0.25, 1.0]],
+            [[1.0, 1.0, 1.0], [1.0, 1.0, 1.0], [1.0, 1.0, 1.0]],
+            [[0.0; 3]; 3],
+            [[1e-20, 0.0, 0.0], [0.0, 1e20, 1e5], [0.0, 1e5, 1.0]],
+        ];
+        for matrix in matrices {
+            let (values, vectors) = eigen(matrix);
+            let size = matrix.iter().flatten().fold(0.0, |a: f64, x| a.max(x.abs()));
+            for i in 0..3 {
+                for j in 0..3 {
+                    let identity = if i == j { 1.0 } else { 0.0 };
+                    assert!((dot(vectors[i], vectors[j]) - identity).abs() < 1e-12);
+                    let rebuilt: f64 = (0..3).map(|k| values[k] * vectors[k][i] * vectors[k][j]).sum();
+                    assert!((rebuilt - matrix[i][j]).abs() <= 1e-12 * size, "{matrix:?}");
+                }
+            }
+        }
+    }
+}
