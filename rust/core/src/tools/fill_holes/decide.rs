@@ -19,6 +19,8 @@ const CLEAR: f64 = 6.0;
 pub(super) struct Ridges {
     /// The bend of the least bent one, in radians.
     pub least: f64,
+    /// That of the most bent one.
+    pub most: f64,
     /// Whether they stand out so clearly that ridges are wanted even where the parts between them do not say how they go on.
     pub are_clear: bool,
 }
@@ -48,8 +50,9 @@ pub(super) fn ridges_around(region: &Region) -> Option<Ridges> {
     for (i, &(angle, l, _)) in edges.iter().enumerate() {
         let common = f64::sqrt(squares / length);
         if length > 0.0 && angle > LEAST_ANGLE && angle > CONTRAST * common {
-            let least = edges[i..].iter().find(|(_, _, at_rim)| *at_rim).map(|(angle, ..)| *angle)?;
-            return Some(Ridges { least, are_clear: least > CLEAR * common });
+            let mut bends = edges[i..].iter().filter(|(_, _, at_rim)| *at_rim).map(|(angle, ..)| *angle);
+            let least = bends.next()?;
+            return Some(Ridges { least, most: bends.next_back().unwrap_or(least), are_clear: least > CLEAR * common });
         }
         squares += l * angle * angle;
         length += l;
@@ -73,6 +76,7 @@ mod tests {
         let found = ridges(shapes::cube(12), [1.0, 1.0, 0.1], 0.4).unwrap();
         assert!(found.are_clear);
         assert!((found.least - std::f64::consts::FRAC_PI_2).abs() < 1e-9, "{found:?}");
+        assert!((found.most - found.least).abs() < 1e-9, "{found:?}");
     }
 
     #[test]

@@ -9,6 +9,7 @@ use super::region::Region;
 use super::resample::{resample, typical_edge, Kept};
 use super::snap::{snap, Snapping};
 use super::start::smooth;
+use super::surface::total_bend;
 use super::{FillHolesOptions, HoleStatus, Sharpness};
 use crate::operators::Energy;
 use crate::progress::Progress;
@@ -52,6 +53,13 @@ const SWEEPS: usize = 10;
 
 /// A patch whose vertices all moved by less than this part of its mean edge in a cycle rests.
 const STILL: f64 = 1e-3;
+
+/// Ridges of which the most bent one is bent by no more than so many times the least bent one are of one kind.
+const ALIKE: f64 = 1.2;
+
+/// A ridge gathers the bend that a smooth patch spreads. A patch that is bent in all by more than so many times as much has folds
+/// that nothing around it asks for.
+const MOST_BEND: f64 = 1.15;
 
 /// A patch with a bend beyond this (154 degrees) is folded, unless its smooth start or its rim had such a bend: the last one
 /// without is taken.
@@ -157,12 +165,8 @@ fn form_ridges(
             restored.status = HoleStatus::Converged;
             break;
         }
-        if sharpness > 0.0 && ridges.is_some() && cycle == EXTEND_AFTER {
-            let mut extended = region.clone();
-            if let Some(flat) = extend(&mut extended, ridge, options.edge_length, progress)? {
-                if !flat {
-                    finish(&mut extended, options, ridge, progress)?;
-                }
+        if let Some(around) = ridges.filter(|_| sharpness > 0.0 && cycle == EXTEND_AFTER) {
+            if let Some(extended) = extend_between(region, around, options, progress)? {
                 if worst_bend(&extended.mesh) >= worst {
                     *region = extended;
                     watch(region, 1.0, restored.iterations, Some(restored.energy[1]));
@@ -170,7 +174,7 @@ fn form_ridges(
                     return Ok(());
                 }
             }
-            if options.sharpness == Sharpness::Auto && ridges.is_some_and(|ridges| !ridges.are_clear) {
+            if options.sharpness == Sharpness::Auto && !around.are_clear {
                 *region = smooth;
                 *restored = Restored::smooth();
                 return Ok(());
@@ -192,7 +196,35 @@ fn form_ridges(
     if worst_bend(&region.mesh) < worst {
         *region = sound;
     }
+    let is_sharp = restored.status != HoleStatus::Stopped && sharpness > 0.0 && cycles > 0;
+    if options.sharpness == Sharpness::Auto && is_sharp && total_bend(region) > MOST_BEND * total_bend(&smooth) {
+        *region = smooth;
+        *restored = Restored::smooth();
+    }
     Ok(())
+}
+
+/// The patch in which the parts between the ridges around it have gone on until they meet. Where there are folds besides ridges,
+/// the parts between ridges alone are tried too.
+fn extend_between(
+    region: &Region,
+    ridges: Ridges,
+    options: &FillHolesOptions,
+    progress: &Progress,
+) -> Result<Option<Region>> {
+    for bend in [ridges.least, ridges.most] {
+        let mut extended = region.clone();
+        if let Some(flat) = extend(&mut extended, RIDGE * bend, options.edge_length, progress)? {
+            if !flat {
+                finish(&mut extended, options, RIDGE * bend, progress)?;
+            }
+            return Ok(Some(extended));
+        }
+        if ridges.most < ALIKE * ridges.least {
+            break;
+        }
+    }
+    Ok(None)
 }
 
 /// Makes the parts between ridges smooth. Between the rounds the patch is remeshed: thin triangles would hold the next one back.

@@ -1,7 +1,7 @@
 //! Normals, areas and dihedral angles of a region as it is now.
 
 use super::region::Region;
-use crate::mesh::vector::{area_vector, centroid, cross, dot, norm, scale, Point};
+use crate::mesh::vector::{area_vector, centroid, cross, distance, dot, norm, scale, Point};
 use crate::remesh::editable::{key, Wings};
 
 /// The angle between two directions of any length, in radians.
@@ -49,6 +49,18 @@ impl Surface {
     pub(super) fn dihedral(&self, [f, g]: [u32; 2]) -> f64 {
         angle(self.normals[f as usize], self.normals[g as usize])
     }
+}
+
+/// How much the patch is bent in all: `Σ length · |dihedral angle|` over its edges and those of its rim.
+pub(super) fn total_bend(region: &Region) -> f64 {
+    let surface = Surface::of(region);
+    let mesh = &region.mesh;
+    let bend = |[a, b]: [u32; 2]| {
+        let faces = mesh.wings(a, b)?.faces;
+        let at_patch = faces.iter().any(|&f| region.is_patch(f));
+        at_patch.then(|| distance(mesh.position(a), mesh.position(b)) * surface.dihedral(faces))
+    };
+    mesh.edges().into_iter().filter_map(bend).sum()
 }
 
 /// The edges at the patch that are bent by more than `least` radians, by vertices of the whole mesh, smaller first.
