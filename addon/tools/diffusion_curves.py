@@ -19,7 +19,6 @@ from ..selection import Needs
 from .attribute_run import Surface, surface_of
 from .run import Part, RefusedError, Run, meshes_phrase
 
-
 EXACT = 120.0
 """Decibels beyond which colours are exact, but for the rounding of single precision."""
 
