@@ -8,6 +8,13 @@ use crate::solve::MAX_JOINT_COLUMNS;
 /// Standard deviations of a step that noise alone may make.
 const DOUBT: f64 = 3.0;
 
+/// How far gradients, and unit normals, of single faces stray for each mean edge of noise (measured on noisy cubes).
+const STRAY_OF_NOISE: f64 = 2.0;
+
+/// Curvature explains part of a bend if what it explains is known better than this, half of the bend at which borders stand by default.
+/// Less, or demanding that it be significant, cuts the side of a coarse noisy cylinder into strips.
+const MOST_SLOPE_ERROR: f64 = 0.2;
+
 /// A rigid motion of the plane: rotation as a complex number, then a shift.
 #[derive(Clone, Copy)]
 struct Motion {
@@ -47,6 +54,7 @@ struct Side {
     gradient: [[f64; 2]; MAX_JOINT_COLUMNS],
     mean: [f64; MAX_JOINT_COLUMNS],
     /// Sums for the regression of the gradient on the distance from the edge.
+    far_count: f64,
     far_area: f64,
     far_x: f64,
     far_xx: f64,
@@ -60,6 +68,7 @@ impl Side {
         center: [0.0; 2],
         gradient: [[0.0; 2]; MAX_JOINT_COLUMNS],
         mean: [0.0; MAX_JOINT_COLUMNS],
+        far_count: 0.0,
         far_area: 0.0,
         far_x: 0.0,
         far_xx: 0.0,
@@ -185,6 +194,7 @@ impl Walk<'_> {
 
     fn add(&self, side: &mut Side, f: usize, motion: Motion, center: [f64; 2], near: bool) {
         let (area, k) = (self.surface.areas[f], self.signal.n_columns);
+        side.far_count += 1.0;
         side.far_area += area;
         side.far_x += area * center[0];
         side.far_xx += area * center[0] * center[0];
@@ -216,9 +226,10 @@ impl Walk<'_> {
             return 0.0;
         }
         let (mut jump, mut explained, mut step) = (0.0, 0.0, 0.0);
+        let stray = STRAY_OF_NOISE * self.signal.noise / self.surface.mean_edge;
         let [inner_weight, outer_weight] = [inner, outer].map(|side| self.weight(side));
         for c in 0..self.signal.n_columns {
-            let (a, b) = (inner.at_border(c, inner_weight), outer.at_border(c, outer_weight));
+            let (a, b) = (inner.at_border(c, inner_weight, stray), outer.at_border(c, outer_weight, stray));
             for d in 0..2 {
                 let difference = outer.gradient[c][d] / outer_weight - inner.gradient[c][d] / inner_weight;
                 jump += difference * difference;
@@ -241,16 +252,25 @@ struct AtBorder {
 }
 
 impl Side {
-    fn at_border(&self, c: usize, weight: f64) -> AtBorder {
+    /// Whether the regression of the gradient on the distance says anything, where gradients of single faces stray by `stray`: a side
+    /// of one row of faces does not, and the slope of a few noisy faces explains any jump.
+    fn knows_slope(&self, stray: f64) -> bool {
+        let mean_x = self.far_x / self.far_area;
+        let variance = self.far_xx / self.far_area - mean_x * mean_x;
+        let error = stray * (self.center[0] / self.area).abs() / (self.far_count * variance.max(0.0)).sqrt();
+        variance > 1e-3 * mean_x * mean_x && error < MOST_SLOPE_ERROR
+    }
+
+    fn at_border(&self, c: usize, weight: f64, stray: f64) -> AtBorder {
         let center = [self.center[0] / self.area, self.center[1] / self.area];
         let gradient = [self.gradient[c][0] / self.area, self.gradient[c][1] / self.area];
         let mean_x = self.far_x / self.far_area;
         let variance = self.far_xx / self.far_area - mean_x * mean_x;
+        let knows_slope = self.knows_slope(stray);
         let bent = [0, 1].map(|d| {
             let covariance =
                 self.far_x_gradient[c][d] / self.far_area - mean_x * self.far_gradient[c][d] / self.far_area;
-            // A side of one row of faces says nothing about curvature.
-            if variance > 1e-3 * mean_x * mean_x {
+            if knows_slope {
                 covariance / variance * center[0] * self.area / weight
             } else {
                 0.0
