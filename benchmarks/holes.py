@@ -4,7 +4,7 @@
         [--again] [--limits KIND ...] [--site FOLDER]
 
 `--only` takes the kinds of holes with these words in their name, `--tools` some tools, `--stress` random
-holes only: these print and keep nothing. `--again` measures all of ours again and keeps the rows of the
+holes only: these print and keep nothing. `--again` measures ours in the table again and keeps the rows of the
 peers, `--limits` only how filling grows, or the random holes. `--site` names a folder with the package
 `ridgeform`, instead of building the wheel. The peers get an environment of their own; what cannot be
 installed, crashes or takes too long is named in the table.
@@ -33,7 +33,7 @@ from run import machine  # noqa: E402
 from workspace import WHEEL_SITE  # noqa: E402
 
 RESULTS = ROOT / "benchmarks/holes"
-LIMITS = ("locality", "long", "stress")
+LIMITS = ("locality", "long", "ridges", "stress")
 """What `holes_limits.py` measures."""
 
 
@@ -85,7 +85,7 @@ def main() -> None:
         with tempfile.TemporaryDirectory() as scratch:
             results["cases"] = measure(choice.only, tools, site, Path(scratch))
     if full:
-        for kind in choice.limits or LIMITS:
+        for kind in choice.limits or (() if choice.again else LIMITS):
             print(f"== {kind}", flush=True)
             results[kind] = holes_run.limit(kind, site)
     text = holes_table.full(results)

@@ -2,7 +2,7 @@
 
 Times are processor times on one thread.
 
-    python benchmarks/holes_limits.py locality|long|stress [COUNT]
+    python benchmarks/holes_limits.py locality|long|ridges|stress [COUNT]
 
 Prints one line of JSON.
 """
@@ -22,6 +22,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 
 import fill_measures
 import random_holes
+import random_ridges
 import ridgeform
 import shapes
 from holes_long import LOOPS, holes_border, without
@@ -38,6 +39,8 @@ HOLES = {
 """Place as part of the side, place beside it and radius."""
 LONG = 5000
 """Vertices of the long loops."""
+RIDGES = 100
+"""Random holes across each kind of ridge, seeds from 0."""
 STRESS = 500
 """Random holes, seeds from 0."""
 
@@ -108,6 +111,29 @@ def long() -> list[dict[str, Any]]:
     return records
 
 
+def ridges(count: int = RIDGES) -> list[dict[str, Any]]:
+    """How near the truth random holes across ridges are filled."""
+    records = []
+    for kind in random_ridges.KINDS:
+        found = []
+        for seed in range(count):
+            holed = random_ridges.random_ridge(kind, seed)
+            filled = ridgeform.fill_holes(ridgeform.Mesh(holed.vertices, holed.faces))
+            filling = filled.faces[filled.patch >= 0].astype(np.int64)
+            found.append(random_ridges.errors(holed, filled.vertices, filling))
+        ridge, off, quality = np.array(found).T
+        records.append(
+            {
+                "kind": kind,
+                "holes": count,
+                "ridge": [float(x) for x in (ridge.mean(), *np.quantile(ridge, [0.5, 0.9]), ridge.max())],
+                "filling": [float(off.mean()), float(off.max())],
+                "worst_quality": float(quality.min()),
+            }
+        )
+    return records
+
+
 def stress(count: int = STRESS) -> dict[str, Any]:
     """Fill random holes; what is wrong with any filling, by seed."""
     wrong: dict[str, list[str]] = {}
@@ -137,5 +163,5 @@ def stress(count: int = STRESS) -> dict[str, Any]:
 
 if __name__ == "__main__":
     kind, *rest = sys.argv[1:]
-    work = {"locality": locality, "long": long, "stress": stress}[kind]
+    work = {"locality": locality, "long": long, "ridges": ridges, "stress": stress}[kind]
     print(json.dumps(work(*map(int, rest))))

@@ -108,6 +108,9 @@ was read; *reading* makes a `Mesh` of two arrays, *joining* makes the arrays of 
 where they are asked for.
 """
 LONG = "Processor time on one thread.\n"
+RIDGES = """The same shapes with 10 to 28 edges a side, three of five irregular, turned at random; holes of
+radius 0.2 to 0.75, some longer than wide. Distances as in the tables above.
+"""
 STRESS = "Processor time on one thread.\n"
 
 
@@ -117,6 +120,7 @@ def limits(results: Record) -> list[str]:
     for key, title, about, table in (
         ("locality", "The same hole in larger meshes", LOCALITY, _locality),
         ("long", "Long loops", LONG, _long),
+        ("ridges", "Random holes across ridges", RIDGES, _ridges),
         ("stress", "Random holes", STRESS, _stress),
     ):
         if key in results:
@@ -159,6 +163,30 @@ def _long(found: list[Record]) -> str:
         for r in found
     ]
     return grid(["loop", "its vertices", "new faces", "worst triangle", "time"], rows)
+
+
+def _ridges(found: list[Record]) -> str:
+    head = [
+        "hole",
+        "holes",
+        "ridge, mean",
+        "median",
+        "9 of 10",
+        "worst",
+        "filling, mean",
+        "worst",
+        "worst triangle",
+    ]
+    rows = [
+        [
+            r["kind"],
+            r["holes"],
+            *(f"{x:.4f}" for x in [*r["ridge"], *r["filling"]]),
+            f"{r['worst_quality']:.2f}",
+        ]
+        for r in found
+    ]
+    return grid(head, rows)
 
 
 def _stress(found: Record) -> str:

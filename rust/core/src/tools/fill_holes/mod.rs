@@ -2,10 +2,11 @@
 //!
 //! Each hole is a problem of its own ([`region`]): the patch and a few rings around it. The patch starts as the minimiser of a
 //! quadratic energy ([`start`]). Where the surface around is smooth ([`decide`]) that is the result. Where it has ridges,
-//! cycles follow: the L1 flow flattens ([`flow`]), edges flip along the ridges ([`flips`]), vertices snap onto the planes
-//! around them and their intersections ([`snap`]), the patch is remeshed with its ridges kept ([`resample`]). In the end the
-//! parts between the ridges become smooth ([`fair`]) and the ridges go on as those around ([`ridge_curves`]). No move
-//! folds the surface ([`guard`]).
+//! cycles follow: the L1 flow flattens ([`flow`]), edges flip along the ridges ([`flips`]). Then the smooth parts around the
+//! hole ([`parts`]), each a plane or gently bent ([`model`]), are given the faces of the patch ([`assign`]) and go on until they
+//! meet ([`extend`]). Where they do not say how, the cycles go on: vertices snap onto the planes around them and their
+//! intersections ([`snap`]), the patch is remeshed with its ridges kept ([`resample`]). In the end bent parts become smooth
+//! ([`fair`]) and the ridges go on as those around ([`ridge_curves`]). No move folds the surface ([`guard`]).
 
 mod assign;
 mod choice;
