@@ -10,10 +10,6 @@ const LEAST_ANGLE: f64 = 0.44;
 /// A ridge is bent by so many times the root mean square of what remains without the ridges.
 const CONTRAST: f64 = 3.0;
 
-/// Ridges bent by so many times what remains without them are made for ridges: scans and sculptures have folds of 3 to 5 times,
-/// modelled parts edges of 8 times and more.
-const CLEAR: f64 = 6.0;
-
 /// The ridges that reach a hole.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Ridges {
@@ -21,8 +17,6 @@ pub(super) struct Ridges {
     pub least: f64,
     /// That of the most bent one.
     pub most: f64,
-    /// Whether they stand out so clearly that ridges are wanted even where the parts between them do not say how they go on.
-    pub are_clear: bool,
 }
 
 /// The ridges that reach the hole, if any does: edges at its rim, not of the patch, that are bent by more than 25 degrees and by far
@@ -52,7 +46,7 @@ pub(super) fn ridges_around(region: &Region) -> Option<Ridges> {
         if length > 0.0 && angle > LEAST_ANGLE && angle > CONTRAST * common {
             let mut bends = edges[i..].iter().filter(|(_, _, at_rim)| *at_rim).map(|(angle, ..)| *angle);
             let least = bends.next()?;
-            return Some(Ridges { least, most: bends.next_back().unwrap_or(least), are_clear: least > CLEAR * common });
+            return Some(Ridges { least, most: bends.next_back().unwrap_or(least) });
         }
         squares += l * angle * angle;
         length += l;
@@ -72,9 +66,8 @@ mod tests {
     }
 
     #[test]
-    fn a_cubes_edge_is_a_clear_ridge_of_a_right_angle() {
+    fn a_cubes_edge_is_a_ridge_of_a_right_angle() {
         let found = ridges(shapes::cube(12), [1.0, 1.0, 0.1], 0.4).unwrap();
-        assert!(found.are_clear);
         assert!((found.least - std::f64::consts::FRAC_PI_2).abs() < 1e-9, "{found:?}");
         assert!((found.most - found.least).abs() < 1e-9, "{found:?}");
     }
