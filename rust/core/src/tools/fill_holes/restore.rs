@@ -58,8 +58,8 @@ const STILL: f64 = 1e-3;
 const ALIKE: f64 = 1.2;
 
 /// A ridge gathers the bend that a smooth patch spreads. A patch that is bent in all by more than so many times as much has folds
-/// that nothing around it asks for: in holes of six meshes, 12 of 15 patches below it were nearer to the truth than the smooth ones,
-/// and 3 of 20 above.
+/// that nothing around it asks for: in holes of six meshes, 10 of 13 patches below it were nearer to the truth than the smooth ones,
+/// and 3 of 22 above.
 const MOST_BEND: f64 = 1.35;
 
 /// A patch with a bend beyond this (154 degrees) is folded, unless its smooth start or its rim had such a bend: the last one
