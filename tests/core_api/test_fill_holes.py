@@ -219,3 +219,12 @@ def test_the_whole_is_the_mesh_and_what_is_new():
     assert (filled.new_patch == 0).all()
     assert filled.vertices.dtype == np.float64
     assert filled.faces.dtype == filled.patch.dtype == np.int32
+
+
+def test_a_wide_hole_across_an_edge_has_no_folds():
+    """Ninety edges wide: the patch reached its planes with three folds in them, and was given up."""
+    vertices, faces = shapes.cube(100, 100 / 12)
+    side = vertices.max()
+    filled = ridgeform.fill_holes(without(vertices, faces, [side, 0.1, side], 2.0))
+    new = np.asarray(filled.new_vertices)
+    assert np.minimum(side - new[:, 0], side - new[:, 2]).max() < 1e-9

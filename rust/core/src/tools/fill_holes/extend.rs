@@ -8,12 +8,16 @@ use super::region::Region;
 use super::resample::{resample, typical_edge, Kept};
 use super::restore::{COARSE_FACES, RESAMPLE_ROUNDS};
 use super::snap::eigen;
+use super::untangle::untangle;
 use crate::mesh::vector::{add, area_vector, between, centroid, distance, dot, norm, quality, scale, unit, Point};
 use crate::progress::Progress;
 use crate::Result;
 
 /// Rounds of assigning faces to parts, moving vertices onto them and remeshing.
 const ROUNDS: usize = 12;
+
+/// The round from which on folds are opened that did not open by themselves; most patches rest before.
+const UNTANGLE_FROM: usize = 6;
 
 /// Sweeps of flips after every round.
 const SWEEPS: usize = 10;
@@ -77,6 +81,9 @@ pub(super) fn extend(
         if flip_along_ridges(region, SWEEPS) > 0 {
             labels = assign(region, &parts, edge);
             moved = moved.max(settle(region, &parts, &labels));
+        }
+        if round >= UNTANGLE_FROM {
+            untangle(region, &parts, &labels);
         }
         if moved < STILL * edge && has_arrived(region, &parts, &labels, edge) {
             break;
@@ -205,8 +212,19 @@ fn order(region: &Region, parts: &Parts, labels: &[u32], v: u32) -> f64 {
     faces.filter_map(order).fold(1.0, f64::min)
 }
 
+/// The faces of the patch that are turned away from their part.
+pub(super) fn turned(region: &Region, parts: &Parts, labels: &[u32]) -> Vec<u32> {
+    let is_turned = |(f, face): (u32, [u32; 3])| {
+        let model = parts.models.get(*labels.get((f as usize).checked_sub(region.n_outer)?)? as usize)?;
+        let corners = region.mesh.corners(face);
+        let normal = model.at(centroid(corners)).1;
+        (dot(unit(area_vector(corners)), normal) < TURNED).then_some(f)
+    };
+    region.patch_faces().filter_map(is_turned).collect()
+}
+
 /// Where the surfaces of the parts that meet at free vertex `v` meet.
-fn meeting_point(region: &Region, parts: &Parts, labels: &[u32], v: u32) -> Point {
+pub(super) fn meeting_point(region: &Region, parts: &Parts, labels: &[u32], v: u32) -> Point {
     let own = parts_at(region, parts, labels, v);
     (0..STEPS).fold(region.mesh.position(v), |p, _| add(p, step(parts, &own, p)))
 }

@@ -26,6 +26,7 @@ mod ridge_curves;
 mod snap;
 mod start;
 mod surface;
+mod untangle;
 
 pub use choice::LoopChoice;
 
