@@ -217,7 +217,7 @@ impl<'a, const K: usize> Reduced<'a, K> {
                 sum
             })
             .collect();
-        gather(&mut sums);
+        gather(&mut sums, self.n());
         *out = sums.swap_remove(0);
     }
 
@@ -258,11 +258,12 @@ impl<'a, const K: usize> Reduced<'a, K> {
     }
 }
 
-/// Adds all partial sums to the first, in their order.
-pub fn gather<const K: usize>(parts: &mut [Vec<[f64; K]>]) {
+/// Adds all partial sums of `n` rows to the first, in their order; without blocks it is zero.
+pub fn gather<const K: usize>(parts: &mut [Vec<[f64; K]>], n: usize) {
     let Some((whole, rest)) = parts.split_first_mut() else {
         return;
     };
+    whole.resize(n, [0.0; K]);
     for part in rest {
         for (sum, more) in whole.iter_mut().zip(part.iter()) {
             sum.iter_mut().zip(more).for_each(|(s, x)| *s += x);

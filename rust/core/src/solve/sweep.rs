@@ -114,6 +114,7 @@ impl<const K: usize> Sweep<K> {
     fn pass<const CHECK: bool>(&mut self, reduced: &Reduced<'_, K>, r: &[f64], u: &[[f64; K]]) -> Sums {
         let parts = Parts::of(r.len());
         let n = reduced.n();
+        let n_multipliers = if reduced.has_fidelity_everywhere { n } else { 0 };
         let sums: Vec<Sums> = self
             .state
             .par_chunks_mut(parts.size)
@@ -123,17 +124,17 @@ impl<const K: usize> Sweep<K> {
                 clear(right, n);
                 if CHECK {
                     clear(from_equations, n);
-                    clear(multipliers, if reduced.has_fidelity_everywhere { n } else { 0 });
+                    clear(multipliers, n_multipliers);
                 }
                 let first = part * parts.size;
                 let products = [from_equations, multipliers];
                 Arch::new().dispatch(Pass::<K, CHECK> { reduced, r, u, first, state, right, products })
             })
             .collect();
-        gather(&mut self.right);
+        gather(&mut self.right, n);
         if CHECK {
-            gather(&mut self.from_equations);
-            gather(&mut self.multipliers);
+            gather(&mut self.from_equations, n);
+            gather(&mut self.multipliers, n_multipliers);
         }
         sums.into_iter().fold(Sums::default(), Sums::and)
     }
@@ -239,6 +240,28 @@ mod tests {
             rows.starts.push(rows.columns.len());
         }
         rows
+    }
+
+    /// Free rows may be seen by no block at all, and constraints add to the sums nevertheless.
+    #[test]
+    fn without_blocks_all_sums_are_zero_and_as_long_as_the_rows() {
+        let operator = BlockRows::empty(3);
+        let problem = Problem {
+            operator: &operator,
+            weights: Vec::new(),
+            fidelity: vec![1.0; 3],
+            target: Columns { n_rows: 3, n_columns: 1, data: vec![1.0; 3] },
+            fixed: vec![false; 3],
+            linear_constraints: None,
+            coupling: Coupling::Joint,
+        };
+        let free = FreeOperator::new(&operator, &problem.fixed);
+        let reduced = Reduced::<1>::new(&problem, &free, &[0]).unwrap();
+        let mut sweep = Sweep::resume(&reduced, &[], |_| [[0.0]; BLOCK]);
+        sweep.advance(&reduced, &[], &reduced.target, true);
+        for sums in [sweep.right(), sweep.from_equations(), sweep.multipliers()] {
+            assert_eq!(sums, [[0.0]; 3]);
+        }
     }
 
     /// One iteration as it stands in the textbook, on whole vectors.

@@ -56,11 +56,7 @@ impl Functional<'_> {
     /// A failed factorisation, or [`crate::Error::Cancelled`].
     pub fn minimise(&self, progress: &Progress) -> Result<Minimiser> {
         let surface = self.surface;
-        let operator = HessianPattern::new(surface.connectivity).assemble(
-            surface.connectivity,
-            &surface.lengths,
-            Dual::Barycentric,
-        )?;
+        let operator = self.operator()?;
         let mass = voronoi_mass(surface.connectivity, &surface.lengths);
         let mut run = Run {
             functional: self,
@@ -91,6 +87,12 @@ impl Functional<'_> {
         Ok(run.reached)
     }
 
+    /// The Hessian of the surface.
+    fn operator(&self) -> Result<BlockRows> {
+        let (connectivity, lengths) = (self.surface.connectivity, &self.surface.lengths);
+        Ok(HessianPattern::new(connectivity).assemble(connectivity, lengths, Dual::Barycentric)?)
+    }
+
     /// The minimiser over `v` alone, for the last `ε` and the values as they are: where nothing is to be smoothed.
     ///
     /// # Errors
@@ -98,11 +100,7 @@ impl Functional<'_> {
     pub fn indicate(&self, progress: &Progress) -> Result<Minimiser> {
         progress.check()?;
         let surface = self.surface;
-        let operator = HessianPattern::new(surface.connectivity).assemble(
-            surface.connectivity,
-            &surface.lengths,
-            Dual::Barycentric,
-        )?;
+        let operator = self.operator()?;
         let mut step = IndicatorStep::new(surface, self.length_weight, self.face_costs)?;
         if let Some(epsilon) = self.epsilons.last() {
             step.prepare(*epsilon);
