@@ -42,6 +42,14 @@ def test_parts_are_found_under_noise(name):
     assert segment_shapes.adjusted_rand_index(result.labels, part.truth) >= 0.98
 
 
+@pytest.mark.parametrize(("name", "level", "seed"), [("gabled house", 2, 1), ("cylinder with caps", 0, 0)])
+def test_heavy_noise_neither_hides_a_ridge_nor_makes_a_part(name, level, seed):
+    part = segment_shapes.SHAPES[name](level).noisy(0.2, 10 + seed).turned(seed)
+    result = segmented(part)
+    assert result.n_segments == part.n_parts
+    assert segment_shapes.adjusted_rand_index(result.labels, part.truth) >= 0.98
+
+
 def test_the_noisy_cube_has_six_sides():
     for seed in range(3):
         vertices, faces = shapes.noisy_cube(seed)

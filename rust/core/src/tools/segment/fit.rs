@@ -155,6 +155,15 @@ impl Patch {
         [c[1] + 2.0 * c[3] * terms[1] + c[4] * terms[2], c[2] + c[4] * terms[1] + 2.0 * c[5] * terms[2]]
     }
 
+    /// The unit directions in which a patch of a shape curves, that in which it curves most first.
+    pub fn curvature_directions(&self) -> [Point; 2] {
+        let c = &self.coefficients[0];
+        let (values, vectors) = symmetric_eigen(vec![vec![2.0 * c[3], c[4]], vec![c[4], 2.0 * c[5]]]);
+        let most = usize::from(values[1].abs() > values[0].abs());
+        let [first, second, _] = self.axes;
+        [most, 1 - most].map(|i| add(scale(first, vectors[i][0]), scale(second, vectors[i][1])))
+    }
+
     /// The unit normal of the continued patch of a shape at `p`.
     pub fn normal(&self, p: Point) -> Point {
         let [s, t] = self.slope(&self.terms(p).0);

@@ -1,11 +1,14 @@
 //! From the indicator to segments and their hierarchy.
 
 use super::crease::Signal;
+use super::divide::Divide;
 use super::exact::Planes;
+use super::explain::Explain;
+use super::fit::patch_size;
 use super::hierarchy::Hierarchy;
 use super::merge::{rename, Merge, Merging};
 use super::options::{SegmentMethod, SegmentOptions};
-use super::refit::Refit;
+use super::refit::{Refit, PLANE_EDGE, PLANE_NOISE};
 use super::surface::{contiguous, Surface};
 use super::threshold::cut_and_merge;
 use super::watershed::watershed;
@@ -61,7 +64,7 @@ impl Fitted<'_> {
             None => Signal::of_values(self.surface, self.start, self.noise),
         };
         let merging = Merging { surface: self.surface, signal: &signal, groups: None, progress: self.progress };
-        let leaves = match (self.planes, self.options.method) {
+        let mut leaves = match (self.planes, self.options.method) {
             (Some(planes), _) => planes.labels.clone(),
             (None, SegmentMethod::Paper) => {
                 let (threshold, least) = (self.options.cut_threshold, self.least_faces());
@@ -69,6 +72,9 @@ impl Fitted<'_> {
             }
             (None, SegmentMethod::Fitted) => watershed(self.surface, self.indicator, PERSISTENCE).0,
         };
+        if self.planes.is_none() && self.options.method == SegmentMethod::Fitted {
+            self.divide(&mut leaves)?;
+        }
         let mut labels = leaves.clone();
         if self.planes.is_some() {
             merging.below(&mut labels, BEND * self.options.length_weight)?;
@@ -91,6 +97,33 @@ impl Fitted<'_> {
         self.options.min_faces.unwrap_or((share * MOST_LEAST_FACES).round() as usize)
     }
 
+    /// How far the corners of a side are off it, as a standard deviation and at most.
+    fn deviations(&self) -> [f64; 2] {
+        let least = PLANE_EDGE * self.surface.mean_edge;
+        [self.noise.max(least), (PLANE_NOISE * self.noise).max(least)]
+    }
+
+    /// Divides segments of a shape that lie across a ridge.
+    fn divide(&self, labels: &mut Vec<u32>) -> Result<()> {
+        if !self.is_shape {
+            return Ok(());
+        }
+        let [deviation, flat] = self.deviations();
+        let bend = BEND * self.options.length_weight;
+        Divide { surface: self.surface, deviation, flat, bend, progress: self.progress }.run(labels)
+    }
+
+    /// Gives segments of a shape to the planes, and small ones also to the `curved` sides, that explain them.
+    fn explain(&self, labels: &mut Vec<u32>, curved: bool) -> Result<()> {
+        if !self.is_shape {
+            return Ok(());
+        }
+        let [deviation, flat] = self.deviations();
+        let most_faces = patch_size(self.noise / self.surface.mean_edge);
+        let surface = self.surface;
+        Explain { surface, deviation, flat, most_faces, curved, progress: self.progress }.run(labels)
+    }
+
     /// Merges and refits in turns.
     fn fit(&self, merging: &Merging<'_>, labels: &mut Vec<u32>) -> Result<()> {
         let refit = Refit {
@@ -105,6 +138,8 @@ impl Fitted<'_> {
             self.report(0.9 + 0.02 * round as f64, "segments");
             merging.below(labels, share * threshold)?;
             merging.absorb_small(labels, self.least_faces())?;
+            self.explain(labels, false)?;
+            self.divide(labels)?;
             let before = labels.clone();
             refit.run(labels)?;
             if *labels == before && share == 1.0 {
@@ -113,7 +148,7 @@ impl Fitted<'_> {
         }
         merging.below(labels, threshold)?;
         merging.absorb_small(labels, self.least_faces())?;
-        Ok(())
+        self.explain(labels, true)
     }
 
     /// Merges down to `n` segments, where there are more.

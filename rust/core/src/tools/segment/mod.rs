@@ -1,12 +1,15 @@
 //! Segmentation: the faces that a person would name, with clean borders (Rowe et al. 2024, section 7.5).
 //!
 //! [`indicator`] minimises the functional (41), whose `v` is low at borders. From there on the paper's way is [`threshold`]; the
-//! other one is [`watershed`], then merging across borders that bend little ([`crease`], [`merge`]), and moving faces at borders
+//! other one is [`watershed`], then merging across borders that bend little ([`crease`], [`merge`]), dividing what lies across a
+//! ridge ([`divide`]), joining what a neighbour explains ([`explain`]), and moving faces at borders
 //! to the segment that they fit best ([`refit`]). Sides of a few triangles, which the Hessian cannot see, are told by their planes
 //! ([`exact`]). In any case a [`hierarchy`] of nested segmentations comes with it.
 
 mod crease;
+mod divide;
 mod exact;
+mod explain;
 mod fit;
 mod fitted;
 mod hierarchy;

@@ -17,8 +17,8 @@ const ROUNDS: usize = 6;
 const SWEEPS: usize = 12;
 
 /// A segment counts as plane if it is off its plane by no more than this many times the noise, or this part of an edge.
-const PLANE_NOISE: f64 = 1.5;
-const PLANE_EDGE: f64 = 0.02;
+pub(super) const PLANE_NOISE: f64 = 1.5;
+pub(super) const PLANE_EDGE: f64 = 0.02;
 
 /// The least noise to reckon with, in mean edges for shapes and in the range of other signals: fits near curved borders are off by as
 /// much, and with less, borders on scans and characters have teeth.

@@ -1,0 +1,175 @@
+//! Dividing segments that lie across a ridge: where noise hides a ridge, basins of the indicator run over it.
+//!
+//! Two planes, or two curved patches, are fitted in turns with the assignment of faces to them, as variational shape approximation
+//! does (Cohen-Steiner et al. 2004), and must explain the segment better than one patch does, by the ratio of their likelihoods. So
+//! the strips of a cylinder, which one patch explains, stay together however coarse and noisy they are.
+
+use std::collections::BTreeSet;
+
+use super::fit::{Patch, Plane};
+use super::surface::{contiguous, pieces, Surface};
+use crate::mesh::vector::{distance, dot, Point};
+use crate::progress::Progress;
+use crate::Result;
+
+/// Both parts of a divided segment must have so many faces.
+const LEAST_PART: usize = 8;
+
+/// Fits and assignments in turns, of planes and of patches; they settle after three to five.
+const TURNS: [usize; 2] = [8, 4];
+
+/// A segment at a corner lies on three planes: divided once, and its parts again.
+const ROUNDS: usize = 2;
+
+/// The logarithm of the ratio of likelihoods that two planes, or patches with more coefficients, must have. On noisy shapes half and
+/// nearly twice as much give the same segments.
+const EVIDENCE: [f64; 2] = [10.0, 15.0];
+
+/// How segments are divided.
+pub(super) struct Divide<'a> {
+    pub surface: &'a Surface<'a>,
+    /// Standard deviation of the distances from a plane.
+    pub deviation: f64,
+    /// The most that the corners of faces of one side are off it, root mean square.
+    pub flat: f64,
+    /// Parts that bend by less where they meet are one.
+    pub bend: f64,
+    pub progress: &'a Progress,
+}
+
+/// What a part of a segment looks like.
+enum Model {
+    Plane(Plane),
+    Patch(Patch),
+}
+
+impl Model {
+    fn normal(&self, p: Point) -> Point {
+        match self {
+            Self::Plane(plane) => plane.normal(),
+            Self::Patch(patch) => patch.normal(p),
+        }
+    }
+}
+
+impl Divide<'_> {
+    /// Divides every segment that two sides explain better than one. Pieces that are not connected become segments of their own;
+    /// labels are contiguous then.
+    ///
+    /// # Errors
+    /// [`crate::Error::Cancelled`].
+    pub fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
+        for _ in 0..ROUNDS {
+            self.progress.check()?;
+            let (fresh, count) = contiguous(labels);
+            *labels = fresh;
+            let mut members = vec![Vec::new(); count];
+            (0..).zip(labels.iter()).for_each(|(f, &label): (u32, _)| members[label as usize].push(f));
+            let mut divided = false;
+            for (fresh, faces) in (count as u32..).zip(members) {
+                for f in self.second_side(&faces).unwrap_or_default() {
+                    labels[f as usize] = fresh;
+                    divided = true;
+                }
+            }
+            if !divided {
+                break;
+            }
+            *labels = pieces(self.surface, labels).0;
+        }
+        Ok(())
+    }
+
+    /// The faces of the second of two sides, where they explain what one patch does not.
+    fn second_side(&self, faces: &[u32]) -> Option<Vec<u32>> {
+        if faces.len() < 2 * LEAST_PART || Plane::through(self.surface, faces)?.spread <= self.flat {
+            return None;
+        }
+        let patch = Patch::fit(self.surface, faces, None)?;
+        let directions = patch.curvature_directions();
+        let squares = self.squares(&Model::Patch(patch), faces);
+        directions.into_iter().find_map(|across| {
+            let mut leanings: Vec<f64> =
+                faces.iter().map(|&f| dot(across, self.surface.centroids[f as usize])).collect();
+            let middle = *leanings.clone().select_nth_unstable_by(faces.len() / 2, f64::total_cmp).1;
+            leanings.iter_mut().for_each(|x| *x -= middle);
+            [false, true].into_iter().find_map(|curved| self.halves(faces, &mut leanings, squares, curved))
+        })
+    }
+
+    /// The second of two sides, planes or `curved`, that follow from how faces lean: those with positive `leanings` to it. Nothing
+    /// where they do not fit within the noise, bend little where they meet, or explain no more than the one patch that misses the
+    /// corners by `squares`.
+    fn halves(&self, faces: &[u32], leanings: &mut [f64], squares: f64, curved: bool) -> Option<Vec<u32>> {
+        let kind = usize::from(curved);
+        let mut turn = 0;
+        loop {
+            let side = |second: bool| -> Vec<u32> {
+                let pairs = faces.iter().zip(leanings.iter());
+                pairs.filter(|(_, x)| (**x > 0.0) == second).map(|(f, _)| *f).collect()
+            };
+            let sides = [side(false), side(true)];
+            if sides.iter().any(|side| side.len() < LEAST_PART) {
+                return None;
+            }
+            let models = [self.model(&sides[0], curved)?, self.model(&sides[1], curved)?];
+            if turn < TURNS[kind] {
+                turn += 1;
+                for (leaning, &f) in leanings.iter_mut().zip(faces) {
+                    *leaning = self.squares(&models[0], &[f]) - self.squares(&models[1], &[f]);
+                }
+                continue;
+            }
+            let left = [0, 1].map(|i| self.squares(&models[i], &sides[i]));
+            let fits = (0..2).all(|i| left[i] <= (3 * sides[i].len()) as f64 * self.flat * self.flat);
+            let stands = fits
+                && log_likelihood_ratio(squares - left[0] - left[1], self.deviation) > EVIDENCE[kind]
+                && self.bend_between(&models, &sides) > self.bend;
+            let [_, second] = sides;
+            return stands.then_some(second);
+        }
+    }
+
+    fn model(&self, faces: &[u32], curved: bool) -> Option<Model> {
+        if curved {
+            Patch::fit(self.surface, faces, None).map(Model::Patch)
+        } else {
+            Plane::through(self.surface, faces).map(Model::Plane)
+        }
+    }
+
+    /// The sum of the squared distances of all corners.
+    fn squares(&self, model: &Model, faces: &[u32]) -> f64 {
+        let surface = self.surface;
+        let distance = |v: u32| match model {
+            Model::Plane(plane) => plane.distance(surface.positions[v as usize]),
+            Model::Patch(patch) => patch.misfit(surface, v as usize, None),
+        };
+        faces.iter().flat_map(|&f| surface.connectivity.faces()[f as usize]).map(|v| distance(v).powi(2)).sum()
+    }
+
+    /// The mean bend from one model to the other along the edges where their sides meet.
+    fn bend_between(&self, models: &[Model; 2], sides: &[Vec<u32>; 2]) -> f64 {
+        let surface = self.surface;
+        let second: BTreeSet<u32> = sides[1].iter().copied().collect();
+        let (mut sum, mut total) = (0.0, 0.0);
+        for &f in &sides[0] {
+            for (h, _) in surface.around(f as usize).filter(|(_, g)| second.contains(&(*g as u32))) {
+                let (length, place) = (surface.lengths[f as usize][h % 3], surface.centroids[f as usize]);
+                sum += length * distance(models[0].normal(place), models[1].normal(place));
+                total += length;
+            }
+        }
+        if total > 0.0 {
+            sum / total
+        } else {
+            0.0
+        }
+    }
+}
+
+/// The logarithm of the ratio of likelihoods of two models under noise of that deviation, where the squared distances of the corners
+/// of faces differ by `squares` in sum: a vertex is a corner of six faces.
+pub(super) fn log_likelihood_ratio(squares: f64, deviation: f64) -> f64 {
+    squares / (6.0 * 2.0 * deviation * deviation)
+}
