@@ -15,6 +15,7 @@ pub mod eigen;
 pub mod fast;
 mod fast_solver;
 mod linear_constraints;
+mod multifrontal;
 mod newton;
 pub mod normal_matrix;
 pub mod penalty;

@@ -76,8 +76,24 @@ impl Panels {
         }
     }
 
-    fn count(&self) -> usize {
+    /// Number of panels.
+    #[must_use]
+    pub fn count(&self) -> usize {
         self.begin.len().saturating_sub(1)
+    }
+
+    /// The rows below the triangle of a panel.
+    #[inline(always)]
+    #[must_use]
+    pub fn below(&self, s: usize) -> &[u32] {
+        &self.rows[self.below[s]..self.below[s + 1]]
+    }
+
+    /// Multiplications that eliminating the columns of a panel takes.
+    #[must_use]
+    pub fn multiplications(&self, s: usize) -> f64 {
+        let (k, below) = (self.begin[s + 1] - self.begin[s], self.below(s).len());
+        (0..k).map(|j| ((k - j + below) as f64).powi(2)).sum::<f64>() / 2.0
     }
 
     /// Solves `L Lᵀ x = right` in place; `values` belong to `L`, rows are in the order of the factor.

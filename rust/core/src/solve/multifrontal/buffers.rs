@@ -1,0 +1,88 @@
+//! Memory of the factorisation, kept from one to the next: a solver factors the same pattern several times, and fresh pages
+//! take a tenth of the time.
+
+use std::sync::{Mutex, PoisonError};
+
+use super::dense::Padded;
+
+/// What one thread needs for the fronts of a subtree.
+#[derive(Debug, Default)]
+pub struct Work {
+    /// What is left of fronts until their parents take it: a front writes to one stack and reads from the other.
+    pub stacks: [Stack; 2],
+    /// The columns that are eliminated.
+    pub panel: Padded,
+}
+
+impl Work {
+    /// Drops what is left on the stacks.
+    pub fn clear(&mut self) {
+        self.stacks.iter_mut().for_each(|stack| stack.top = 0);
+    }
+}
+
+/// A stack of numbers.
+#[derive(Debug, Default)]
+pub struct Stack {
+    values: Vec<f64>,
+    top: usize,
+}
+
+impl Stack {
+    /// `len` more numbers, of any value.
+    pub fn push(&mut self, len: usize) -> &mut [f64] {
+        let begin = self.top;
+        self.top += len;
+        if self.values.len() < self.top {
+            self.values.resize(self.top, 0.0);
+        }
+        &mut self.values[begin..self.top]
+    }
+
+    /// The last `len` numbers.
+    pub fn last(&self, len: usize) -> &[f64] {
+        &self.values[self.top - len..self.top]
+    }
+
+    /// Takes the last `len` numbers off.
+    pub fn pop(&mut self, len: usize) {
+        self.top -= len;
+    }
+}
+
+/// Buffers that are free at the moment.
+#[derive(Debug, Default)]
+pub struct Workspace {
+    works: Mutex<Vec<Work>>,
+    spare: Mutex<Vec<Vec<f64>>>,
+}
+
+impl Workspace {
+    /// What one thread needs.
+    pub fn work(&self) -> Work {
+        self.works.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default()
+    }
+
+    /// Gives it back.
+    pub fn back(&self, work: Work) {
+        self.works.lock().unwrap_or_else(PoisonError::into_inner).push(work);
+    }
+
+    /// Makes `buffer` hold `len` numbers of any value: the smallest free buffer that does, or a new one for the largest.
+    pub fn take(&self, len: usize, buffer: &mut Vec<f64>) {
+        let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
+        let fits = |x: &Vec<f64>| (x.len() < len, x.len().abs_diff(len));
+        let best = (0..spare.len()).min_by_key(|&i| fits(&spare[i]));
+        *buffer = best.map(|i| spare.swap_remove(i)).unwrap_or_default();
+        drop(spare);
+        if buffer.len() < len {
+            *buffer = Vec::new();
+            *buffer = vec![0.0; len];
+        }
+    }
+
+    /// Gives a buffer back.
+    pub fn give(&self, buffer: Vec<f64>) {
+        self.spare.lock().unwrap_or_else(PoisonError::into_inner).push(buffer);
+    }
+}

@@ -1,0 +1,400 @@
+//! Dense kernels of the factorisation: the first columns of a front, and what they take off the rest.
+//!
+//! Fronts of surface meshes are small: a handful of columns, tens of rows. General dense kernels spend their time on packing
+//! there, so these work straight on the columns; large updates go to the library's product.
+
+use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::{Accum, MatMut, MatRef, Par};
+use pulp::{Arch, Simd, WithSimd};
+
+/// Columns that are brought up to date and eliminated together.
+const COLUMNS: usize = 4;
+
+/// Strides are multiples of this: two of the widest vector registers.
+const ALIGNMENT: usize = 16;
+
+/// Groups of so many rows are enough for the stride to matter.
+const LONG: usize = 4;
+
+/// Columns that are eliminated before the rest of a wide panel is brought up to date.
+const BLOCK_COLUMNS: usize = 64;
+
+/// From this many columns on the library's product is faster (measured: equal at 32).
+const LARGE: usize = 24;
+
+/// Products of fewer rows are not worth sharing between threads. How they are cut does not depend on the threads, so results do
+/// not either.
+const SHARED: usize = 512;
+
+/// A dense matrix stored column by column, rows and columns padded so that whole registers and groups of columns fit.
+#[derive(Debug, Default)]
+pub struct Padded {
+    /// The numbers; those in the padding mean nothing.
+    pub values: Vec<f64>,
+    /// From one column to the next.
+    pub stride: usize,
+}
+
+impl Padded {
+    /// The stride of a matrix with so many rows.
+    #[must_use]
+    pub fn stride_of(n_rows: usize) -> usize {
+        let groups = n_rows.div_ceil(ALIGNMENT);
+        // Even multiples put the same row of many columns in few sets of the cache: up to a fifth slower products.
+        ALIGNMENT * if groups > LONG { groups | 1 } else { groups }
+    }
+
+    /// Numbers in a matrix of so many rows and columns.
+    #[must_use]
+    pub fn len_of(n_rows: usize, n_columns: usize) -> usize {
+        // Registers that start inside the last column may end behind it.
+        Self::stride_of(n_rows) * n_columns.next_multiple_of(COLUMNS) + ALIGNMENT
+    }
+
+    /// Becomes a matrix whose lower triangle is zero. What was above the diagonal may stay: nothing reads it.
+    pub fn clear(&mut self, n_rows: usize, n_columns: usize) {
+        self.stride = Self::stride_of(n_rows);
+        let len = Self::len_of(n_rows, n_columns);
+        if self.values.len() < len {
+            self.values.resize(len, 0.0);
+        }
+        for (j, column) in self.values[..len].chunks_mut(self.stride.max(1)).enumerate() {
+            let from = (j / ALIGNMENT * ALIGNMENT).min(column.len());
+            column[from..].fill(0.0);
+        }
+    }
+}
+
+/// Numbers in what is left of a front with `n` rows below its panel, stored like [`Padded`].
+#[must_use]
+pub fn update_len(n: usize) -> usize {
+    if n == 0 {
+        return 0;
+    }
+    Padded::len_of(n, n)
+}
+
+/// One front: `panel` holds its first `n_columns` columns of `n_rows`, `update` the columns and rows after these.
+#[derive(Debug)]
+pub struct Front<'f> {
+    /// Columns to be eliminated, lower triangle.
+    pub panel: &'f mut Padded,
+    /// What is left for the parent, lower triangle with the stride of [`Padded`]; what stood there is forgotten.
+    pub update: &'f mut [f64],
+    /// Rows of the panel.
+    pub n_rows: usize,
+    /// Columns of the panel.
+    pub n_columns: usize,
+}
+
+impl Front<'_> {
+    /// Turns the panel into columns of the factor and takes their product off the update; `false` when a pivot is not
+    /// positive.
+    #[must_use]
+    pub fn eliminate(&mut self) -> bool {
+        let mut begin = 0;
+        while begin < self.n_columns {
+            let end = self.n_columns.min(begin + BLOCK_COLUMNS);
+            let stride = self.panel.stride;
+            let block = &mut self.panel.values[begin * stride..];
+            if !Arch::new().dispatch(Eliminate { block, stride, first: begin, n_columns: end - begin }) {
+                return false;
+            }
+            self.bring_up_to_date(begin, end);
+            begin = end;
+        }
+        self.take_off();
+        true
+    }
+
+    /// Takes the columns `begin..end` off the later ones of the panel.
+    fn bring_up_to_date(&mut self, begin: usize, end: usize) {
+        let (stride, n_rows) = (self.panel.stride, self.n_rows);
+        let (done, rest) = self.panel.values.split_at_mut(end * stride);
+        let rest = &mut rest[..(self.n_columns - end) * stride];
+        let done = MatRef::from_column_major_slice_with_stride(&done[begin * stride..], n_rows, end - begin, stride);
+        let width = self.n_columns - end;
+        let rest = MatMut::from_column_major_slice_with_stride_mut(rest, n_rows, width, stride);
+        let (_, rest) = rest.split_at_row_mut(end);
+        let (triangle, below) = rest.split_at_row_mut(width);
+        let (_, done) = done.split_at_row(end);
+        let (top, bottom) = done.split_at_row(width);
+        subtract_product(triangle, top, Accum::Add);
+        subtract_rectangle(below, bottom, top, Accum::Add);
+    }
+
+    /// Writes what all columns of the panel take off the rows below.
+    fn take_off(&mut self) {
+        let (k, m) = (self.n_columns, self.n_rows);
+        let n = m - k;
+        let (stride, own) = (Padded::stride_of(n), self.panel.stride);
+        if k < LARGE {
+            let update = &mut *self.update;
+            Arch::new().dispatch(TakeOff { update, stride, n, panel: &self.panel.values, own, k });
+            return;
+        }
+        let panel = MatRef::from_column_major_slice_with_stride(&self.panel.values, m, k, own).subrows(k, n);
+        let update = MatMut::from_column_major_slice_with_stride_mut(self.update, n, n, stride);
+        subtract_product(update, panel, Accum::Replace);
+    }
+}
+
+/// `target −= x xᵀ` or `target = −x xᵀ`, lower triangle: cut in halves, on several threads while they are large.
+fn subtract_product(target: MatMut<'_, f64>, x: MatRef<'_, f64>, accumulate: Accum) {
+    let n = target.nrows();
+    if n < SHARED {
+        let (lower, rectangle) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
+        triangular::matmul(target, lower, accumulate, x, rectangle, x.transpose(), rectangle, -1.0, Par::Seq);
+        return;
+    }
+    let (left, _, below, right) = target.split_at_mut(n / 2, n / 2);
+    let (top, bottom) = x.split_at_row(n / 2);
+    let corner = || subtract_rectangle(below, bottom, top, accumulate);
+    let triangles = || {
+        rayon::join(|| subtract_product(left, top, accumulate), || subtract_product(right, bottom, accumulate));
+    };
+    rayon::join(corner, triangles);
+}
+
+/// `target −= x yᵀ` or `target = −x yᵀ`, cut into parts for several threads.
+fn subtract_rectangle(target: MatMut<'_, f64>, x: MatRef<'_, f64>, y: MatRef<'_, f64>, accumulate: Accum) {
+    let n = target.nrows();
+    if n < SHARED {
+        matmul(target, accumulate, x, y.transpose(), -1.0, Par::Seq);
+        return;
+    }
+    let (above, below) = target.split_at_row_mut(n / 2);
+    let (top, bottom) = x.split_at_row(n / 2);
+    rayon::join(|| subtract_rectangle(above, top, y, accumulate), || subtract_rectangle(below, bottom, y, accumulate));
+}
+
+/// `target −= Σ_a source_a · tops_a` for the rows from `first` to `end` of [`COLUMNS`] columns: row `i` of the target goes with
+/// row `i + shift` of the sources, and `tops_a` are the rows from `top` on of source `a`.
+struct RankUpdate<'u> {
+    target: &'u mut [f64],
+    stride: usize,
+    first: usize,
+    end: usize,
+    sources: &'u [f64],
+    own: usize,
+    n_sources: usize,
+    shift: usize,
+    top: usize,
+}
+
+impl RankUpdate<'_> {
+    #[inline(always)]
+    fn run<S: Simd, const REPLACES: bool>(self, simd: S) {
+        let step = 2 * S::F64_LANES;
+        let mut i = self.first;
+        while i < self.end {
+            let mut sums = [[simd.splat_f64s(0.0); 2]; COLUMNS];
+            for a in 0..self.n_sources {
+                let source = &self.sources[a * self.own..];
+                let rows = S::as_simd_f64s(&source[i + self.shift..i + self.shift + step]).0;
+                let tops = &source[self.top..self.top + COLUMNS];
+                for c in 0..COLUMNS {
+                    let top = simd.splat_f64s(tops[c]);
+                    sums[c][0] = simd.mul_add_e_f64s(rows[0], top, sums[c][0]);
+                    sums[c][1] = simd.mul_add_e_f64s(rows[1], top, sums[c][1]);
+                }
+            }
+            for (c, sums) in sums.iter().enumerate() {
+                let rows = &mut self.target[c * self.stride + i..c * self.stride + i + step];
+                let rows = S::as_mut_simd_f64s(rows).0;
+                for (row, sum) in rows.iter_mut().zip(sums) {
+                    *row = if REPLACES { simd.neg_f64s(*sum) } else { simd.sub_f64s(*row, *sum) };
+                }
+            }
+            i += step;
+        }
+    }
+}
+
+/// Eliminates `n_columns` columns, those from `first` on of a panel; `block` starts with them.
+struct Eliminate<'e> {
+    block: &'e mut [f64],
+    stride: usize,
+    first: usize,
+    n_columns: usize,
+}
+
+impl WithSimd for Eliminate<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        let stride = self.stride;
+        let step = 2 * S::F64_LANES;
+        for j in (0..self.n_columns).step_by(COLUMNS) {
+            let row = self.first + j;
+            let first = row / step * step;
+            let (done, target) = self.block.split_at_mut(j * stride);
+            let update = RankUpdate {
+                target,
+                stride,
+                first,
+                end: stride,
+                sources: done,
+                own: stride,
+                n_sources: j,
+                shift: 0,
+                top: row,
+            };
+            update.run::<S, false>(simd);
+            let columns = &mut self.block[j * stride..(j + COLUMNS) * stride];
+            let width = COLUMNS.min(self.n_columns - j);
+            let Some((lower, reciprocals)) = corner(columns, stride, row, width) else {
+                return false;
+            };
+            divide(simd, columns, stride, first, &lower, &reciprocals);
+            for (c, column) in lower.iter().enumerate().take(width) {
+                columns[c * stride + row + c..c * stride + row + width].copy_from_slice(&column[c..width]);
+            }
+        }
+        true
+    }
+}
+
+/// `L` of the triangle at `row`, column by column, and the reciprocals of its diagonal; the identity behind `width`.
+#[inline(always)]
+fn corner(
+    columns: &[f64],
+    stride: usize,
+    row: usize,
+    width: usize,
+) -> Option<([[f64; COLUMNS]; COLUMNS], [f64; COLUMNS])> {
+    let (mut lower, mut reciprocals) = ([[0.0; COLUMNS]; COLUMNS], [1.0; COLUMNS]);
+    for j in 0..width {
+        for i in j..width {
+            let mut sum = columns[j * stride + row + i];
+            for before in &lower[..j] {
+                sum -= before[i] * before[j];
+            }
+            if i == j {
+                if !(sum > 0.0 && sum.is_finite()) {
+                    return None;
+                }
+                lower[j][j] = sum.sqrt();
+                reciprocals[j] = 1.0 / lower[j][j];
+            } else {
+                lower[j][i] = sum * reciprocals[j];
+            }
+        }
+    }
+    Some((lower, reciprocals))
+}
+
+/// The rows from `first` on of [`COLUMNS`] columns times the inverse transpose of a triangle.
+#[inline(always)]
+fn divide<S: Simd>(
+    simd: S,
+    columns: &mut [f64],
+    stride: usize,
+    first: usize,
+    lower: &[[f64; COLUMNS]; COLUMNS],
+    reciprocals: &[f64; COLUMNS],
+) {
+    for c in 0..COLUMNS {
+        let (before, column) = columns.split_at_mut(c * stride);
+        let column = S::as_mut_simd_f64s(&mut column[first..stride]).0;
+        let scale = simd.splat_f64s(reciprocals[c]);
+        let mut earlier: [&[S::f64s]; COLUMNS] = [&[]; COLUMNS];
+        for b in 0..c {
+            earlier[b] = &S::as_simd_f64s(&before[b * stride + first..(b + 1) * stride]).0[..column.len()];
+        }
+        for i in 0..column.len() {
+            let mut x = column[i];
+            for b in 0..c {
+                x = simd.negate_mul_add_e_f64s(earlier[b][i], simd.splat_f64s(lower[b][c]), x);
+            }
+            column[i] = simd.mul_f64s(x, scale);
+        }
+    }
+}
+
+/// Writes what the `k` columns of a panel take off the `n` rows below, lower triangle.
+struct TakeOff<'t> {
+    update: &'t mut [f64],
+    stride: usize,
+    n: usize,
+    panel: &'t [f64],
+    own: usize,
+    k: usize,
+}
+
+impl WithSimd for TakeOff<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let step = 2 * S::F64_LANES;
+        for t in (0..self.n).step_by(COLUMNS) {
+            let update = RankUpdate {
+                target: &mut self.update[t * self.stride..],
+                stride: self.stride,
+                first: t / step * step,
+                end: self.n,
+                sources: self.panel,
+                own: self.own,
+                n_sources: self.k,
+                shift: self.k,
+                top: self.k + t,
+            };
+            update.run::<S, true>(simd);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// A positive definite matrix of `m` rows.
+    fn entry(i: usize, j: usize, m: usize) -> f64 {
+        ((7 * i.max(j) + 3 * i.min(j)) as f64).sin() + if i == j { 2.0 * m as f64 } else { 0.0 }
+    }
+
+    /// `L Lᵀ` of the columns, plus what is left, is the matrix again, whatever the sizes.
+    #[test]
+    fn eliminated_columns_and_the_rest_are_the_matrix() {
+        for (m, k) in [(1, 1), (2, 1), (5, 3), (8, 4), (16, 16), (23, 9), (40, 33), (150, 70), (600, 200), (530, 3)] {
+            let (mut panel, mut update) = (Padded::default(), vec![f64::NAN; update_len(m - k)]);
+            let stride = Padded::stride_of(m - k);
+            panel.clear(m, k);
+            for j in 0..k {
+                for i in j..m {
+                    panel.values[j * panel.stride + i] = entry(i, j, m);
+                }
+            }
+            assert!(Front { panel: &mut panel, update: &mut update, n_rows: m, n_columns: k }.eliminate());
+            for j in 0..m {
+                for i in j..m {
+                    let mut sum: f64 = (0..k.min(j + 1))
+                        .map(|a| panel.values[a * panel.stride + i] * panel.values[a * panel.stride + j])
+                        .sum();
+                    if j >= k {
+                        sum += update[(j - k) * stride + i - k];
+                    }
+                    let expected = if j < k { entry(i, j, m) } else { 0.0 };
+                    let error = (sum - expected).abs();
+                    assert!(error < 1e-12 * m as f64, "{m} rows, {k} columns, entry {i}, {j}: {error}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_pivot_that_is_not_positive_is_told() {
+        for bad in [0, 3, 5, 66] {
+            let (mut panel, mut update) = (Padded::default(), vec![0.0; update_len(3)]);
+            panel.clear(70, 67);
+            for j in 0..67 {
+                panel.values[j * panel.stride + j] = if j == bad { -1.0 } else { 1.0 };
+            }
+            assert!(!Front { panel: &mut panel, update: &mut update, n_rows: 70, n_columns: 67 }.eliminate());
+        }
+    }
+}

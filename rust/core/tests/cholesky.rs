@@ -1,0 +1,234 @@
+//! The sparse Cholesky factorisation against the library's, on matrices of every shape.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use faer::linalg::solvers::Solve;
+use faer::sparse::{SparseColMat, Triplet};
+use faer::{Mat, Side};
+use ridgeform_core::error::SolveError;
+use ridgeform_core::operators::{Dual, HessianPattern};
+use ridgeform_core::shapes;
+use ridgeform_core::solve::cholesky::{Cholesky, LowerPattern};
+use ridgeform_core::solve::normal_matrix::NormalMatrix;
+
+/// Numbers without a pattern, the same every time (splitmix64).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let x = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        x ^ (x >> 31)
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        (self.next() % n as u64) as usize
+    }
+
+    fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+struct Matrix {
+    pattern: LowerPattern,
+    values: Vec<f64>,
+}
+
+impl Matrix {
+    /// The matrix with these pairs of rows, and a diagonal that makes it positive definite.
+    fn of_pairs(n: usize, pairs: &[(usize, usize)], random: &mut Random) -> Self {
+        let mut columns: Vec<Vec<usize>> = (0..n).map(|j| vec![j]).collect();
+        for &(i, j) in pairs {
+            columns[i.min(j)].push(i.max(j));
+        }
+        let mut pattern = LowerPattern { n, starts: vec![0], rows: Vec::new() };
+        let (mut values, mut sums) = (Vec::new(), vec![0.0; n]);
+        for (j, mut column) in columns.into_iter().enumerate() {
+            column.sort_unstable();
+            column.dedup();
+            for i in column {
+                let value = random.unit() - 0.6;
+                sums[i] += value.abs();
+                sums[j] += value.abs();
+                pattern.rows.push(i);
+                values.push(value);
+            }
+            pattern.starts.push(pattern.rows.len());
+        }
+        for j in 0..n {
+            values[pattern.starts[j]] = sums[j] + 0.01;
+        }
+        Self { pattern, values }
+    }
+
+    /// `HᵀH` and a small diagonal, of a torus.
+    fn of_torus(around: usize, along: usize) -> Self {
+        let mesh = shapes::torus(around, along, 3.0, 1.0).noisy(0.01, 1).mesh().unwrap();
+        let (connectivity, lengths) = (mesh.connectivity(), mesh.edge_lengths());
+        let operator = HessianPattern::new(connectivity).assemble(connectivity, lengths, Dual::Barycentric).unwrap();
+        let normal = NormalMatrix::new(&operator);
+        let mut values = Vec::new();
+        let diagonal = vec![0.1; operator.n_columns];
+        normal.assemble(&operator, &vec![1.0; operator.n_blocks()], &diagonal, &mut values);
+        Self { pattern: normal.pattern().clone(), values }
+    }
+
+    fn right(&self) -> Vec<[f64; 1]> {
+        (0..self.pattern.n).map(|i| [(0.7 * i as f64).sin()]).collect()
+    }
+
+    fn solution(&self) -> Vec<[f64; 1]> {
+        let mut cholesky = Cholesky::analyse(self.pattern.clone(), None).unwrap();
+        cholesky.factorise(&self.values).unwrap();
+        let mut x = self.right();
+        cholesky.solve(&mut x);
+        x
+    }
+
+    /// What the library's own factorisation gives.
+    fn reference(&self) -> Vec<[f64; 1]> {
+        let p = &self.pattern;
+        let entries: Vec<Triplet<usize, usize, f64>> = (0..p.n)
+            .flat_map(|j| (p.starts[j]..p.starts[j + 1]).map(move |e| (e, j)))
+            .map(|(e, j)| Triplet::new(p.rows[e], j, self.values[e]))
+            .collect();
+        let matrix = SparseColMat::try_new_from_triplets(p.n, p.n, &entries).unwrap();
+        let right = self.right();
+        let mut x = Mat::from_fn(p.n, 1, |i, _| right[i][0]);
+        matrix.sp_cholesky(Side::Lower).unwrap().solve_in_place(&mut x);
+        (0..p.n).map(|i| [x[(i, 0)]]).collect()
+    }
+
+    /// The same matrix with row `i` in place `place[i]`.
+    fn permuted(&self, place: &[usize]) -> Self {
+        let p = &self.pattern;
+        let mut columns: Vec<Vec<(usize, f64)>> = vec![Vec::new(); p.n];
+        for j in 0..p.n {
+            for e in p.starts[j]..p.starts[j + 1] {
+                let (a, b) = (place[p.rows[e]], place[j]);
+                columns[a.min(b)].push((a.max(b), self.values[e]));
+            }
+        }
+        let mut pattern = LowerPattern { n: p.n, starts: vec![0], rows: Vec::new() };
+        let mut values = Vec::new();
+        for mut column in columns {
+            column.sort_unstable_by_key(|&(row, _)| row);
+            pattern.rows.extend(column.iter().map(|&(row, _)| row));
+            values.extend(column.iter().map(|&(_, value)| value));
+            pattern.starts.push(pattern.rows.len());
+        }
+        Self { pattern, values }
+    }
+}
+
+fn assert_near(x: &[[f64; 1]], y: &[[f64; 1]], tolerance: f64, what: &str) {
+    assert_eq!(x.len(), y.len());
+    let largest = y.iter().fold(0.0f64, |most, [y]| most.max(y.abs()));
+    for (i, ([x], [y])) in x.iter().zip(y).enumerate() {
+        assert!((x - y).abs() <= tolerance * largest, "{what}: row {i} is {x}, not {y}");
+    }
+}
+
+#[test]
+fn agrees_with_the_library_on_matrices_of_every_shape() {
+    let mut random = Random(1);
+    let path = |n: usize| (1..n).map(|i| (i - 1, i)).collect::<Vec<_>>();
+    let mut shapes = vec![
+        ("no rows", 0, vec![]),
+        ("one row", 1, vec![]),
+        ("diagonal", 50, vec![]),
+        ("path", 3000, path(3000)),
+        ("two paths and lone rows", 90, (1..40).map(|i| (i - 1, i)).chain((51..80).map(|i| (i - 1, i))).collect()),
+        ("arrow", 400, (0..399).map(|i| (i, 399)).collect()),
+        ("arrow the other way", 400, (1..400).map(|i| (0, i)).collect()),
+        ("full", 150, (0..150).flat_map(|i| (0..i).map(move |j| (i, j))).collect()),
+        ("caterpillar", 900, (1..300).map(|i| (i - 1, i)).chain((300..900).map(|i| (i % 300, i))).collect()),
+    ];
+    for n in [2, 3, 5, 9, 17, 33, 65, 200, 700] {
+        for degree in [1, 2, 4, 9] {
+            let pairs = (0..n * degree).map(|_| (random.below(n), random.below(n))).filter(|(i, j)| i != j).collect();
+            shapes.push(("random", n, pairs));
+        }
+    }
+    for (name, n, pairs) in shapes {
+        let matrix = Matrix::of_pairs(n, &pairs, &mut random);
+        assert_near(&matrix.solution(), &matrix.reference(), 1e-12, &format!("{name}, {n} rows"));
+    }
+    for (around, along) in [(12, 8), (60, 30), (200, 150)] {
+        let matrix = Matrix::of_torus(around, along);
+        assert_near(&matrix.solution(), &matrix.reference(), 1e-9, &format!("torus of {around} by {along}"));
+    }
+}
+
+/// Large enough for nested dissection, for subtrees on threads and for shared fronts.
+fn large() -> Matrix {
+    Matrix::of_torus(220, 120)
+}
+
+#[test]
+fn gives_the_same_bits_on_any_number_of_threads_and_each_time() {
+    let matrix = large();
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut cholesky = Cholesky::analyse(matrix.pattern.clone(), None).unwrap();
+            let mut solve = || {
+                cholesky.factorise(&matrix.values).unwrap();
+                let mut x = matrix.right();
+                cholesky.solve(&mut x);
+                x.into_iter().map(|[x]| x.to_bits()).collect::<Vec<_>>()
+            };
+            let (first, second) = (solve(), solve());
+            assert_eq!(first, second, "the second factorisation differs on {threads} threads");
+            first
+        })
+    };
+    let one = run(1);
+    for threads in [2, 3, 5] {
+        assert_eq!(run(threads), one, "{threads} threads");
+    }
+}
+
+#[test]
+fn a_permuted_matrix_has_the_permuted_solution() {
+    let mut random = Random(5);
+    let matrix = Matrix::of_torus(90, 50);
+    let n = matrix.pattern.n;
+    let mut place: Vec<usize> = (0..n).collect();
+    for i in (1..n).rev() {
+        place.swap(i, random.below(i + 1));
+    }
+    let right = matrix.right();
+    let mut permuted = vec![[0.0]; n];
+    for i in 0..n {
+        permuted[place[i]] = right[i];
+    }
+    let other = matrix.permuted(&place);
+    let mut cholesky = Cholesky::analyse(other.pattern, None).unwrap();
+    cholesky.factorise(&other.values).unwrap();
+    cholesky.solve(&mut permuted);
+    let back: Vec<[f64; 1]> = place.iter().map(|&p| permuted[p]).collect();
+    assert_near(&back, &matrix.solution(), 1e-9, "permuted");
+}
+
+#[test]
+fn a_bad_pivot_anywhere_is_an_error_and_the_next_factorisation_is_right() {
+    let matrix = large();
+    let right = matrix.solution();
+    let mut cholesky = Cholesky::analyse(matrix.pattern.clone(), None).unwrap();
+    let mut random = Random(9);
+    for bad in [-1.0, 0.0, f64::NAN, f64::INFINITY] {
+        let mut values = matrix.values.clone();
+        values[matrix.pattern.starts[random.below(matrix.pattern.n)]] = bad;
+        let error = cholesky.factorise(&values).unwrap_err();
+        assert!(
+            matches!(&error, SolveError::Factorisation { reason } if reason.contains("not positive definite")),
+            "{error}"
+        );
+        cholesky.factorise(&matrix.values).unwrap();
+        let mut x = matrix.right();
+        cholesky.solve(&mut x);
+        assert_eq!(x, right);
+    }
+}
