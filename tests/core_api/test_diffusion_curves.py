@@ -88,13 +88,13 @@ def test_regions_are_found_by_their_colours(count):
     mesh = ridgeform.Mesh(vertices, faces)
     found = ridgeform.diffusion_curves(mesh, palette[region])
     assert found.labels.max() + 1 == count
-    # Borders follow the paint.
-    assert found.psnr > 35
-    assert len(found.polylines) == count - 1
+    # Borders follow the paint exactly, also where they meet the slanted rim at a single vertex.
+    assert found.psnr > 100
+    assert count - 1 <= len(found.polylines) <= count + 1
     groups = np.arange(len(faces)) % (len(faces) // 2)
     squares = ridgeform.diffusion_curves(mesh, palette[region], face_groups=groups)
     assert (squares.labels[: len(groups) // 2] == squares.labels[len(groups) // 2 :]).all()
-    assert squares.psnr > 35
+    assert squares.psnr > 100
     fewer = ridgeform.diffusion_curves(mesh, palette[region], n_regions=count - 1)
     assert fewer.labels.max() + 1 == count - 1
 

@@ -11,6 +11,10 @@ use crate::Result;
 /// On painted meshes the error of the rebuilt colours stays within 0.01 dB after some 20 products.
 const LIMITS: Limits = Limits { products: 60, fall: 1e-4 };
 
+/// Fits at most after the one without the vertices on curves. Where a region is so narrow that all its vertices are on curves, the
+/// first owners come from a blend of its sides, and the second from its own colours; more never changed anything.
+const MOST_FITS: usize = 3;
+
 /// What is fitted to.
 pub(super) struct Task<'a> {
     pub cut: &'a CutMesh,
@@ -34,18 +38,25 @@ impl Task<'_> {
     /// Solves (27) on every piece of the cut surface.
     ///
     /// A vertex on a curve has one colour, which belongs to one of its sides or is a blend of them. A first fit leaves such
-    /// vertices out and tells, by the nearest colour, which it is; the second fit uses it on its side and nowhere else.
+    /// vertices out and tells, by the nearest colour, which it is; the next uses it on its side and nowhere else.
     pub fn screened(&self, progress: &Progress) -> Result<Fit> {
         let copies = self.copies();
         let mut roots = pieces(self.cut);
         let single = |copy: usize| copies[self.cut.vertices[copy] as usize].len() == 1;
         let target = self.target();
-        let first = self.weights(&mut roots, single);
-        let values = self.solve(&first, &target, progress)?;
-        let owners: Vec<Option<u32>> = copies.iter().map(|copies| owner(copies, &values, &target)).collect();
-        let owned = |copy: usize| owners[self.cut.vertices[copy] as usize] == Some(copy as u32);
-        let weights = self.weights(&mut roots, owned);
-        let values = if weights == first { values } else { self.solve(&weights, &target, progress)? };
+        let mut weights = self.weights(&mut roots, single);
+        let mut values = self.solve(&weights, &target, progress)?;
+        let mut owners = Vec::new();
+        for _ in 0..MOST_FITS {
+            owners = copies.iter().map(|copies| owner(copies, &values, &target)).collect();
+            let owned = |copy: usize| owners[self.cut.vertices[copy] as usize] == Some(copy as u32);
+            let next = self.weights(&mut roots, owned);
+            if next == weights {
+                break;
+            }
+            weights = next;
+            values = self.solve(&weights, &target, progress)?;
+        }
         Ok(Fit { values, owners, weights })
     }
 

@@ -1,18 +1,23 @@
 //! Diffusion curves: the few curves, with a colour on each side, that redraw a painted surface (Rowe et al. 2024,
 //! section 7.6).
 //!
-//! [`regions`] → [`chains`] (the edges between them, as curves) → [`fit`] (colours along the curves, (27)) → [`borders`],
+//! [`regions`] ([`sorting`] vertices, [`settle`] faces, [`patches`], [`weak`] borders, [`groups`] of faces) → [`chains`] (the edges between them, as curves) → [`fit`] (colours along the curves, (27)) → [`borders`],
 //! [`thinning`] (what is stored) → [`redraw()`] ((26)); fit and drawing on the Laplacian of [`membrane`].
 //! [`trace`] brings curves that were drawn or moved by hand onto the edges.
 
 mod borders;
 mod chains;
 mod fit;
+mod groups;
 mod membrane;
+mod patches;
 mod redraw;
 mod regions;
+mod settle;
+mod sorting;
 mod thinning;
 mod trace;
+mod weak;
 
 pub use redraw::{redraw, ColoredCurves, Redrawn};
 pub use regions::{color_regions, follow_colors};

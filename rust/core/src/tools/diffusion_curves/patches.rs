@@ -1,0 +1,55 @@
+//! Painted patches that segmentation has left in a region of another colour.
+
+use super::groups::Groups;
+use super::sorting::{Paint, Sorted};
+use crate::mesh::partition::Partition;
+
+/// What differs by less than this part of the range of the colours may be shading; a patch differs by more from its region
+/// everywhere, and across its border.
+const SHADING: f64 = 0.1;
+
+/// Gives each patch a region of its own: vertices joined by edges over which colours hardly change, none of which has the colour
+/// of its region, and that `least` faces or more touch. Returns whether there was one.
+pub(super) fn add_patches(
+    paint: &Paint<'_>,
+    sorted: &Sorted,
+    groups: &Groups,
+    least: usize,
+    labels: &mut [i32],
+) -> bool {
+    let connectivity = paint.mesh.connectivity();
+    let tolerance = SHADING * paint.scale();
+    let jump = |a: u32, b: u32| {
+        let difference = |c: usize| paint.colors.column(c)[a as usize] - paint.colors.column(c)[b as usize];
+        (0..paint.colors.n_columns).map(|c| difference(c).powi(2)).sum::<f64>().sqrt()
+    };
+    let mut parts = Partition::new(connectivity.n_vertices());
+    for h in 0..connectivity.n_halfedges() {
+        let (a, b) = (connectivity.tail(h), connectivity.head(h));
+        if jump(a, b) < tolerance {
+            parts.unite(a, b);
+        }
+    }
+    let root: Vec<usize> = (0..connectivity.n_vertices() as u32).map(|v| parts.root(v) as usize).collect();
+    let mut strange = vec![true; root.len()];
+    root.iter().zip(&sorted.off).for_each(|(&r, off)| strange[r] &= *off > tolerance);
+    let mut touching = vec![0; root.len()];
+    for face in connectivity.faces() {
+        let mut found = face.map(|v| root[v as usize]);
+        found.sort_unstable();
+        found.iter().enumerate().filter(|&(i, r)| i == 0 || found[i - 1] != *r).for_each(|(_, &r)| touching[r] += 1);
+    }
+    let first = labels.iter().max().map_or(0, |most| most + 1);
+    let patches = (0..root.len()).filter(|&r| root[r] == r && strange[r] && touching[r] >= least.max(1));
+    let mut region = vec![None; root.len()];
+    patches.zip(first..).for_each(|(r, label)| region[r] = Some(label));
+    let mut changed = false;
+    for (f, face) in connectivity.faces().iter().enumerate() {
+        let [a, b, c] = face.map(|v| region[root[v as usize]]);
+        if let Some(label) = a.filter(|_| a == b || a == c).or(b.filter(|_| b == c)) {
+            groups.set(labels, f, label);
+            changed = true;
+        }
+    }
+    changed
+}
