@@ -1,9 +1,11 @@
 """Segment shapes with known parts, and write the table: `segments.md`.
 
-    python scripts/setup_env.py benchmarks/segments.py [--only WORDS] [--levels N ...] [--site FOLDER]
+    python scripts/setup_env.py benchmarks/segments.py [--only WORDS] [--levels N ...] [--ours]
+        [--site FOLDER]
 
 `--only` takes the shapes with these words in their name, `--levels` some densities: these print and keep
-nothing. `--site` names a folder with the package `ridgeform`, instead of building the wheel. trimesh gets an
+nothing. `--ours` measures only ours, and keeps the other columns of the page. `--site` names a folder with
+the package `ridgeform`, instead of building the wheel. trimesh gets an
 environment of its own; Blender's linked-flat selection is written again in NumPy.
 """
 
@@ -103,8 +105,17 @@ class Tally:
         return min(self.agreement) >= 0.98 and set(self.counts) == {part.n_parts}
 
 
-def judge(name: str, level: int, noise: float) -> tuple[list[str], bool]:
-    """A row of the table, and whether ours passes."""
+def kept_cells() -> dict[tuple[str, ...], list[str]]:
+    """The columns of the others, as the page has them, by shape, vertices and noise."""
+    lines = RESULTS.read_text(encoding="utf-8").partition("## Time")[0].splitlines()
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("|")]
+    return {tuple(row[:3]): row[5:8] for row in rows}
+
+
+def judge(
+    name: str, level: int, noise: float, kept: dict[tuple[str, ...], list[str]] | None
+) -> tuple[list[str], bool]:
+    """A row of the table, with others' columns measured or `kept`, and whether ours passes."""
     import ridgeform  # noqa: PLC0415
 
     parts = [SHAPES[name](level).noisy(noise, 10 + seed).turned(seed) for seed in SEEDS]
@@ -114,17 +125,26 @@ def judge(name: str, level: int, noise: float) -> tuple[list[str], bool]:
         result = ridgeform.segment(ridgeform.Mesh(part.vertices, part.faces))
         tallies["ridgeform"].add(part, result.labels)
     took = (time.process_time() - begin) / len(parts)
+    row = [name, str(len(parts[0].vertices)), f"{noise:g}"]
+    if kept is None:
+        compare(parts, tallies)
+    others = [str(tallies[t]) for t in TITLES[1:]] if kept is None else kept[tuple(row)]
+    ours = tallies["ridgeform"]
+    passed = ours.passes(parts[0], noise)
+    first = f"**{ours}**" if passed else str(ours)
+    return [*row, str(parts[0].n_parts), first, *others, duration(took)], passed
+
+
+def compare(parts: list[Part], tallies: dict[str, Tally]) -> None:
+    """Judge the method of the paper, trimesh and the linked-flat selection."""
+    import ridgeform  # noqa: PLC0415
+
     for part, of_trimesh in zip(parts, facets(parts), strict=True):
         paper = ridgeform.segment(ridgeform.Mesh(part.vertices, part.faces), **PAPER)
         tallies["as the paper"].add(part, paper.labels)
         tallies["trimesh facets"].add(part, of_trimesh)
         choices = [linked_flat(part, angle) for angle in ANGLES]
         tallies["linked flat"].add(part, max(choices, key=lambda c: adjusted_rand_index(c, part.truth)))
-    ours = tallies["ridgeform"]
-    passed = ours.passes(parts[0], noise)
-    first = f"**{ours}**" if passed else str(ours)
-    row = [name, str(len(parts[0].vertices)), f"{noise:g}", str(parts[0].n_parts)]
-    return [*row, first, *(str(tallies[t]) for t in TITLES[1:]), duration(took)], passed
 
 
 def speed() -> str:
@@ -166,16 +186,18 @@ def main() -> None:
     parser.add_argument(
         "--levels", nargs="+", type=int, default=list(segment_shapes.LEVELS), help="densities"
     )
+    parser.add_argument("--ours", action="store_true", help="keep the other columns of the page")
     parser.add_argument("--site", type=Path, help="a folder with the package to be measured")
     given = parser.parse_args()
     if given.site is None:
         build_wheel()
     sys.path.insert(0, str(given.site or WHEEL_SITE))
+    kept = kept_cells() if given.ours else None
     rows, passes = [], []
     cases = [(name, level) for level in given.levels for name in SHAPES if given.only in name]
     for name, level in cases:
         for noise in segment_shapes.NOISES:
-            row, passed = judge(name, level, noise)
+            row, passed = judge(name, level, noise, kept)
             rows.append(row)
             passes.append(passed)
             print(grid([], [row]).splitlines()[-1], flush=True)

@@ -23,7 +23,7 @@ const ROUNDS: usize = 2;
 
 /// The logarithm of the ratio of likelihoods that two planes, or patches with more coefficients, must have. On noisy shapes half and
 /// nearly twice as much give the same segments.
-const EVIDENCE: [f64; 2] = [10.0, 15.0];
+const EVIDENCE: [f64; 2] = [40.0, 60.0];
 
 /// How segments are divided.
 pub(super) struct Divide<'a> {

@@ -9,6 +9,7 @@ use super::hierarchy::Hierarchy;
 use super::merge::{rename, Merge, Merging};
 use super::options::{SegmentMethod, SegmentOptions};
 use super::refit::{Refit, PLANE_EDGE, PLANE_NOISE};
+use super::straighten::Straighten;
 use super::surface::{contiguous, Surface};
 use super::threshold::cut_and_merge;
 use super::watershed::watershed;
@@ -146,9 +147,20 @@ impl Fitted<'_> {
                 break;
             }
         }
+        let [_, flat] = self.deviations();
+        let straighten = self.is_shape.then(|| Straighten::new(self.surface, flat, self.progress));
+        if let Some(straighten) = &straighten {
+            straighten.run(labels)?;
+            refit.rejoin(labels);
+        }
         merging.below(labels, threshold)?;
         merging.absorb_small(labels, self.least_faces())?;
-        self.explain(labels, true)
+        self.explain(labels, true)?;
+        if let Some(straighten) = &straighten {
+            straighten.run(labels)?;
+            refit.rejoin(labels);
+        }
+        Ok(())
     }
 
     /// Merges down to `n` segments, where there are more.

@@ -3,10 +3,11 @@
 //! [`indicator`] minimises the functional (41), whose `v` is low at borders. From there on the paper's way is [`threshold`]; the
 //! other one is [`watershed`], then merging across borders that bend little ([`crease`], [`merge`]), dividing what lies across a
 //! ridge ([`divide`]), joining what a neighbour explains ([`explain`]), and moving faces at borders
-//! to the segment that they fit best ([`refit`]). Sides of a few triangles, which the Hessian cannot see, are told by their planes
+//! to the segment that they fit best ([`refit`]), or, between curved segments, along creases ([`straighten`]). Sides of a few triangles, which the Hessian cannot see, are told by their planes
 //! ([`exact`]). In any case a [`hierarchy`] of nested segmentations comes with it.
 
 mod crease;
+mod cut;
 mod divide;
 mod exact;
 mod explain;
@@ -20,6 +21,7 @@ mod noise;
 mod options;
 mod part;
 mod refit;
+mod straighten;
 mod surface;
 mod threshold;
 mod walk;

@@ -120,7 +120,7 @@ impl Refit<'_> {
 
     /// Gives every small piece of a segment but its largest to the neighbour with which it has the longest border; other pieces
     /// become segments of their own.
-    fn rejoin(&self, labels: &mut [u32]) {
+    pub fn rejoin(&self, labels: &mut [u32]) {
         loop {
             let (piece, count) = pieces(self.surface, labels);
             let (mut area, mut size, mut owner) = (vec![0.0; count], vec![0; count], vec![0; count]);

@@ -110,7 +110,11 @@ impl Walk<'_> {
     }
 
     /// The motion of the face across halfedge `h`, unfolded into the plane of the face that has `motion`.
+    /// Shapes need none.
     fn across(&self, h: usize, motion: Motion) -> Motion {
+        if self.signal.is_shape {
+            return motion;
+        }
         let (f, i) = (h / 3, h % 3);
         let Some(twin) = self.surface.connectivity.twin(h) else { return motion };
         let (g, j) = (twin / 3, twin % 3);
@@ -142,7 +146,7 @@ impl Walk<'_> {
                 let (f, motion) = marks.queue[next];
                 next += 1;
                 let center = self.center(f, motion, place);
-                let away = center[0].hypot(center[1]);
+                let away = if self.signal.is_shape { center[0] } else { center[0].hypot(center[1]) };
                 if f != start && away > 2.0 * reach {
                     continue;
                 }
