@@ -2,8 +2,8 @@
 """The border between Blender and NumPy for diffusion curves: curve objects with colours on both sides.
 
 They are objects of Blender's newer type Curves, poly curves through vertices of the mesh: the points of the
-older type Curve have no attributes, in no version. Each point has the attributes `left` and `right`, colours.
-A curve of one point is a colour for the vertex there.
+older type Curve have no attributes, in no version. Each point has the attributes `left` and `right`, colours,
+and `offset`, how far from its vertex it is drawn. A curve of one point is a colour for the vertex there.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-LEFT, RIGHT = "left", "right"
+LEFT, RIGHT, OFFSET = "left", "right", "offset"
 MARK = "ridgeform_diffusion"
 """The property of the curves that tells them from others: the name of the colours that they stand for."""
 
@@ -34,6 +34,8 @@ class CurvePoints:
     """Colours (p, 4) on the left."""
     right: np.ndarray
     """Colours (p, 4) on the right."""
+    offsets: np.ndarray
+    """Where each point is drawn, from its vertex (p, 3): without the teeth of the mesh's edges."""
 
 
 @dataclass
@@ -45,7 +47,7 @@ class DrawnCurves:
     cyclic: np.ndarray
     """Which curves (q,) bool are closed."""
     places: np.ndarray
-    """Where each point is (p, 3), in the space of the mesh."""
+    """Where each point is (p, 3), in the space of the mesh, less its offset: at a vertex if unmoved."""
     left: np.ndarray
     """Colours (p, 4) on the left."""
     right: np.ndarray
@@ -70,7 +72,7 @@ def write_curves(obj: bpy.types.Object, points: CurvePoints, name: str) -> bpy.t
     data[MARK] = name
     if len(points.sizes):
         data.add_curves(points.sizes.tolist())
-        places = coordinates.reshape(-1, 3)[points.vertices]
+        places = (coordinates.reshape(-1, 3)[points.vertices] + points.offsets).astype(np.float32)
         data.position_data.foreach_set("vector", places.ravel())
         # Setting the attribute behind the type corrupts memory in 4.2 and 5.2, and 4.2 has no other way:
         # there the curves are Catmull-Rom splines, which pass through the same points.
@@ -79,13 +81,17 @@ def write_curves(obj: bpy.types.Object, points: CurvePoints, name: str) -> bpy.t
         _store(data, "cyclic", ("BOOLEAN", "CURVE"), points.cyclic)
         for side, colors in ((LEFT, points.left), (RIGHT, points.right)):
             _store(data, side, ("FLOAT_COLOR", "POINT"), colors.astype(np.float32).ravel())
+        _store(data, OFFSET, ("FLOAT_VECTOR", "POINT"), points.offsets.astype(np.float32).ravel())
         data.attributes.active = data.attributes[LEFT]
     return _child(obj, data)
 
 
 def _store(data: bpy.types.Curves, name: str, kind: tuple[str, str], values: np.ndarray) -> None:
     attribute = data.attributes.get(name) or data.attributes.new(name, *kind)
-    attribute.data.foreach_set("color" if kind[0] == "FLOAT_COLOR" else "value", values)
+    attribute.data.foreach_set(_FIELDS.get(kind[0], "value"), values)
+
+
+_FIELDS = {"FLOAT_COLOR": "color", "FLOAT_VECTOR": "vector"}
 
 
 def _child(obj: bpy.types.Object, data: bpy.types.Curves) -> bpy.types.Object:
@@ -115,16 +121,19 @@ def read_curves(child: bpy.types.Object) -> DrawnCurves:
     places = np.zeros(3 * n, np.float32)
     if n:
         data.position_data.foreach_get("vector", places)
+    places = places.reshape(-1, 3).astype(np.float64) - _values(data, OFFSET, n, 3)
     sizes = np.array([curve.points_length for curve in data.curves], np.int64)
     cyclic = np.zeros(len(sizes), bool)
     if "cyclic" in data.attributes:
         data.attributes["cyclic"].data.foreach_get("value", cyclic)
-    left, right = (_colors(data, side, n) for side in (LEFT, RIGHT))
-    return DrawnCurves(sizes, cyclic, places.reshape(-1, 3).astype(np.float64), left, right)
+    left, right = (_values(data, side, n, 4) for side in (LEFT, RIGHT))
+    return DrawnCurves(sizes, cyclic, places, left, right)
 
 
-def _colors(data: bpy.types.Curves, side: str, n: int) -> np.ndarray:
-    values = np.zeros(4 * n, np.float32)
-    if n and side in data.attributes:
-        data.attributes[side].data.foreach_get("color", values)
-    return values.reshape(-1, 4).astype(np.float64)
+def _values(data: bpy.types.Curves, name: str, n: int, width: int) -> np.ndarray:
+    """An attribute (n, width) of the points; 0 where it was never given."""
+    values = np.zeros(width * n, np.float32)
+    if n and name in data.attributes:
+        attribute = data.attributes[name]
+        attribute.data.foreach_get(_FIELDS[attribute.data_type], values)
+    return values.reshape(-1, width).astype(np.float64)

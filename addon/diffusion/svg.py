@@ -27,7 +27,7 @@ def drawing(
     them. `CurvesRefusedError` if the mesh is not flat.
     """
     with mesh_io.object_mode():
-        places = flattened(obj)
+        places, frame = flattened(obj)
         longest = float(np.ptp(places, axis=0).max()) or 1.0
         scale = PIXELS / longest
         margin = width * PIXELS
@@ -35,16 +35,21 @@ def drawing(
         # The drawing's y axis points down.
         high = places[:, 1].max()
         paper = np.column_stack([places[:, 0] - low[0], high - places[:, 1]]) * scale + margin
+        # Without the teeth of the mesh's edges, as in the viewport.
+        lines = paper[points.vertices] + points.offsets @ frame.T * (scale, -scale)
         size = np.ptp(places, axis=0) * scale + 2 * margin
-        body = [*(_faces(obj, child, paper) if fill else []), *_curves(points, paper, margin)]
+        body = [*(_faces(obj, child, paper) if fill else []), *_curves(points, lines, margin)]
     box = f"0 0 {size[0]:.2f} {size[1]:.2f}"
     head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}"'
     head += f' width="{size[0]:.0f}" height="{size[1]:.0f}">'
     return "\n".join(['<?xml version="1.0" encoding="UTF-8"?>', head, *body, "</svg>", ""])
 
 
-def flattened(obj: bpy.types.Object) -> np.ndarray:
-    """The vertices (n, 2) of a flat mesh in its plane, faces counterclockwise; else `CurvesRefusedError`."""
+def flattened(obj: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:
+    """The vertices (n, 2) of a flat mesh in its plane, faces counterclockwise, and the plane's axes (2, 3).
+
+    `CurvesRefusedError` if it is not flat.
+    """
     coordinates = mesh_io.open_coordinates(obj).original.astype(np.float64)
     centered = coordinates - coordinates.mean(axis=0)
     _, spread, axes = np.linalg.svd(centered, full_matrices=False)
@@ -64,18 +69,18 @@ def flattened(obj: bpy.types.Object) -> np.ndarray:
     a, b, c = (places[corner] for corner in mesh_io.triangles(obj.data).T)
     if ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]).sum() < 0:
         # Seen from the other side.
-        places = places * ((1, -1) if nearest[-1] == 2 or along[0] > 0.5 else (-1, 1))
-    return places
+        frame *= np.array([(1,), (-1,)] if nearest[-1] == 2 or along[0] > 0.5 else [(-1,), (1,)])
+    return centered @ frame.T, frame
 
 
-def _curves(points: CurvePoints, paper: np.ndarray, width: float) -> list[str]:
-    """The elements of all curves, a group each."""
+def _curves(points: CurvePoints, places: np.ndarray, width: float) -> list[str]:
+    """The elements of all curves with their points at places (p, 2), a group each."""
     lines = []
     begin = 0
     for index, (size, closed) in enumerate(zip(points.sizes.tolist(), points.cyclic.tolist(), strict=True)):
         rows = np.arange(begin, begin + size)
         begin += size
-        line = paper[points.vertices[rows]]
+        line = places[rows]
         if size == 1:
             x, y = line[0]
             color = _hex(points.left[rows])[0]

@@ -8,6 +8,7 @@ import ridgeform
 from ..attribute_names import AttributeRefusedError
 from ..welding import Weld
 from .curves_io import LEFT, MARK, RIGHT, CurvePoints, CurvesRefusedError, DrawnCurves, read_curves
+from .layout import offsets, point_edges
 from .sources import attribute_colors, image_colors
 
 
@@ -26,12 +27,22 @@ def curves_on_mesh(
     sizes = np.diff(starts).astype(np.int64)
     of_curve = np.repeat(np.arange(len(sizes)), sizes)
     left, right = (_along(colors, drawn, begins, of_curve, places) for colors in (drawn.left, drawn.right))
-    traced = CurvePoints(sizes, drawn.cyclic & (sizes > 2), vertices.astype(np.int64), left, right)
-    for given, colors, direction in ((drawn.left, traced.left, 1), (drawn.right, traced.right, -1)):
-        some = np.add.reduceat(np.append(given.any(axis=1), False), begins[:-1]) > 0
-        if not some.all():
-            paint = _paint(obj, child)[weld.first]
-            _take_paint(traced, colors, np.flatnonzero(~some), paint, weld.triangles, direction=direction)
+    traced = CurvePoints(
+        sizes,
+        drawn.cyclic & (sizes > 2),
+        vertices.astype(np.int64),
+        left,
+        right,
+        np.zeros((len(vertices), 3)),
+    )
+    bare = [_without_colors(given, begins) for given in (drawn.left, drawn.right)]
+    if any(len(curves) for curves in bare):
+        paint = _paint(obj, child)[weld.first]
+        opposite = _opposite_corners(weld.triangles)
+        for colors, curves, direction in zip((left, right), bare, (1, -1), strict=True):
+            _take_paint(traced, colors, curves, paint, opposite, direction=direction)
+    ends, _ = point_edges(traced)
+    traced.offsets[ends] = offsets(mesh, traced.vertices[ends])
     traced.vertices = weld.first[traced.vertices]
     return traced
 
@@ -61,12 +72,27 @@ def _paint(obj: bpy.types.Object, child: bpy.types.Object) -> np.ndarray:
         ) from refusal
 
 
+def _without_colors(given: np.ndarray, begins: np.ndarray) -> np.ndarray:
+    """The curves whose points have no colours (p, 4) on a side."""
+    some = np.add.reduceat(np.append(given.any(axis=1), False), begins[:-1]) > 0
+    return np.flatnonzero(~some)
+
+
+def _opposite_corners(triangles: np.ndarray) -> dict[tuple[int, int], int]:
+    """For each edge, as a triangle runs along it, the corner of the triangle opposite to it."""
+    opposite = {}
+    for i in range(3):
+        ends = np.roll(triangles, -1 - i, axis=1)[:, :2]
+        opposite.update(zip(map(tuple, ends.tolist()), triangles[:, i].tolist(), strict=True))
+    return opposite
+
+
 def _take_paint(
     traced: CurvePoints,
     colors: np.ndarray,
     curves: np.ndarray,
     paint: np.ndarray,
-    triangles: np.ndarray,
+    opposite: dict[tuple[int, int], int],
     *,
     direction: int,
 ) -> None:
@@ -74,10 +100,6 @@ def _take_paint(
 
     `direction` is 1 for the left side and -1 for the right one.
     """
-    opposite = {}
-    for i in range(3):
-        ends = np.roll(triangles, -1 - i, axis=1)[:, :2][:, ::direction]
-        opposite.update(zip(map(tuple, ends.tolist()), triangles[:, i].tolist(), strict=True))
     stops = np.cumsum(traced.sizes)
     for curve in curves:
         rows = np.arange(stops[curve] - traced.sizes[curve], stops[curve])
@@ -88,7 +110,7 @@ def _take_paint(
         closed = traced.cyclic[curve]
         pairs = list(zip(path, path[1:] + path[:1], strict=True))[: len(path) if closed else -1]
         # At a rim there is nothing on one of the sides.
-        beside = paint[[opposite.get(pair, pair[0]) for pair in pairs]]
+        beside = paint[[opposite.get(pair[::direction], pair[0]) for pair in pairs]]
         # A point between two edges has the mean of both.
         before = np.roll(beside, 1, axis=0) if closed else np.vstack([beside[:1], beside])
         after = beside if closed else np.vstack([beside, beside[-1:]])

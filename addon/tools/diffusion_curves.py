@@ -92,7 +92,7 @@ class DiffusionCurves(Run):
         with mesh_io.object_mode():
             for part in parts:
                 found = part.task.result
-                points = curve_points(found, part.surface.weld, part.alpha)
+                points = curve_points(found, part.surface.mesh, part.surface.weld, part.alpha)
                 child = curves_io.write_curves(part.object, points, part.colors.name)
                 part.target = drawing.write_corners(
                     part.object, part.surface.weld, found.corners, part.colors.name, part.alpha

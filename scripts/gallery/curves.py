@@ -77,17 +77,16 @@ def off_the_borders(
     return float(lengths[off].sum() / lengths.sum())
 
 
-def bands(
-    vertices: Array, faces: Indices, found: ridgeform.DiffusionCurves
-) -> list[tuple[Array, tuple[float, ...]]]:
+def bands(mesh: ridgeform.Mesh, found: ridgeform.DiffusionCurves) -> list[tuple[Array, tuple[float, ...]]]:
     """Segments (k, 2, 3) beside the curves, on the surface, and the colour of each group of them."""
+    vertices, faces = mesh.vertices, mesh.faces
     corner = vertices[faces]
     face_normals = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
     normals = np.zeros_like(vertices)
     for i in range(3):
         np.add.at(normals, faces[:, i], face_normals)
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
-    ends = vertices[found.edges]
+    ends = ridgeform.smooth_curves(mesh, found.edges)
     along = ends[:, 1] - ends[:, 0]
     across = np.cross(normals[found.edges].mean(axis=1), along)
     across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-30)
@@ -135,7 +134,7 @@ def draw(folder: Path) -> dict[str, str]:
             width = BAND * np.ptp(vertices, axis=0).max()
             marks = [
                 Lines(segments, color, _pixels(width, vertices, look))
-                for segments, color in bands(vertices, faces, found)
+                for segments, color in bands(mesh, found)
             ]
             pictures.append(("painted", _shown(vertices, faces, brightness * colors[faces], unit)))
             shown = panels.pictures.render(vertices, faces, color=SURFACE, marks=marks, **unit)

@@ -148,3 +148,33 @@ def test_a_curve_between_loose_parts_is_refused(plane):
     add_line(child, [(0.9, 0.5, 0.0), (3.1, 0.5, 0.0)], left=RED, right=RED)
     with pytest.raises(RuntimeError, match="no edges join"):
         bpy.ops.ridgeform.redraw_diffusion_curves()
+
+
+def test_curves_are_drawn_smoothly_and_redraw_what_was_found(tmp_path):
+    # A slanted border, and a round one, on a lattice whose edges have teeth there.
+    obj = add_plane(lambda places: np.where(places[:, :1] + 0.6 * places[:, 1:] < 0.8, RED, BLUE))
+    slanted = [face.center.x + 0.6 * face.center.y > 0.8 for face in obj.data.polygons]
+    split_materials(obj, np.array(slanted))
+    find()
+    child = curves_io.curves_of(obj)
+    found = corner_colors(obj)
+    places = point_values(child, "position", "vector", 3)
+    offsets = point_values(child, "offset", "vector", 3)
+    length = [np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in (places, places - offsets)]
+    assert length[0] < 0.9 * length[1]
+    assert np.abs(offsets).max() < 0.7 / CELLS
+    assert np.abs(offsets[[0, -1]]).max() == 0.0
+    assert np.abs(redrawn(obj).reshape(-1, 4) - found).max() < 1e-6
+    path = tmp_path / "curves.svg"
+    assert bpy.ops.ridgeform.export_diffusion_svg(filepath=str(path), fill=False) == {"FINISHED"}
+    line = path.read_text().split('class="curve" d="M')[1].split('"')[0]
+    drawn = np.array([[float(x) for x in pair.split()] for pair in line.split("L")])
+    assert np.abs((drawn[:, 0] - 8) / 1000 - places[:, 0]).max() < 1e-4
+    assert np.abs(1 - (drawn[:, 1] - 8) / 1000 - places[:, 1]).max() < 1e-4
+
+
+def test_curves_without_offsets_lie_where_they_are(plane):
+    obj, child = plane
+    before = corner_colors(obj)
+    child.data.attributes.remove(child.data.attributes["offset"])
+    assert np.abs(redrawn(obj).reshape(-1, 4) - before).max() < 1e-6

@@ -60,3 +60,19 @@ def test_bad_arguments_are_refused_by_name(keywords, name):
     mesh, vertices, _ = sphere()
     with pytest.raises(ridgeform.ArgumentError, match=name):
         ridgeform.trace_curves(mesh, **({"points": vertices[:2]} | keywords))
+
+
+def test_smooth_curves_are_shorter_and_stay_at_their_vertices():
+    vertices, faces = shapes.icosphere(4)
+    mesh = ridgeform.Mesh(vertices, faces)
+    colors = np.where(vertices @ [[0.6], [0.5], [0.4]] > 0.2, 1.0, 0.0)
+    found = ridgeform.diffusion_curves(mesh, colors)
+    places = ridgeform.smooth_curves(mesh, found.edges)
+    assert places.shape == (len(found.edges), 2, 3)
+    length = [
+        np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum() for ends in (places, vertices[found.edges])
+    ]
+    assert length[0] < 0.9 * length[1]
+    assert np.abs(places - vertices[found.edges]).max() < 0.06
+    with pytest.raises(ridgeform.ArgumentError, match="edges"):
+        ridgeform.smooth_curves(mesh, [[0, len(vertices)]])

@@ -399,6 +399,7 @@ def redraw(
     sides: ArrayLike | None = None,
     progress: Progress | None = None,
 ) -> Redrawn: ...
+def smooth_curves(mesh: Mesh, edges: ArrayLike) -> Floats: ...
 def trace_curves(
     mesh: Mesh,
     points: ArrayLike,

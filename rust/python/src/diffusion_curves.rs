@@ -257,6 +257,35 @@ pub fn redraw(
     })
 }
 
+/// Places for curves on a surface that are smooth lines, to be looked at.
+///
+/// Curves run along edges of the mesh, with saw teeth where the mesh is irregular. Each place is at most 0.6 mean edges of its curves
+/// away from its vertex, on the surface. Ends of curves and vertices on the rim of the mesh stay.
+///
+/// Parameters
+/// ----------
+/// mesh : Mesh
+/// edges : (k,2) array, the edges of curves (`DiffusionCurves.edges`)
+///
+/// Returns
+/// -------
+/// (k,2,3) array, places of the start and the end of every edge; those of one vertex are the same
+///
+/// Raises
+/// ------
+/// ArgumentError, MeshError (no positions)
+///
+/// References
+/// ----------
+/// Taubin 1995 (Laplacian smoothing), with bounded steps.
+#[pyfunction]
+pub fn smooth_curves(py: Python<'_>, mesh: &Mesh, edges: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
+    let edges = read_edges(edges, mesh.n_vertices())?;
+    let places = doorway::call_briefly(py, || tools::smooth_curves(mesh.inner(), &edges))?;
+    let data = places.into_iter().flatten().flatten().collect();
+    shaped(py, data, &[edges.len(), 2], 3, false)
+}
+
 fn read_labels(object: &Bound<'_, PyAny>, n_faces: usize) -> PyResult<Vec<i32>> {
     let py = object.py();
     let labels = arrays::integers("labels", object)?.exactly(py, "labels", n_faces, "face")?;

@@ -59,6 +59,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(remesh::remesh, module)?)?;
     module.add_function(wrap_pyfunction!(diffusion_curves::diffusion_curves, module)?)?;
     module.add_function(wrap_pyfunction!(diffusion_curves::redraw, module)?)?;
+    module.add_function(wrap_pyfunction!(diffusion_curves::smooth_curves, module)?)?;
     module.add_function(wrap_pyfunction!(trace::trace_curves, module)?)?;
     module.add_function(wrap_pyfunction!(fill_holes::fill_holes, module)?)?;
     Ok(())

@@ -3,7 +3,7 @@
 //!
 //! [`regions`] ([`sorting`] vertices, [`settle`] faces, [`patches`], [`weak`] borders, [`groups`] of faces) → [`chains`] (the edges between them, as curves) → [`fit`] (colours along the curves, (27)) → [`borders`],
 //! [`thinning`] (what is stored) → [`redraw()`] ((26)); fit and drawing on the Laplacian of [`membrane`].
-//! [`trace`] brings curves that were drawn or moved by hand onto the edges.
+//! [`trace`] brings curves that were drawn or moved by hand onto the edges, [`smooth`] draws curves without teeth.
 
 mod borders;
 mod chains;
@@ -14,6 +14,7 @@ mod patches;
 mod redraw;
 mod regions;
 mod settle;
+mod smooth;
 mod sorting;
 mod thinning;
 mod trace;
@@ -21,6 +22,7 @@ mod weak;
 
 pub use redraw::{redraw, ColoredCurves, Redrawn};
 pub use regions::{color_regions, follow_colors};
+pub use smooth::smooth_curves;
 pub use trace::{trace_curves, TracedCurve};
 
 use super::options::check_range;

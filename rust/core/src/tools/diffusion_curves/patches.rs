@@ -9,14 +9,8 @@ use crate::mesh::partition::Partition;
 const SHADING: f64 = 0.1;
 
 /// Gives each patch a region of its own: vertices joined by edges over which colours hardly change, none of which has the colour
-/// of its region, and that `least` faces or more touch. Returns whether there was one.
-pub(super) fn add_patches(
-    paint: &Paint<'_>,
-    sorted: &Sorted,
-    groups: &Groups,
-    least: usize,
-    labels: &mut [i32],
-) -> bool {
+/// of its region, and that `least` faces or more touch.
+pub(super) fn add_patches(paint: &Paint<'_>, sorted: &Sorted, groups: &Groups, least: usize, labels: &mut [i32]) {
     let connectivity = paint.mesh.connectivity();
     let tolerance = SHADING * paint.scale();
     let jump = |a: u32, b: u32| {
@@ -43,13 +37,10 @@ pub(super) fn add_patches(
     let patches = (0..root.len()).filter(|&r| root[r] == r && strange[r] && touching[r] >= least.max(1));
     let mut region = vec![None; root.len()];
     patches.zip(first..).for_each(|(r, label)| region[r] = Some(label));
-    let mut changed = false;
     for (f, face) in connectivity.faces().iter().enumerate() {
         let [a, b, c] = face.map(|v| region[root[v as usize]]);
         if let Some(label) = a.filter(|_| a == b || a == c).or(b.filter(|_| b == c)) {
             groups.set(labels, f, label);
-            changed = true;
         }
     }
-    changed
 }

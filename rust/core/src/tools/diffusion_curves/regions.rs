@@ -49,9 +49,9 @@ pub fn color_regions(
         groups.absorb_islands(connectivity, &mut labels);
         groups.split(connectivity, &mut labels);
         let least = options.min_faces.unwrap_or(1);
-        if add_patches(&paint, &paint.sort(&labels)?, &groups, least, &mut labels) {
-            follow(&paint, &groups, false, &mut labels)?;
-        }
+        add_patches(&paint, &paint.sort(&labels)?, &groups, least, &mut labels);
+        // What a border does not show because of a vertex on its wrong side must not count for or against it.
+        settle(&paint, &groups, &mut labels)?;
         report("leaving out borders", 0.5)?;
         merge_weak(&paint, &mut labels)?;
     }
