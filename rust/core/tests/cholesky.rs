@@ -175,9 +175,11 @@ fn gives_the_same_bits_on_any_number_of_threads_and_each_time() {
             let mut cholesky = Cholesky::analyse(matrix.pattern.clone(), None).unwrap();
             let mut solve = || {
                 cholesky.factorise(&matrix.values).unwrap();
-                let mut x = matrix.right();
-                cholesky.solve(&mut x);
-                x.into_iter().map(|[x]| x.to_bits()).collect::<Vec<_>>()
+                let right = matrix.right();
+                let (mut one, mut three) = (right.clone(), right.iter().map(|[x]| [*x, 1.0, -x]).collect::<Vec<_>>());
+                cholesky.solve(&mut one);
+                cholesky.solve(&mut three);
+                one.into_iter().flatten().chain(three.into_iter().flatten()).map(f64::to_bits).collect::<Vec<_>>()
             };
             let (first, second) = (solve(), solve());
             assert_eq!(first, second, "the second factorisation differs on {threads} threads");

@@ -17,6 +17,7 @@ use faer::{Mat, MatRef, Side};
 use crate::error::SolveError;
 use crate::solve::dissection::{nested_dissection, postordered};
 use crate::solve::multifrontal::{self, Tree, Workspace};
+use crate::solve::subtrees::Subtrees;
 use crate::solve::triangular::{Panels, Values, LANES};
 
 /// Neighbouring supernodes of at most so many columns are joined while less than this part of the result is zero. The
@@ -43,6 +44,7 @@ pub struct Cholesky {
     pattern: LowerPattern,
     panels: Panels,
     tree: Tree,
+    subtrees: Subtrees,
     workspace: Workspace,
     /// The row of the matrix that each row of the factor stands for.
     order: Vec<u32>,
@@ -82,6 +84,7 @@ impl Cholesky {
         let order = symbolic.perm().map_or_else(Vec::new, |p| p.arrays().0.iter().map(|&i| i as u32).collect());
         let panels = panels(&symbolic);
         let tree = Tree::new(&pattern, &order, &panels)?;
+        let subtrees = Subtrees::new(&panels, &tree);
         let len = symbolic.len_val() + LANES;
         // Every further thread has about half as much waiting as the first (measured at 200k and 1M rows).
         let waiting = tree.most_waiting(&panels) * (rayon::current_num_threads() + 1) / 2;
@@ -97,6 +100,7 @@ impl Cholesky {
             pattern,
             panels,
             tree,
+            subtrees,
             workspace: Workspace::default(),
             order,
             factor,
@@ -152,7 +156,7 @@ impl Cholesky {
             x.copy_from_slice(&right[i as usize][..A]);
         }
         let values = Values { panels: &self.factor, reciprocals: &self.reciprocals };
-        self.panels.solve(values, &mut x, &mut self.space);
+        self.subtrees.solve(&self.panels, values, &mut x, &mut self.space);
         for (x, &i) in x.iter().zip(&self.order) {
             right[i as usize][..A].copy_from_slice(x);
         }

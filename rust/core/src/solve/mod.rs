@@ -22,6 +22,7 @@ pub mod penalty;
 mod problem;
 pub mod quadratic;
 mod reduced;
+mod subtrees;
 mod sweep;
 pub mod system;
 mod triangular;

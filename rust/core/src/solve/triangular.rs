@@ -4,7 +4,7 @@
 //! right sides. Here four columns of a panel at a time are applied to one right side after the other, straight from the
 //! factor.
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Simd;
 
 /// Columns of a panel that are applied together: fewer passes over the right sides, few enough for the registers.
 const COLUMNS: usize = 4;
@@ -39,7 +39,8 @@ pub struct Values<'v> {
 }
 
 /// One panel with its values.
-struct Panel<'p> {
+#[derive(Debug, Clone, Copy)]
+pub struct Panel<'p> {
     begin: usize,
     n_columns: usize,
     below: &'p [u32],
@@ -48,8 +49,10 @@ struct Panel<'p> {
 }
 
 impl Panels {
+    /// Panel `s` with its values.
     #[inline(always)]
-    fn panel<'p>(&'p self, s: usize, values: Values<'p>) -> Panel<'p> {
+    #[must_use]
+    pub fn panel<'p>(&'p self, s: usize, values: Values<'p>) -> Panel<'p> {
         let (begin, end) = (self.begin[s], self.begin[s + 1]);
         Panel {
             begin,
@@ -61,9 +64,16 @@ impl Panels {
     }
 
     /// The most rows that a panel has.
-    fn longest(&self) -> usize {
-        let rows = |s| self.begin[s + 1] - self.begin[s] + self.below[s + 1] - self.below[s];
-        (0..self.count()).map(rows).max().unwrap_or(0)
+    #[must_use]
+    pub fn longest(&self) -> usize {
+        (0..self.count()).map(|s| self.n_rows(s)).max().unwrap_or(0)
+    }
+
+    /// Rows of a panel.
+    #[inline(always)]
+    #[must_use]
+    pub fn n_rows(&self, s: usize) -> usize {
+        self.begin[s + 1] - self.begin[s] + self.below[s + 1] - self.below[s]
     }
 
     /// The reciprocals of the diagonal of the factor with these values.
@@ -95,34 +105,14 @@ impl Panels {
         let (k, below) = (self.begin[s + 1] - self.begin[s], self.below(s).len());
         (0..k).map(|j| ((k - j + below) as f64).powi(2)).sum::<f64>() / 2.0
     }
-
-    /// Solves `L Lᵀ x = right` in place; `values` belong to `L`, rows are in the order of the factor.
-    pub fn solve<const K: usize>(&self, values: Values<'_>, x: &mut [[f64; K]], space: &mut Vec<f64>) {
-        space.clear();
-        space.resize((self.longest() + LANES) * K, 0.0);
-        Arch::new().dispatch(Both { panels: self, values, x, space });
-    }
 }
 
-/// Both triangular solves, to be compiled for each set of vector instructions.
-struct Both<'b, const K: usize> {
-    panels: &'b Panels,
-    values: Values<'b>,
-    x: &'b mut [[f64; K]],
-    space: &'b mut [f64],
-}
-
-impl<const K: usize> WithSimd for Both<'_, K> {
-    type Output = ();
-
+impl<'p> Panel<'p> {
+    /// The same panel in other numbers of rows.
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        for s in 0..self.panels.count() {
-            self.panels.panel(s, self.values).forward(simd, self.x, self.space);
-        }
-        for s in (0..self.panels.count()).rev() {
-            self.panels.panel(s, self.values).backward(simd, self.x, self.space);
-        }
+    #[must_use]
+    pub fn renumbered(self, begin: usize, below: &'p [u32]) -> Self {
+        Self { begin, below, ..self }
     }
 }
 
@@ -169,7 +159,7 @@ impl Panel<'_> {
 
     /// `x ← L⁻¹x` for the columns of this panel, and what that does to the rows below.
     #[inline(always)]
-    fn forward<S: Simd, const K: usize>(&self, simd: S, x: &mut [[f64; K]], space: &mut [f64]) {
+    pub fn forward<S: Simd, const K: usize>(&self, simd: S, x: &mut [[f64; K]], space: &mut [f64]) {
         let (stride, s) = (self.stride(), self.n_columns);
         self.load(x, space);
         for c in 0..K {
@@ -216,7 +206,7 @@ impl Panel<'_> {
 
     /// `x ← L⁻ᵀx` for the columns of this panel, from the rows below.
     #[inline(always)]
-    fn backward<S: Simd, const K: usize>(&self, simd: S, x: &mut [[f64; K]], space: &mut [f64]) {
+    pub fn backward<S: Simd, const K: usize>(&self, simd: S, x: &mut [[f64; K]], space: &mut [f64]) {
         let (stride, s) = (self.stride(), self.n_columns);
         self.load(x, space);
         for (i, &row) in self.below.iter().enumerate() {

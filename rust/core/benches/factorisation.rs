@@ -1,0 +1,46 @@
+//! The parts of a linear solution with 40k rows, on one thread and on two: analysis, factorisation, triangular solves.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use criterion::{criterion_group, criterion_main, BatchSize, Criterion};
+use ridgeform_core::operators::{voronoi_mass, Dual, HessianPattern};
+use ridgeform_core::shapes;
+use ridgeform_core::solve::cholesky::Cholesky;
+use ridgeform_core::solve::normal_matrix::NormalMatrix;
+
+fn factorisation(criterion: &mut Criterion) {
+    let shape = shapes::torus(250, 160, 3.0, 1.0).noisy(0.01, 1);
+    let mesh = shape.mesh().unwrap();
+    let (connectivity, lengths) = (mesh.connectivity(), mesh.edge_lengths());
+    let operator = HessianPattern::new(connectivity).assemble(connectivity, lengths, Dual::Barycentric).unwrap();
+    let fidelity: Vec<f64> = voronoi_mass(connectivity, lengths).iter().map(|m| 2e4 * m).collect();
+    let normal = NormalMatrix::new(&operator);
+    let mut entries = Vec::new();
+    normal.assemble(&operator, &vec![1.0; operator.n_blocks()], &fidelity, &mut entries);
+    let one: Vec<[f64; 1]> = shape.vertices.iter().map(|x| [x[0]]).collect();
+
+    for threads in [1, 2] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let mut group = criterion.benchmark_group(format!("40k rows, threads: {threads}"));
+        group.sample_size(10);
+        group.bench_function("analysis", |bencher| {
+            let analyse = |pattern| pool.install(|| Cholesky::analyse(pattern, None));
+            bencher.iter_batched(|| normal.pattern().clone(), analyse, BatchSize::PerIteration);
+        });
+        let mut cholesky = pool.install(|| Cholesky::analyse(normal.pattern().clone(), None)).unwrap();
+        group.bench_function("factorisation", |bencher| {
+            bencher.iter(|| pool.install(|| cholesky.factorise(&entries)));
+        });
+        group.bench_function("triangular solves, one column", |bencher| {
+            let solve = |mut right: Vec<[f64; 1]>| pool.install(|| cholesky.solve(&mut right));
+            bencher.iter_batched(|| one.clone(), solve, BatchSize::PerIteration);
+        });
+        group.bench_function("triangular solves, three columns", |bencher| {
+            let solve = |mut right: Vec<[f64; 3]>| pool.install(|| cholesky.solve(&mut right));
+            bencher.iter_batched(|| shape.vertices.clone(), solve, BatchSize::PerIteration);
+        });
+        group.finish();
+    }
+}
+
+criterion_group!(benches, factorisation);
+criterion_main!(benches);

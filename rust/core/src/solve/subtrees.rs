@@ -1,0 +1,196 @@
+//! Triangular solves on several threads: subtrees of the elimination tree know nothing of each other.
+//!
+//! Every subtree works on its own rows and on a copy of the later rows that it sees, which are added up in the order of the
+//! subtrees. They are cut by the pattern alone, so that results are the same on any number of threads.
+
+use std::ops::Range;
+
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+use crate::solve::multifrontal::Tree;
+use crate::solve::triangular::{Panel, Panels, Values, LANES};
+
+/// Subtrees with more than this part of all entries are cut at their root: eight or nine are left, and a quarter of all entries above
+/// them. Half of it leaves twice as many, and a third above.
+const CUT: f64 = 1.0 / 8.0;
+
+/// Subtrees with fewer entries than this are not worth a thread: they take a tenth of a millisecond.
+const LEAST: usize = 1 << 17;
+
+/// Subtrees that are solved for on threads of their own, and what is left for one thread.
+#[derive(Debug)]
+pub struct Subtrees {
+    /// Panels of each subtree.
+    list: Vec<Range<usize>>,
+    /// All other panels.
+    rest: Vec<u32>,
+    /// As [`Panels::rows`], but in subtrees counted from their first row, with those behind the subtree in the order of its root.
+    rows: Vec<u32>,
+}
+
+impl Subtrees {
+    /// Cuts the tree.
+    #[must_use]
+    pub fn new(panels: &Panels, tree: &Tree) -> Self {
+        let count = panels.count();
+        let mut entries = vec![0; count];
+        for s in 0..count {
+            let below: usize = tree.children(s).iter().map(|&c| entries[c as usize]).sum();
+            entries[s] = below + panels.values[s + 1] - panels.values[s];
+        }
+        let total: usize = tree.children(count).iter().map(|&root| entries[root as usize]).sum();
+        let (mut list, mut rest) = (Vec::new(), Vec::new());
+        let mut heads = tree.children(count).to_vec();
+        while let Some(head) = heads.pop() {
+            let s = head as usize;
+            if entries[s] < LEAST {
+                rest.extend(tree.first[s]..=head);
+            } else if entries[s] as f64 > CUT * total as f64 {
+                rest.push(head);
+                heads.extend(tree.children(s));
+            } else {
+                list.push(tree.first[s] as usize..s + 1);
+            }
+        }
+        list.sort_unstable_by_key(|subtree| subtree.start);
+        rest.sort_unstable();
+        let rows = if list.is_empty() { Vec::new() } else { local_rows(panels, &list) };
+        Self { list, rest, rows }
+    }
+
+    /// Solves `L Lᵀ x = right` in place; `values` belong to `L`, rows are in the order of the factor.
+    pub fn solve<const K: usize>(&self, panels: &Panels, values: Values<'_>, x: &mut [[f64; K]], space: &mut Vec<f64>) {
+        let whole = || self.rest.iter().map(|&s| panels.panel(s as usize, values));
+        let mut locals: Vec<Vec<[f64; K]>> = self
+            .list
+            .par_iter()
+            .with_max_len(1)
+            .map(|subtree| {
+                let mut local = x[rows_of(panels, subtree)].to_vec();
+                local.resize(local.len() + behind(panels, subtree).len(), [0.0; K]);
+                forward(self.panels_of(panels, values, subtree), &mut local, &mut space_for(panels, subtree, K));
+                local
+            })
+            .collect();
+        for (subtree, local) in self.list.iter().zip(&locals) {
+            let n_own = rows_of(panels, subtree).len();
+            for (&row, sum) in behind(panels, subtree).iter().zip(&local[n_own..]) {
+                x[row as usize].iter_mut().zip(sum).for_each(|(x, s)| *x += s);
+            }
+        }
+        space.clear();
+        space.resize((panels.longest() + LANES) * K, 0.0);
+        forward(whole(), x, space);
+        backward(whole().rev(), x, space);
+        self.list.par_iter().with_max_len(1).zip(&mut locals).for_each(|(subtree, local)| {
+            let n_own = rows_of(panels, subtree).len();
+            for (&row, local) in behind(panels, subtree).iter().zip(&mut local[n_own..]) {
+                *local = x[row as usize];
+            }
+            let reversed = self.panels_of(panels, values, subtree).rev();
+            backward(reversed, local, &mut space_for(panels, subtree, K));
+        });
+        for (subtree, local) in self.list.iter().zip(&locals) {
+            let own = rows_of(panels, subtree);
+            x[own.clone()].copy_from_slice(&local[..own.len()]);
+        }
+    }
+
+    /// The panels of a subtree with its own numbers of rows.
+    fn panels_of<'p>(
+        &'p self,
+        panels: &'p Panels,
+        values: Values<'p>,
+        subtree: &Range<usize>,
+    ) -> impl DoubleEndedIterator<Item = Panel<'p>> {
+        let first = panels.begin[subtree.start];
+        subtree.clone().map(move |s| {
+            let below = &self.rows[panels.below[s]..panels.below[s + 1]];
+            panels.panel(s, values).renumbered(panels.begin[s] - first, below)
+        })
+    }
+}
+
+/// The rows that a subtree eliminates.
+fn rows_of(panels: &Panels, subtree: &Range<usize>) -> Range<usize> {
+    panels.begin[subtree.start]..panels.begin[subtree.end]
+}
+
+/// The later rows that a subtree sees.
+fn behind<'p>(panels: &'p Panels, subtree: &Range<usize>) -> &'p [u32] {
+    panels.below(subtree.end - 1)
+}
+
+/// Working space for the longest panel of a subtree.
+fn space_for(panels: &Panels, subtree: &Range<usize>, n_columns: usize) -> Vec<f64> {
+    let longest = subtree.clone().map(|s| panels.n_rows(s)).max().unwrap_or(0);
+    vec![0.0; (longest + LANES) * n_columns]
+}
+
+/// The rows below all panels, with the numbers that they have in their subtrees.
+fn local_rows(panels: &Panels, list: &[Range<usize>]) -> Vec<u32> {
+    let mut rows = panels.rows.clone();
+    for subtree in list {
+        let own = rows_of(panels, subtree);
+        let behind = behind(panels, subtree);
+        for s in subtree.clone() {
+            let mut at = 0;
+            for row in &mut rows[panels.below[s]..panels.below[s + 1]] {
+                if (*row as usize) < own.end {
+                    *row -= own.start as u32;
+                } else {
+                    at += behind[at..].partition_point(|other| other < row);
+                    *row = (own.len() + at) as u32;
+                }
+            }
+        }
+    }
+    rows
+}
+
+/// `x ← L⁻¹x` by these panels.
+fn forward<'p, const K: usize>(panels: impl Iterator<Item = Panel<'p>>, x: &mut [[f64; K]], space: &mut [f64]) {
+    Arch::new().dispatch(Forward { panels, x, space });
+}
+
+/// `x ← L⁻ᵀx` by these panels, the last one first.
+fn backward<'p, const K: usize>(panels: impl Iterator<Item = Panel<'p>>, x: &mut [[f64; K]], space: &mut [f64]) {
+    Arch::new().dispatch(Backward { panels, x, space });
+}
+
+/// To be compiled for each set of vector instructions.
+struct Forward<'b, I, const K: usize> {
+    panels: I,
+    x: &'b mut [[f64; K]],
+    space: &'b mut [f64],
+}
+
+impl<'p, I: Iterator<Item = Panel<'p>>, const K: usize> WithSimd for Forward<'_, I, K> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        for panel in self.panels {
+            panel.forward(simd, self.x, self.space);
+        }
+    }
+}
+
+/// To be compiled for each set of vector instructions.
+struct Backward<'b, I, const K: usize> {
+    panels: I,
+    x: &'b mut [[f64; K]],
+    space: &'b mut [f64],
+}
+
+impl<'p, I: Iterator<Item = Panel<'p>>, const K: usize> WithSimd for Backward<'_, I, K> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        for panel in self.panels {
+            panel.backward(simd, self.x, self.space);
+        }
+    }
+}
