@@ -1,10 +1,14 @@
 """`segment`: known parts found again, what each keyword does, and what is refused."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import ridgeform
 import segment_shapes
 import shapes
+
+SOURCES = Path(__file__).parents[2] / "blend_fixtures/sources"
 
 
 def segmented(part, **keywords):
@@ -48,6 +52,23 @@ def test_heavy_noise_neither_hides_a_ridge_nor_makes_a_part(name, level, seed):
     result = segmented(part)
     assert result.n_segments == part.n_parts
     assert segment_shapes.adjusted_rand_index(result.labels, part.truth) >= 0.98
+
+
+def test_a_character_has_the_more_segments_the_less_borders_cost_and_no_teeth():
+    with np.load(SOURCES / "spot_low_resolution.npz") as data:
+        vertices, faces = data["vertices"].astype(float), data["faces"].astype(np.int64)
+    mesh = ridgeform.Mesh(vertices, faces)
+    one, other, _ = segment_shapes.face_pairs(faces)
+    counts = []
+    for length_weight in (1.2, 0.8, 0.5, 0.3, 0.15):
+        labels = ridgeform.segment(mesh, length_weight=length_weight).labels
+        counts.append(labels.max() + 1)
+        between = labels[one] != labels[other]
+        edges_of_face = np.bincount(np.concatenate([one[between], other[between]]), minlength=len(faces))
+        # A face with two of its edges on borders is a tooth, or lies at a bend.
+        assert (edges_of_face > 1).sum() <= 0.12 * (edges_of_face > 0).sum()
+    assert counts == sorted(counts)
+    assert counts[0] > 1
 
 
 def test_the_noisy_cube_has_six_sides():
