@@ -35,10 +35,10 @@ def drawing(
         # The drawing's y axis points down.
         high = places[:, 1].max()
         paper = np.column_stack([places[:, 0] - low[0], high - places[:, 1]]) * scale + margin
-        # Without the teeth of the mesh's edges, as in the viewport.
-        lines = paper[points.vertices] + points.offsets @ frame.T * (scale, -scale)
+        # Without the teeth of the mesh's edges, as in the viewport; faces reach to the curves.
+        paper[points.vertices] += points.offsets @ frame.T * (scale, -scale)
         size = np.ptp(places, axis=0) * scale + 2 * margin
-        body = [*(_faces(obj, child, paper) if fill else []), *_curves(points, lines, margin)]
+        body = [*(_faces(obj, child, paper) if fill else []), *_curves(points, paper, margin)]
     box = f"0 0 {size[0]:.2f} {size[1]:.2f}"
     head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}"'
     head += f' width="{size[0]:.0f}" height="{size[1]:.0f}">'
@@ -73,14 +73,14 @@ def flattened(obj: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:
     return centered @ frame.T, frame
 
 
-def _curves(points: CurvePoints, places: np.ndarray, width: float) -> list[str]:
-    """The elements of all curves with their points at places (p, 2), a group each."""
+def _curves(points: CurvePoints, paper: np.ndarray, width: float) -> list[str]:
+    """The elements of all curves, a group each."""
     lines = []
     begin = 0
     for index, (size, closed) in enumerate(zip(points.sizes.tolist(), points.cyclic.tolist(), strict=True)):
         rows = np.arange(begin, begin + size)
         begin += size
-        line = places[rows]
+        line = paper[points.vertices[rows]]
         if size == 1:
             x, y = line[0]
             color = _hex(points.left[rows])[0]
