@@ -118,19 +118,16 @@ def read_curves(child: bpy.types.Object) -> DrawnCurves:
     """
     data = child.data
     n = len(data.points)
-    places = np.zeros(3 * n, np.float32)
-    if n:
-        data.position_data.foreach_get("vector", places)
-    places = places.reshape(-1, 3).astype(np.float64) - _values(data, OFFSET, n, 3)
+    places = point_values(data, "position", n, 3) - point_values(data, OFFSET, n, 3)
     sizes = np.array([curve.points_length for curve in data.curves], np.int64)
     cyclic = np.zeros(len(sizes), bool)
     if "cyclic" in data.attributes:
         data.attributes["cyclic"].data.foreach_get("value", cyclic)
-    left, right = (_values(data, side, n, 4) for side in (LEFT, RIGHT))
+    left, right = (point_values(data, side, n, 4) for side in (LEFT, RIGHT))
     return DrawnCurves(sizes, cyclic, places, left, right)
 
 
-def _values(data: bpy.types.Curves, name: str, n: int, width: int) -> np.ndarray:
+def point_values(data: bpy.types.Curves, name: str, n: int, width: int) -> np.ndarray:
     """An attribute (n, width) of the points; 0 where it was never given."""
     values = np.zeros(width * n, np.float32)
     if n and name in data.attributes:

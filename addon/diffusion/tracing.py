@@ -7,6 +7,7 @@ import ridgeform
 
 from ..attribute_names import AttributeRefusedError
 from ..welding import Weld
+from .bezier import straightened
 from .curves_io import LEFT, MARK, RIGHT, CurvePoints, CurvesRefusedError, DrawnCurves, read_curves
 from .layout import offsets, point_edges
 from .sources import attribute_colors, image_colors
@@ -21,7 +22,7 @@ def curves_on_mesh(
     takes those of the paint there. `CurvesRefusedError` if there is no paint any more, and the errors of
     `ridgeform.trace_curves`.
     """
-    drawn = read_curves(child)
+    drawn = straightened(child.data, read_curves(child))
     begins = np.concatenate([[0], np.cumsum(drawn.sizes)]).astype(np.int64)
     vertices, starts, places = ridgeform.trace_curves(mesh, drawn.places, starts=begins, closed=drawn.cyclic)
     sizes = np.diff(starts).astype(np.int64)

@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from bl_ext.user_default.ridgeform.diffusion import curves_io
+from bl_ext.user_default.ridgeform.diffusion import bezier, curves_io
 from test_diffusion_curves import (
     BLUE,
     CELLS,
@@ -178,3 +178,26 @@ def test_curves_without_offsets_lie_where_they_are(plane):
     before = corner_colors(obj)
     child.data.attributes.remove(child.data.attributes["offset"])
     assert np.abs(redrawn(obj).reshape(-1, 4) - before).max() < 1e-6
+
+
+@pytest.mark.skipif(bpy.app.version < (5, 0), reason="this Blender cannot set the type of a curve")
+def test_bezier_curves_are_followed_between_their_points(plane):
+    obj, child = plane
+    # A bow over a chord: its two points alone would be the chord.
+    add_line(child, [(0.6, 0.2, 0.0), (0.9, 0.2, 0.0)], left=GREEN, right=BLUE)
+    child.data.set_types(type="BEZIER", indices=[1])
+    for side, places in (("left", [(0.6, 0.2, 0), (0.9, 0.9, 0)]), ("right", [(0.6, 0.9, 0), (0.9, 0.2, 0)])):
+        name = f"handle_{side}"
+        handles = child.data.attributes.get(name) or child.data.attributes.new(name, "FLOAT_VECTOR", "POINT")
+        for i, place in zip((-2, -1), places, strict=True):
+            handles.data[len(handles.data) + i].vector = place
+    drawn = curves_io.read_curves(child)
+    bow = bezier.straightened(child.data, drawn)
+    assert bow.sizes.tolist() == [CELLS + 1, bezier.PIECES + 1]
+    assert np.abs(bow.places[CELLS + 1 + bezier.PIECES // 2] - (0.75, 0.725, 0.0)).max() < 1e-6
+    assert np.abs(bow.places[[CELLS + 1, -1]] - drawn.places[-2:]).max() < 1e-6
+    assert np.abs(bow.left[CELLS + 1 :] - GREEN).max() < 1e-6
+    assert (bow.places[: CELLS + 1] == drawn.places[: CELLS + 1]).all()
+    colors = redrawn(obj)
+    above = (np.abs(centers(obj)[:, :2] - (0.75, 0.78)) < (0.04, 0.04)).all(axis=1)
+    assert np.abs(colors[above] - GREEN).max() < 0.25
