@@ -21,8 +21,8 @@ const TURNS: [usize; 2] = [8, 4];
 /// A segment at a corner lies on three planes: divided once, and its parts again.
 const ROUNDS: usize = 2;
 
-/// The logarithm of the ratio of likelihoods that two planes, or patches with more coefficients, must have. On noisy shapes half and
-/// nearly twice as much give the same segments.
+/// The logarithm of the ratio of likelihoods that two planes, or patches with more coefficients, must have. A quarter of it finds the
+/// same parts of known shapes, but takes steps in the walls of scanned buildings for parts.
 const EVIDENCE: [f64; 2] = [40.0, 60.0];
 
 /// How segments are divided.
