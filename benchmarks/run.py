@@ -38,8 +38,10 @@ FLOW = ["cube 2k", "bust 9k"]
 ASSEMBLY = ["cube 2k", "bust 9k", "cube 200k"]
 """The meshes of each section."""
 
-LARGE_CLASSES = ("interpolation, 40 points", "hole", "denoising, heavy noise")
-LARGE = dict.fromkeys(["cube 200k", "cube 1M"], LARGE_CLASSES)
+LARGE = {
+    "cube 200k": tuple(CLASSES),
+    "cube 1M": ("interpolation, 40 points", "hole", "denoising, heavy noise"),
+}
 """The meshes that `--large` adds, and the classes solved on them."""
 
 

@@ -130,11 +130,20 @@ impl<const K: usize> LinearConstraints<K> {
     /// Corrects an unconstrained solution `u` of the system so that `A u = b`; returns the multipliers `y` of
     /// `matrix · u + Aᵀ y = right side`.
     pub fn correct(&self, u: &mut [[f64; K]]) -> Vec<[f64; K]> {
-        let n = u.len();
         let mut y = self.apply(u);
         for (row, right) in y.iter_mut().zip(&self.right) {
             row.iter_mut().zip(right).for_each(|(r, b)| *r -= b);
         }
+        self.subtract_response(u, y)
+    }
+
+    /// The same for a change of the solution: so that `A u = 0`.
+    pub fn correct_change(&self, u: &mut [[f64; K]]) -> Vec<[f64; K]> {
+        self.subtract_response(u, self.apply(u))
+    }
+
+    fn subtract_response(&self, u: &mut [[f64; K]], mut y: Vec<[f64; K]>) -> Vec<[f64; K]> {
+        let n = u.len();
         if let Some(schur) = &self.schur {
             schur.solve(&mut y);
         }

@@ -2,7 +2,7 @@
 
 use crate::block_rows::{BlockRows, BLOCK};
 use crate::solve::cholesky::LowerPattern;
-use crate::solve::newton::Stiffness;
+use crate::solve::primal_dual::Stiffness;
 
 /// Where each product of two entries of a block lands in the lower triangle of `HᵀRH`.
 #[derive(Debug, Clone)]

@@ -9,9 +9,6 @@ use crate::{Progress, Result};
 /// fastest (0.2 to 1 measured alike).
 const BALANCE: f64 = 0.5;
 
-/// The same for the blocks on ridges in Newton steps.
-const STIFF_BALANCE: f64 = 50.0;
-
 /// Lengths are clipped to these multiples of their mean: outside, the linear system loses digits and nothing is gained.
 const CLIP: [f64; 2] = [0.03, 30.0];
 
@@ -42,18 +39,6 @@ pub fn reweighted(lengths: &[f64], weights: &[f64]) -> Vec<f64> {
         return weights.to_vec();
     }
     lengths.iter().zip(weights).map(|(g, w)| BALANCE * w / g.clamp(CLIP[0] * mean, CLIP[1] * mean)).collect()
-}
-
-/// Penalties for Newton steps: blocks on ridges are nearly free of theirs, the others keep those of [`reweighted`]. Smaller
-/// ones there gain less a step, and larger ones make the steps miss (measured; from 5 to 1000 on the ridges all is alike).
-#[must_use]
-pub fn stiff(lengths: &[f64], weights: &[f64]) -> Vec<f64> {
-    let shortest = CLIP[0] * weighted_mean(lengths, weights);
-    if shortest <= 0.0 {
-        return weights.to_vec();
-    }
-    let one = |(g, w): (&f64, &f64)| w * (STIFF_BALANCE / g.max(f64::MIN_POSITIVE)).min(BALANCE / shortest);
-    lengths.iter().zip(weights).map(one).collect()
 }
 
 /// The penalties `R = ρ w` to start with: `ρ · mean ‖H u(ρ) + c‖ ≈ BALANCE`, where `u(ρ)` is the quadratic minimiser.

@@ -185,19 +185,33 @@ impl<'a, const K: usize> Reduced<'a, K> {
 
     /// `out = H u + c`.
     pub fn apply(&self, u: &[[f64; K]], out: &mut Vec<Block<K>>) {
-        let operator = &self.free.operator;
-        (0..self.n_blocks())
-            .into_par_iter()
-            .with_min_len(GRAIN)
-            .map(|b| {
-                let (columns, values) = operator.block(b);
-                let mut sum = self.constant(b);
-                for (&column, value) in columns.iter().zip(values) {
-                    add_outer(&mut sum, value, &u[column as usize]);
-                }
-                sum
-            })
-            .collect_into_vec(out);
+        self.add_product(|b| self.constant(b), u, out);
+    }
+
+    /// `out = H u`, of a change of the point.
+    pub fn apply_change(&self, u: &[[f64; K]], out: &mut Vec<Block<K>>) {
+        self.add_product(|_| [[0.0; K]; BLOCK], u, out);
+    }
+
+    fn add_product(&self, to: impl Fn(usize) -> Block<K> + Sync, u: &[[f64; K]], out: &mut Vec<Block<K>>) {
+        let sums = (0..self.n_blocks()).into_par_iter().with_min_len(GRAIN);
+        sums.map(|b| self.block_added(to(b), b, u)).collect_into_vec(out);
+    }
+
+    /// Block `b` of `H u`.
+    #[inline(always)]
+    #[must_use]
+    pub fn block_times(&self, b: usize, u: &[[f64; K]]) -> Block<K> {
+        self.block_added([[0.0; K]; BLOCK], b, u)
+    }
+
+    #[inline(always)]
+    fn block_added(&self, mut sum: Block<K>, b: usize, u: &[[f64; K]]) -> Block<K> {
+        let (columns, values) = self.free.operator.block(b);
+        for (&column, value) in columns.iter().zip(values) {
+            add_outer(&mut sum, value, &u[column as usize]);
+        }
+        sum
     }
 
     /// `out = Hᵀ y`, for a `y` given block by block.

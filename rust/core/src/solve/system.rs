@@ -2,8 +2,8 @@
 
 use crate::error::SolveError;
 use crate::solve::cholesky::Cholesky;
-use crate::solve::newton::Stiffness;
 use crate::solve::normal_matrix::NormalMatrix;
+use crate::solve::primal_dual::Stiffness;
 use crate::solve::reduced::{FreeOperator, Reduced};
 
 /// Rows whose fidelity is below this share of the mean diagonal are raised to it by a proximal term: it makes the matrix
@@ -155,6 +155,15 @@ impl System {
             }
         }
         let mut y = reduced.constraints.as_ref().map_or_else(Vec::new, |constraints| constraints.correct(u));
+        y.iter_mut().flatten().for_each(|y| *y *= self.scale);
+        y
+    }
+
+    /// The change of a solution that makes up for `rest` missing on the right side, in place, and the change of `y`.
+    pub fn solve_change<const K: usize>(&mut self, reduced: &Reduced<'_, K>, rest: &mut [[f64; K]]) -> Vec<[f64; K]> {
+        rest.iter_mut().flatten().for_each(|x| *x /= self.scale);
+        self.substitute(reduced.n_columns, rest);
+        let mut y = reduced.constraints.as_ref().map_or_else(Vec::new, |constraints| constraints.correct_change(rest));
         y.iter_mut().flatten().for_each(|y| *y *= self.scale);
         y
     }

@@ -1,86 +1,225 @@
-//! The end of a run by Newton steps, where alternating directions would take long.
+//! The end of a run by primal-dual steps, where alternating directions would take long.
 
-use super::{Run, FACTORISATION};
+use super::{Run, FACTORISATION, RESIDUAL_GOAL};
 use crate::error::SolveError;
 use crate::progress::Progress;
-use crate::solve::newton::Model;
-use crate::solve::penalty::stiff;
+use crate::solve::certificate::spread;
+use crate::solve::cones::Block;
+use crate::solve::conjugate_gradients::{add, conjugate_gradients};
+use crate::solve::primal_dual::{clip, dual_point, follow, Model, Stiffness};
 use crate::solve::problem::{Problem, Settings};
 use crate::solve::sweep::Sweep;
 use crate::{Error, Result};
 
-/// Newton steps converge once the objective falls by less than this part between two checks (measured: at 1e-5 the first steps
-/// are often lost, at 1e-6 hardly ever).
-const NEWTON_STILL: f64 = 2e-6;
+/// Alternating directions go this far at least: the steps need few factorisations from where the ridges show.
+pub(super) const FIRST_STEPS: usize = 20;
 
-/// Where more iterations than this are left, steps that may be lost are worth a try the sooner: the bound grows with what is
-/// left, to this many times. At a million vertices an interpolation otherwise went on for 300 iterations and more.
-const MANY_LEFT: f64 = 60.0;
-const MOST_IMPATIENCE: f64 = 10.0;
+/// What the objective fell since the last look, this many times over, is an estimate of what it has still to fall.
+const STILL_TO_FALL: f64 = 10.0;
 
-/// A Newton step that leaves more than this part of the gap is the last for a while: as many iterations as were made so far.
-const NEWTON_GAIN: f64 = 0.5;
+/// The part of the gap asked for that the central path aims at: the rest is for the distance from the path.
+const AIM: f64 = 0.8;
+
+/// The aim of the next step, in gaps reached so far.
+const NEXT_AIM: f64 = 0.1;
+
+/// Factorisations' worth of steps that a run takes which begins with the objective still, and more for each digit that the
+/// objective has to fall (measured from 8k to 200k vertices; they are what decides, not what is done).
+const STEPS_WHEN_STILL: f64 = 3.0;
+const STEPS_A_DIGIT: f64 = 3.0;
+
+/// A step that leaves more than this part of the gap is idle. Steps stop after this many idle ones in a row.
+const IDLE: f64 = 0.7;
+const MOST_IDLE: usize = 6;
+
+/// Iterations of conjugate gradients for a step with an older factor, and the part of the residual that is enough. They cost
+/// as much as the factorisation they save; a run longer than [`LONG`] says that the factor is too old for the next step.
+const MOST_GRADIENTS: usize = 10;
+const LONG: usize = 7;
+const GRADIENT_GOAL: f64 = 0.05;
+
+/// How often the dual point is corrected for what rounding and inexact steps leave over of its equations, and the part of the
+/// gap asked for that needs no correction.
+const MOST_CORRECTIONS: usize = 2;
+const NEGLIGIBLE: f64 = 0.1;
+
+/// The dual point that steps keep, and what the linear system holds.
+struct Steps<const K: usize> {
+    z: Vec<Block<K>>,
+    /// The stiffness that was factored last; empty before the first.
+    factored: Vec<Stiffness>,
+    /// Whether that is still near enough.
+    is_near: bool,
+}
 
 impl<const K: usize> Run<'_, '_, K> {
-    /// Whether Newton steps would converge, and a factorisation for one costs less than the iterations that are `left`.
-    pub(super) fn newton_pays(&self, settings: &Settings, iterations: usize, last_primal: f64, left: f64) -> bool {
-        let scale = Problem::gap_scale(self.best.primal, self.floor);
-        let impatience = (left / MANY_LEFT).clamp(1.0, MOST_IMPATIENCE);
-        let is_still = last_primal - self.best.primal < NEWTON_STILL * impatience * scale;
+    /// Whether primal-dual steps cost less than the iterations that are `left`.
+    pub(super) fn steps_pay(&self, settings: &Settings, iterations: usize, last_primal: f64, left: f64) -> bool {
         // A joint norm of several columns would couple them in the matrix.
-        let is_possible = self.reduced.n_columns == 1 && settings.tolerance.is_some();
-        is_possible && iterations >= self.next_newton && is_still && left > FACTORISATION
+        if self.reduced.n_columns != 1 || settings.tolerance.is_none() || iterations < self.next_steps {
+            return false;
+        }
+        let digits = (self.first_aim(settings, last_primal) / least_aim(settings)).log10();
+        left > FACTORISATION * (STEPS_WHEN_STILL + STEPS_A_DIGIT * digits)
     }
 
-    /// Newton steps as long as each gains enough; then back to alternating directions, with new penalties.
-    pub(super) fn newton(&mut self, settings: &Settings, iterations: usize, progress: &Progress) -> Result<()> {
-        loop {
+    /// The relative gap of the point of the central path to start at: the objective is as far from its minimum there.
+    fn first_aim(&self, settings: &Settings, last_primal: f64) -> f64 {
+        let fell = (last_primal - self.best.primal) / self.scale();
+        let least = least_aim(settings);
+        (STILL_TO_FALL * fell).clamp(least, self.gap().max(least))
+    }
+
+    fn scale(&self) -> f64 {
+        Problem::gap_scale(self.best.primal, self.floor)
+    }
+
+    /// Primal-dual steps as long as they gain; then back to alternating directions, with new penalties.
+    pub(super) fn finish(
+        &mut self,
+        settings: &Settings,
+        iterations: usize,
+        last_primal: f64,
+        progress: &Progress,
+    ) -> Result<()> {
+        let z = (0..self.r.len()).map(|b| self.sweep.split(&self.reduced.weights, &self.r, b).1).collect();
+        let mut steps = Steps { z, factored: Vec::new(), is_near: false };
+        let n_cones = self.reduced.weights.iter().filter(|w| **w > 0.0).count().max(1) as f64;
+        let mut aim = self.first_aim(settings, last_primal);
+        self.u.clone_from(&self.best.u);
+        let mut idle = 0;
+        while idle < MOST_IDLE {
             progress.check()?;
             let before = self.gap();
-            let moved = match self.newton_step(settings) {
+            match self.step(settings, &mut steps, aim * self.scale() / n_cones) {
                 // Alternating directions have a tamer matrix.
-                Err(Error::Solve(SolveError::Factorisation { .. })) => false,
+                Ok(false) | Err(Error::Solve(SolveError::Factorisation { .. })) => break,
                 moved => moved?,
             };
             if self.is_certified(settings) || progress.is_finishing() {
-                return Ok(());
-            }
-            if !moved || self.gap() > NEWTON_GAIN * before {
                 break;
             }
+            if settings.announce {
+                progress.report(self.report(settings, iterations));
+            }
+            idle = if self.gap() < IDLE * before { 0 } else { idle + 1 };
+            aim = aim.min(NEXT_AIM * self.gap()).max(least_aim(settings));
         }
-        self.next_newton = 2 * iterations;
+        let mut h = Vec::new();
+        self.reduced.apply(&self.u, &mut h);
+        self.sweep = Sweep::new(&self.reduced, &self.r, |b| (h[b], steps.z[b]));
+        if self.is_certified(settings) {
+            return Ok(());
+        }
+        self.next_steps = 2 * iterations;
         self.next_reweighting = self.next_reweighting.max(2 * iterations);
         self.reweight()
     }
 
-    /// One Newton step and the bounds that come with it; `false` when no step downwards was found.
-    fn newton_step(&mut self, settings: &Settings) -> Result<bool> {
-        let r = stiff(&self.lengths(), &self.reduced.weights);
-        self.sweep = self.under(&r);
-        self.r = r;
-        let model = Model::new(&self.reduced, &self.r, &self.sweep, &self.u);
-        self.system.factorise_stiff(&mut self.reduced, &model.stiffness)?;
-        self.previous.clone_from(&self.u);
-        self.y = self.system.solve(&self.reduced, &model.right(&self.reduced), &mut self.u);
-        let mut h = Vec::new();
-        self.reduced.apply(&self.u, &mut h);
-        let (q, mut g) = model.dual_point(&self.reduced, &h, false);
-        self.add_constraints(&mut g);
-        self.refine_if_worth(&g, settings);
-        self.bound_from(&q, &g);
-        if self.reduced.has_fidelity_everywhere {
-            let (q, mut g) = model.dual_point(&self.reduced, &h, true);
-            self.add_constraints(&mut g);
-            self.bound_from(&q, &g);
+    /// One step and the bounds that come with it; `false` when no step downwards was found.
+    fn step(&mut self, settings: &Settings, steps: &mut Steps<K>, barrier: f64) -> Result<bool> {
+        let model = Model::new(&self.reduced, &self.u, &steps.z, barrier);
+        let mut z = model.slope().to_vec();
+        let is_new = !steps.is_near;
+        if is_new {
+            self.system.factorise_stiff(&mut self.reduced, model.stiffness())?;
         }
-        let Some(step) = model.descend(&self.reduced, &self.r, &self.previous, &self.u, &h) else {
-            self.u.clone_from(&self.previous);
-            return Ok(false);
-        };
-        self.sweep = Sweep::resume(&self.reduced, &self.r, |b| model.state(&step, &self.r, b));
-        self.u = step.u;
-        self.offer(step.primal);
+        self.y.clear();
+        let mut step = self.lacking(&z, None);
+        if is_new {
+            self.system.solve_change(&self.reduced, &mut step);
+            steps.is_near = true;
+        } else {
+            let found = conjugate_gradients(
+                |x, out| model.times(&self.reduced, x, out),
+                |x| {
+                    self.system.solve_change(&self.reduced, x);
+                },
+                step,
+                GRADIENT_GOAL,
+                MOST_GRADIENTS,
+            );
+            step = found.solution;
+            steps.is_near = found.iterations < LONG;
+        }
+        self.keep_constraints(&mut step);
+        let mut change = Vec::new();
+        self.reduced.apply_change(&step, &mut change);
+        follow(model.stiffness(), &change, &mut z);
+        self.correct(settings, if is_new { model.stiffness() } else { &steps.factored }, &step, &mut z);
+        self.bound_at(&z);
+        clip(&self.reduced, &mut z);
+        if self.reduced.has_fidelity_everywhere {
+            self.bound_at(&z);
+        }
+        steps.z = z;
+        let found = model.descend(&self.reduced, &self.u, &step, &change);
+        if is_new {
+            steps.factored = model.into_stiffness();
+        }
+        let Some((u, primal)) = found else { return Ok(false) };
+        self.u = u;
+        self.offer(primal);
         Ok(true)
     }
+
+    /// Corrects a step so that the linear constraints hold at its end, whatever rounding made of them before.
+    fn keep_constraints(&self, step: &mut [[f64; K]]) {
+        let Some(constraints) = &self.reduced.constraints else { return };
+        let mut end = self.u.clone();
+        add(1.0, step, &mut end);
+        let before = end.clone();
+        constraints.correct(&mut end);
+        add(-1.0, &before, &mut end);
+        add(1.0, &end, step);
+    }
+
+    /// Corrects a dual point for what its equations lack, with the stiffness that is `factored`.
+    fn correct(&mut self, settings: &Settings, factored: &[Stiffness], step: &[[f64; K]], z: &mut [Block<K>]) {
+        let spread = spread(&self.u);
+        let negligible = NEGLIGIBLE * settings.tolerance.unwrap_or(RESIDUAL_GOAL) * self.scale();
+        for _ in 0..MOST_CORRECTIONS {
+            let mut rest = self.lacking(z, Some(step));
+            let left: f64 = rest.iter().map(|row| row.iter().zip(spread).map(|(x, s)| x.abs() * s).sum::<f64>()).sum();
+            if left <= negligible {
+                break;
+            }
+            let y = self.system.solve_change(&self.reduced, &mut rest);
+            if self.y.is_empty() {
+                self.y = y;
+            } else {
+                add(1.0, &y, &mut self.y);
+            }
+            let mut change = Vec::new();
+            self.reduced.apply_change(&rest, &mut change);
+            follow(factored, &change, z);
+        }
+    }
+
+    /// What the dual equations lack: `2a(t − u − step) − Hᵀz − Aᵀy`.
+    fn lacking(&self, z: &[Block<K>], step: Option<&[[f64; K]]>) -> Vec<[f64; K]> {
+        let mut out = Vec::new();
+        self.reduced.apply_transposed(|b| z[b], &mut out);
+        self.add_constraints(&mut out);
+        for (i, row) in out.iter_mut().enumerate() {
+            let twice = 2.0 * self.reduced.fidelity[i];
+            for (c, g) in row.iter_mut().enumerate() {
+                let at = self.u[i][c] + step.map_or(0.0, |step| step[i][c]);
+                *g = twice * (self.reduced.target[i][c] - at) - *g;
+            }
+        }
+        out
+    }
+
+    fn bound_at(&mut self, z: &[Block<K>]) {
+        let mut g = Vec::new();
+        self.reduced.apply_transposed(|b| z[b], &mut g);
+        self.add_constraints(&mut g);
+        self.bound_from(&dual_point(&self.reduced, z), &g);
+    }
+}
+
+/// The relative gap at which the central path ends for a run.
+fn least_aim(settings: &Settings) -> f64 {
+    AIM * settings.tolerance.unwrap_or(RESIDUAL_GOAL)
 }

@@ -6,6 +6,8 @@
 
 mod finish;
 
+use finish::FIRST_STEPS;
+
 use crate::block_rows::BLOCK;
 use crate::progress::{Progress, Report};
 use crate::solve::certificate::{bound_along_ray, spread, DualPoint};
@@ -119,7 +121,7 @@ struct Run<'r, 's, const K: usize> {
     floor: f64,
     best: Best<K>,
     next_reweighting: usize,
-    next_newton: usize,
+    next_steps: usize,
 }
 
 /// What the last look at the certificate found.
@@ -168,7 +170,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             floor,
             best,
             next_reweighting,
-            next_newton: 0,
+            next_steps: FIRST_STEPS,
         })
     }
 
@@ -201,8 +203,8 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
                     progress.report(self.report(settings, iterations));
                 }
                 left = self.iterations_left(settings, last_check.gap);
-                if self.newton_pays(settings, iterations, last_check.primal, left) {
-                    self.newton(settings, iterations, progress)?;
+                if self.steps_pay(settings, iterations, last_check.primal, left) {
+                    self.finish(settings, iterations, last_check.primal, progress)?;
                     if self.is_certified(settings) {
                         status = Status::Solved;
                         break;
