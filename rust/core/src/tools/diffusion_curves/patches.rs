@@ -8,18 +8,23 @@ use crate::mesh::partition::Partition;
 /// everywhere, and across its border.
 const SHADING: f64 = 0.1;
 
+/// And by this many times what colours change over half of the edges, which is noise where it is much.
+const NOISE: f64 = 4.0;
+
 /// Gives each patch a region of its own: vertices joined by edges over which colours hardly change, none of which has the colour
 /// of its region, and that `least` faces or more touch.
 pub(super) fn add_patches(paint: &Paint<'_>, sorted: &Sorted, groups: &Groups, least: usize, labels: &mut [i32]) {
     let connectivity = paint.mesh.connectivity();
-    let tolerance = SHADING * paint.scale();
     let jump = |a: u32, b: u32| {
         let difference = |c: usize| paint.colors.column(c)[a as usize] - paint.colors.column(c)[b as usize];
         (0..paint.colors.n_columns).map(|c| difference(c).powi(2)).sum::<f64>().sqrt()
     };
+    let edge = |h: usize| (connectivity.tail(h), connectivity.head(h));
+    let mut jumps: Vec<f64> = (0..connectivity.n_halfedges()).map(edge).map(|(a, b)| jump(a, b)).collect();
+    let tolerance = (SHADING * paint.scale()).max(NOISE * median(&mut jumps));
     let mut parts = Partition::new(connectivity.n_vertices());
     for h in 0..connectivity.n_halfedges() {
-        let (a, b) = (connectivity.tail(h), connectivity.head(h));
+        let (a, b) = edge(h);
         if jump(a, b) < tolerance {
             parts.unite(a, b);
         }
@@ -43,4 +48,13 @@ pub(super) fn add_patches(paint: &Paint<'_>, sorted: &Sorted, groups: &Groups, l
             groups.set(labels, f, label);
         }
     }
+}
+
+/// The median of numbers, 0 of none.
+fn median(values: &mut [f64]) -> f64 {
+    let middle = values.len() / 2;
+    if values.is_empty() {
+        return 0.0;
+    }
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }

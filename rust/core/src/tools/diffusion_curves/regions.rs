@@ -15,6 +15,10 @@ use crate::Result;
 /// Rounds of moving borders at most: each moves them by a row of faces, and segments are rarely off by more than two.
 const MOST_ROUNDS: usize = 16;
 
+/// A vertex whose colour is farther from that of its region, in parts of the range of the colours, is a blend or noise, and gets no
+/// face for itself.
+const SURE: f64 = 0.1;
+
 /// The region of each face by the colours at the vertices (n × c): what [`segment`] finds, its borders moved by [`follow_colors`].
 ///
 /// If no number of regions is asked for, patches that it has left in a region of another colour get regions of their own, and
@@ -89,11 +93,12 @@ pub fn follow_colors(
 /// Moves borders until every face is in a region of one of its vertices, and with `cover` until every vertex has a face of its
 /// region; returns where the vertices belong.
 fn follow(paint: &Paint<'_>, groups: &Groups, cover: bool, labels: &mut [i32]) -> Result<Sorted> {
+    let most = SURE * paint.scale();
     let mut sorted = paint.sort(labels)?;
     for _ in 0..MOST_ROUNDS {
         paint.progress.check()?;
         let mut faces = Faces::new(paint.mesh, groups, &sorted.regions, labels);
-        let moved = faces.follow() | (cover && faces.cover());
+        let moved = faces.follow() | (cover && faces.cover(|v| sorted.off[v] <= most));
         if !moved || paint.progress.is_finishing() {
             break;
         }

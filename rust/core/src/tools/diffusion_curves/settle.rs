@@ -48,12 +48,12 @@ impl<'a> Faces<'a> {
         changed
     }
 
-    /// Gives every vertex without a face of its region one of those around it, which no other vertex needs; of several the one
+    /// Gives every vertex that is `sure` of its region, and has no face of it, one of those around it, which no other vertex needs; of several the one
     /// that makes the borders shortest. Returns whether any changed.
-    pub fn cover(&mut self) -> bool {
+    pub fn cover(&mut self, sure: impl Fn(usize) -> bool) -> bool {
         let mut changed = false;
         for v in 0..self.regions.len() {
-            let Some(region) = self.regions[v].filter(|_| self.covers[v] == 0) else { continue };
+            let Some(region) = self.regions[v].filter(|_| self.covers[v] == 0 && sure(v)) else { continue };
             let groups = self.around[v].iter().map(|&f| self.groups.of[f as usize] as usize);
             let able = groups.filter(|&group| !self.is_needed(group));
             let change = |group: usize| (group, self.change(group, region)[1]);
