@@ -152,3 +152,47 @@ fn borders_are_short_and_quads_stay_whole() {
     let asked = SegmentOptions { n_segments: Some(3), ..SegmentOptions::default() };
     assert_eq!(count(&regions(&shape, &colors, asked, None)), 3, "a number that was asked for is kept");
 }
+
+/// Colours averaged over the neighbours of each vertex.
+fn averaged(shape: &Shape, colors: &Columns) -> Columns {
+    let mut around: Vec<Vec<u32>> = vec![Vec::new(); colors.n_rows];
+    for face in &shape.faces {
+        face.iter().for_each(|&v| around[v as usize].extend(face.iter().filter(|&&u| u != v)));
+    }
+    let mut averaged = colors.clone();
+    for c in 0..colors.n_columns {
+        for (x, ring) in averaged.column_mut(c).iter_mut().zip(&mut around) {
+            ring.sort_unstable();
+            ring.dedup();
+            *x = ring.iter().map(|&u| colors.column(c)[u as usize]).sum::<f64>() / ring.len() as f64;
+        }
+    }
+    averaged
+}
+
+/// Colours in bands around the ball.
+fn bands(n_colors: usize, p: [f64; 3]) -> usize {
+    (0.5 * (p[2] + 1.0) * n_colors as f64).clamp(0.0, n_colors as f64 - 1.0) as usize
+}
+
+#[test]
+fn soft_edges_are_no_regions() {
+    let sphere = shapes::icosphere(4).noisy(0.005, 3);
+    for (shape, region) in [(plane(40), scene as fn(usize, [f64; 3]) -> usize), (sphere, bands)] {
+        for n_colors in [2, 5] {
+            let flat = painted(&shape, |p| PALETTE[region(n_colors, p)]);
+            let labels = regions(&shape, &flat, SegmentOptions::default(), None);
+            let (n_regions, n_curves) = (count(&labels), curves(&shape, &flat, &labels).starts.len());
+            for times in [1, 2] {
+                let soft = (0..times).fold(flat.clone(), |colors, _| averaged(&shape, &colors));
+                let labels = regions(&shape, &soft, SegmentOptions::default(), None);
+                let found = curves(&shape, &soft, &labels);
+                let (found_curves, decibels) = (found.starts.len(), -10.0 * found.error.log10());
+                let case = format!("{n_colors} colours, averaged {times} times");
+                assert_eq!(count(&labels), n_regions, "{case}: regions");
+                assert_eq!(found_curves, n_curves, "{case}: ends of curves");
+                assert!(decibels > 26.0, "{case}: {decibels} dB");
+            }
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! Diffusion curves: the few curves, with a colour on each side, that redraw a painted surface (Rowe et al. 2024,
 //! section 7.6).
 //!
-//! [`regions`] ([`sorting`] vertices, [`settle`] faces, [`patches`], [`weak`] borders, [`groups`] of faces) → [`chains`] (the edges between them, as curves) → [`fit`] (colours along the curves, (27)) → [`borders`],
+//! [`regions`] ([`sharpen`]ed paint, [`sorting`] vertices, [`settle`] faces, [`patches`], [`weak`] borders, [`groups`] of faces) → [`chains`] (the edges between them, as curves) → [`fit`] (colours along the curves, (27)) → [`borders`],
 //! [`thinning`] (what is stored) → [`redraw()`] ((26)); fit and drawing on the Laplacian of [`membrane`].
 //! [`trace`] brings curves that were drawn or moved by hand onto the edges, [`smooth`] draws curves without teeth.
 
@@ -14,6 +14,7 @@ mod patches;
 mod redraw;
 mod regions;
 mod settle;
+mod sharpen;
 mod smooth;
 mod sorting;
 mod thinning;

@@ -11,25 +11,34 @@ const SHADING: f64 = 0.1;
 /// And by this many times what colours change over half of the edges, which is noise where it is much.
 const NOISE: f64 = 4.0;
 
-/// Gives each patch a region of its own: vertices joined by edges over which colours hardly change, none of which has the colour
-/// of its region, and that `least` faces or more touch.
+/// Vertices joined by edges over which colours hardly change.
+pub(super) struct Parts {
+    /// A vertex of the part of each vertex, the same one for all of the part.
+    pub root: Vec<usize>,
+    /// Colours change by less than this over the edges that join.
+    pub tolerance: f64,
+}
+
+impl Parts {
+    pub fn new(paint: &Paint<'_>) -> Self {
+        let connectivity = paint.mesh.connectivity();
+        let jump = |h: usize| paint.distance(connectivity.tail(h) as usize, connectivity.head(h) as usize);
+        let jumps: Vec<f64> = (0..connectivity.n_halfedges()).map(jump).collect();
+        let tolerance = (SHADING * paint.scale()).max(NOISE * median(&mut jumps.clone()));
+        let mut parts = Partition::new(connectivity.n_vertices());
+        for (h, _) in jumps.iter().enumerate().filter(|(_, jump)| **jump < tolerance) {
+            parts.unite(connectivity.tail(h), connectivity.head(h));
+        }
+        let root = (0..connectivity.n_vertices() as u32).map(|v| parts.root(v) as usize).collect();
+        Self { root, tolerance }
+    }
+}
+
+/// Gives each patch a region of its own: a part of the vertices, none of which has the colour of its region, and that `least` faces
+/// or more touch.
 pub(super) fn add_patches(paint: &Paint<'_>, sorted: &Sorted, groups: &Groups, least: usize, labels: &mut [i32]) {
     let connectivity = paint.mesh.connectivity();
-    let jump = |a: u32, b: u32| {
-        let difference = |c: usize| paint.colors.column(c)[a as usize] - paint.colors.column(c)[b as usize];
-        (0..paint.colors.n_columns).map(|c| difference(c).powi(2)).sum::<f64>().sqrt()
-    };
-    let edge = |h: usize| (connectivity.tail(h), connectivity.head(h));
-    let mut jumps: Vec<f64> = (0..connectivity.n_halfedges()).map(edge).map(|(a, b)| jump(a, b)).collect();
-    let tolerance = (SHADING * paint.scale()).max(NOISE * median(&mut jumps));
-    let mut parts = Partition::new(connectivity.n_vertices());
-    for h in 0..connectivity.n_halfedges() {
-        let (a, b) = edge(h);
-        if jump(a, b) < tolerance {
-            parts.unite(a, b);
-        }
-    }
-    let root: Vec<usize> = (0..connectivity.n_vertices() as u32).map(|v| parts.root(v) as usize).collect();
+    let Parts { root, tolerance } = Parts::new(paint);
     let mut strange = vec![true; root.len()];
     root.iter().zip(&sorted.off).for_each(|(&r, off)| strange[r] &= *off > tolerance);
     let mut touching = vec![0; root.len()];

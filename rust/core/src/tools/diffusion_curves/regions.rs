@@ -3,6 +3,7 @@
 use super::groups::Groups;
 use super::patches::add_patches;
 use super::settle::Faces;
+use super::sharpen::sharpened;
 use super::sorting::{Paint, Sorted};
 use super::weak::merge_weak;
 use super::{check_fidelity, check_labels};
@@ -20,6 +21,8 @@ const MOST_ROUNDS: usize = 16;
 const SURE: f64 = 0.1;
 
 /// The region of each face by the colours at the vertices (n × c): what [`segment`] finds, its borders moved by [`follow_colors`].
+///
+/// Soft edges of the paint count as sharp ones, or the blends in them would become regions.
 ///
 /// If no number of regions is asked for, patches that it has left in a region of another colour get regions of their own, and
 /// regions without which the surface comes back as well become part of a neighbour.
@@ -40,9 +43,11 @@ pub fn color_regions(
     colors.check("colors", connectivity.n_vertices())?;
     check_fidelity(fidelity)?;
     let groups = Groups::new(groups, connectivity.n_faces())?;
-    let mut labels = segment(mesh, Some(colors), options, progress)?.labels;
+    let original = Paint { mesh, colors, fidelity, progress };
+    let sharp = sharpened(&original);
+    let paint = Paint { colors: &sharp, ..original };
+    let mut labels = segment(mesh, Some(&sharp), options, progress)?.labels;
     groups.unify(&mut labels);
-    let paint = Paint { mesh, colors, fidelity, progress };
     let report = |stage: &str, fraction| {
         progress.report(Report { fraction, stage: stage.into(), ..Report::default() });
         progress.check()
@@ -59,7 +64,8 @@ pub fn color_regions(
         report("leaving out borders", 0.5)?;
         merge_weak(&paint, &mut labels)?;
     }
-    settle(&paint, &groups, &mut labels)?;
+    // Where within a blend the border is best, its own colours tell.
+    settle(&original, &groups, &mut labels)?;
     renumber(&mut labels);
     Ok(labels)
 }

@@ -19,6 +19,7 @@ const LEAST_GAIN: f64 = 0.01;
 const BROAD: f64 = 30.0;
 
 /// A painted surface whose regions are looked for.
+#[derive(Clone, Copy)]
 pub(super) struct Paint<'a> {
     pub mesh: &'a Mesh,
     pub colors: &'a Columns,
@@ -44,6 +45,12 @@ impl Paint<'_> {
             column.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], &x| [least.min(x), most.max(x)])
         };
         (0..self.colors.n_columns).map(range).map(|[least, most]| most - least).fold(0.0, f64::max)
+    }
+
+    /// How far the colours of two vertices are from each other.
+    pub fn distance(&self, a: usize, b: usize) -> f64 {
+        let column = |c: usize| self.colors.column(c);
+        (0..self.colors.n_columns).map(|c| (column(c)[a] - column(c)[b]).powi(2)).sum::<f64>().sqrt()
     }
 
     /// Compares every vertex on a border, or beside one, with the fits (27) of the regions there.
@@ -137,7 +144,7 @@ impl Fits<'_> {
 }
 
 /// The neighbours of every vertex that `on_border` holds for or that has such a neighbour.
-fn neighbours(faces: &[[u32; 3]], n_vertices: usize, on_border: impl Fn(u32) -> bool) -> Vec<Vec<u32>> {
+pub(super) fn neighbours(faces: &[[u32; 3]], n_vertices: usize, on_border: impl Fn(u32) -> bool) -> Vec<Vec<u32>> {
     let mut around = vec![Vec::new(); n_vertices];
     for face in faces.iter().filter(|face| face.iter().any(|&v| on_border(v))) {
         for i in 0..3 {

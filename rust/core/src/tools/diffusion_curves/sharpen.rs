@@ -1,0 +1,119 @@
+//! Paint without its soft edges: what a soft brush or a smoothed image leaves between two colours is no colour of its own.
+
+use std::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
+
+use super::patches::Parts;
+use super::sorting::{neighbours, Paint};
+use crate::solve::Columns;
+
+/// Steps towards the nearest mixture of colours. Two colours need one, three at most some ten until the rest is below what is tolerated.
+const MIXING_STEPS: usize = 32;
+
+/// The colours, with every blend replaced by the one of the colours that it is a blend of to which it is nearest.
+///
+/// Of a part of the surface that edges join over which colours hardly change, all vertices may be blends but those that are no
+/// end of another edge. Where there is none such, the part is a blend if most of its vertices have a mixture of the colours around it.
+/// Blends are filled from what is around them, the most similar vertex first (seeded region growing, Adams and Bischof 1994). Borders
+/// then are where one colour outweighs the other, and flat paint stays as it is.
+pub(super) fn sharpened(paint: &Paint<'_>) -> Columns {
+    let colors = paint.colors;
+    let connectivity = paint.mesh.connectivity();
+    let around = neighbours(connectivity.faces(), colors.n_rows, |_| true);
+    let blended = blends(paint, &around);
+    let mut source: Vec<Option<usize>> = (0..colors.n_rows).map(|v| (!blended[v]).then_some(v)).collect();
+    let mut waiting = BinaryHeap::new();
+    let offer = |waiting: &mut BinaryHeap<Reverse<Offer>>, source: &[Option<usize>], from: usize, color: usize| {
+        for v in around[from].iter().map(|&v| v as usize).filter(|&v| source[v].is_none()) {
+            waiting.push(Reverse(Offer { off: paint.distance(v, color), vertex: v, color }));
+        }
+    };
+    (0..colors.n_rows).filter(|&v| !blended[v]).for_each(|v| offer(&mut waiting, &source, v, v));
+    while let Some(Reverse(Offer { vertex, color, .. })) = waiting.pop() {
+        if source[vertex].is_none() {
+            source[vertex] = Some(color);
+            offer(&mut waiting, &source, vertex, color);
+        }
+    }
+    let mut sharp = colors.clone();
+    for c in 0..colors.n_columns {
+        let taken = source.iter().enumerate().map(|(v, from)| colors.column(c)[from.unwrap_or(v)]);
+        sharp.column_mut(c).iter_mut().zip(taken).for_each(|(x, new)| *x = new);
+    }
+    sharp
+}
+
+/// Whether each vertex may be part of a blend.
+fn blends(paint: &Paint<'_>, around: &[Vec<u32>]) -> Vec<bool> {
+    let colors = paint.colors;
+    let Parts { root, tolerance } = Parts::new(paint);
+    let flat = |v: usize| around[v].iter().all(|&u| paint.distance(v, u as usize) < tolerance);
+    let flat: Vec<bool> = (0..root.len()).map(flat).collect();
+    let mut wide = vec![false; root.len()];
+    root.iter().zip(&flat).for_each(|(&r, flat)| wide[r] |= flat);
+    // How many more vertices of each part are mixtures than are not.
+    let mut mixed = vec![0_i64; root.len()];
+    for v in (0..root.len()).filter(|&v| !wide[root[v]]) {
+        let near = around[v].iter().flat_map(|&u| &around[u as usize]).chain(&around[v]);
+        let mut others: Vec<u32> = near.copied().filter(|&u| root[u as usize] != root[v]).collect();
+        others.sort_unstable();
+        others.dedup();
+        mixed[root[v]] += if is_mixture(colors, v, &others, tolerance) { 1 } else { -1 };
+    }
+    let blended = |(&r, flat): (&usize, &bool)| if wide[r] { !flat } else { mixed[r] > 0 };
+    root.iter().zip(&flat).map(blended).collect()
+}
+
+/// Whether a mixture of the colours of `others` comes as near to the colour of `v` as `tolerance`: steps towards the nearest point of
+/// their convex hull (Frank and Wolfe 1956).
+fn is_mixture(colors: &Columns, v: usize, others: &[u32], tolerance: f64) -> bool {
+    let color = |v: usize| (0..colors.n_columns).map(|c| colors.column(c)[v]).collect::<Vec<f64>>();
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+    let difference = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x - y).collect::<Vec<f64>>();
+    let target = color(v);
+    let others: Vec<Vec<f64>> = others.iter().map(|&u| color(u as usize)).collect();
+    let Some(mut mixture) = others.first().cloned() else { return false };
+    for _ in 0..MIXING_STEPS {
+        let off = difference(&mixture, &target);
+        if dot(&off, &off) <= tolerance * tolerance {
+            return true;
+        }
+        let Some(best) = others.iter().min_by(|a, b| dot(a, &off).total_cmp(&dot(b, &off))) else { return false };
+        let step = difference(best, &mixture);
+        let gain = -dot(&step, &off);
+        if gain <= 0.0 {
+            return false;
+        }
+        let length = (gain / dot(&step, &step)).min(1.0);
+        mixture.iter_mut().zip(&step).for_each(|(x, d)| *x += length * d);
+    }
+    false
+}
+
+/// The colour of a vertex for another one, and how far off it is.
+struct Offer {
+    off: f64,
+    vertex: usize,
+    color: usize,
+}
+
+impl Ord for Offer {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_number = (self.vertex, self.color).cmp(&(other.vertex, other.color));
+        self.off.total_cmp(&other.off).then(by_number)
+    }
+}
+
+impl PartialOrd for Offer {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Offer {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Offer {}
