@@ -61,7 +61,8 @@ impl std::fmt::Debug for Cholesky {
 }
 
 impl Cholesky {
-    /// Orders (approximate minimum degree, below nested dissection for large ones) and analyses the pattern, for a factor of at most `memory_limit` bytes.
+    /// Orders (approximate minimum degree, below nested dissection for large ones) and analyses the pattern, for a factor and
+    /// waiting updates of at most `memory_limit` bytes.
     ///
     /// # Errors
     /// [`SolveError::Memory`] when the factor is larger than that, or than what the system gives.
@@ -95,6 +96,8 @@ impl Cholesky {
         }
         let mut factor = Vec::new();
         factor.try_reserve_exact(len).map_err(|_| too_large())?;
+        // Asked for now, while it can still be refused, and given back until it is needed.
+        Vec::<f64>::new().try_reserve_exact(waiting).map_err(|_| too_large())?;
         factor.resize(len, 0.0);
         Ok(Self {
             pattern,
