@@ -108,7 +108,7 @@ impl<const K: usize> Run<'_, '_, K> {
         let mut h = Vec::new();
         self.reduced.apply(&self.u, &mut h);
         self.sweep = Sweep::new(&self.reduced, &self.r, |b| (h[b], steps.z[b]));
-        if self.is_certified(settings) {
+        if self.is_certified(settings) || progress.is_finishing() {
             return Ok(());
         }
         self.next_steps = 2 * iterations;
