@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 
 use super::fit::{Patch, Plane};
-use super::surface::{contiguous, pieces, Surface};
+use super::surface::{members, pieces, Surface};
 use crate::mesh::vector::{distance, dot, Point};
 use crate::progress::Progress;
 use crate::Result;
@@ -61,12 +61,9 @@ impl Divide<'_> {
     pub fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
         for _ in 0..ROUNDS {
             self.progress.check()?;
-            let (fresh, count) = contiguous(labels);
-            *labels = fresh;
-            let mut members = vec![Vec::new(); count];
-            (0..).zip(labels.iter()).for_each(|(f, &label): (u32, _)| members[label as usize].push(f));
+            let members = members(labels);
             let mut divided = false;
-            for (fresh, faces) in (count as u32..).zip(members) {
+            for (fresh, faces) in (members.len() as u32..).zip(members) {
                 for f in self.second_side(&faces).unwrap_or_default() {
                     labels[f as usize] = fresh;
                     divided = true;
@@ -141,11 +138,13 @@ impl Divide<'_> {
     /// The sum of the squared distances of all corners.
     fn squares(&self, model: &Model, faces: &[u32]) -> f64 {
         let surface = self.surface;
-        let distance = |v: u32| match model {
-            Model::Plane(plane) => plane.distance(surface.positions[v as usize]),
-            Model::Patch(patch) => patch.misfit(surface, v as usize, None),
-        };
-        faces.iter().flat_map(|&f| surface.connectivity.faces()[f as usize]).map(|v| distance(v).powi(2)).sum()
+        match model {
+            Model::Plane(plane) => {
+                let corners = faces.iter().flat_map(|&f| surface.connectivity.faces()[f as usize]);
+                corners.map(|v| plane.distance(surface.positions[v as usize]).powi(2)).sum()
+            }
+            Model::Patch(patch) => patch.squares(surface, faces),
+        }
     }
 
     /// The mean bend from one model to the other along the edges where their sides meet.

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::divide::log_likelihood_ratio;
 use super::fit::{Patch, Plane};
-use super::surface::{contiguous, Surface};
+use super::surface::{members, Surface};
 use crate::mesh::vector::{add, dot};
 use crate::progress::Progress;
 use crate::Result;
@@ -50,9 +50,8 @@ impl Explain<'_> {
     pub fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
         loop {
             self.progress.check()?;
-            let (fresh, count) = contiguous(labels);
-            *labels = fresh;
-            let segments = self.measured(labels, count);
+            let segments = self.measured(labels);
+            let count = segments.members.len();
             let mut order: Vec<u32> = (0..count as u32).collect();
             let area = |label: u32| segments.areas[label as usize];
             order.sort_by(|&a, &b| area(a).total_cmp(&area(b)).then(a.cmp(&b)));
@@ -76,10 +75,10 @@ impl Explain<'_> {
         }
     }
 
-    fn measured(&self, labels: &[u32], count: usize) -> Segments {
+    /// Renumbers the segments and measures them.
+    fn measured(&self, labels: &mut Vec<u32>) -> Segments {
         let surface = self.surface;
-        let mut members = vec![Vec::new(); count];
-        (0..).zip(labels).for_each(|(f, &label): (u32, _)| members[label as usize].push(f));
+        let members = members(labels);
         let area = |faces: &Vec<u32>| faces.iter().map(|&f| surface.areas[f as usize]).sum();
         let plane = |faces: &Vec<u32>| Plane::through(surface, faces).filter(|plane| plane.spread <= self.flat);
         let mut borders: BTreeMap<(u32, u32), f64> = BTreeMap::new();
@@ -149,8 +148,6 @@ impl Explain<'_> {
 
     /// The sum of the squared distances of all corners from the patch that fits them best.
     fn squares_off_patch(&self, faces: &[u32]) -> Option<f64> {
-        let patch = Patch::fit(self.surface, faces, None)?;
-        let corners = faces.iter().flat_map(|&f| self.surface.connectivity.faces()[f as usize]);
-        Some(corners.map(|v| patch.misfit(self.surface, v as usize, None).powi(2)).sum())
+        Some(Patch::fit(self.surface, faces, None)?.squares(self.surface, faces))
     }
 }

@@ -155,6 +155,12 @@ impl Patch {
         [c[1] + 2.0 * c[3] * terms[1] + c[4] * terms[2], c[2] + c[4] * terms[1] + 2.0 * c[5] * terms[2]]
     }
 
+    /// The sum of the squared distances of all corners of `faces` from a patch of a shape.
+    pub fn squares(&self, surface: &Surface<'_>, faces: &[u32]) -> f64 {
+        let corners = faces.iter().flat_map(|&f| surface.connectivity.faces()[f as usize]);
+        corners.map(|v| self.misfit(surface, v as usize, None).powi(2)).sum()
+    }
+
     /// The unit directions in which a patch of a shape curves, that in which it curves most first.
     pub fn curvature_directions(&self) -> [Point; 2] {
         let c = &self.coefficients[0];

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::cut::Graph;
 use super::fit::Plane;
-use super::surface::{contiguous, Surface};
+use super::surface::{members, Surface};
 use crate::mesh::vector::{add, distance, dot, sub, unit, Point};
 use crate::progress::Progress;
 use crate::Result;
@@ -66,13 +66,9 @@ impl<'a> Straighten<'a> {
     /// # Errors
     /// [`crate::Error::Cancelled`].
     pub fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
-        let (fresh, count) = contiguous(labels);
-        *labels = fresh;
-        let mut members = vec![Vec::new(); count];
-        (0..).zip(labels.iter()).for_each(|(f, &label): (u32, _)| members[label as usize].push(f));
         let is_curved =
             |faces: &Vec<u32>| Plane::through(self.surface, faces).is_none_or(|plane| plane.spread > self.flat);
-        let curved: Vec<bool> = members.iter().map(is_curved).collect();
+        let curved: Vec<bool> = members(labels).iter().map(is_curved).collect();
         for _ in 0..PASSES {
             let mut borders: BTreeMap<[u32; 2], Vec<u32>> = BTreeMap::new();
             for f in 0..labels.len() {
@@ -146,6 +142,7 @@ impl<'a> Straighten<'a> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
+    use super::super::surface::contiguous;
     use super::*;
     use crate::shapes;
 

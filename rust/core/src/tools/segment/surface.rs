@@ -92,6 +92,15 @@ pub(super) fn contiguous(labels: &[u32]) -> (Vec<u32>, usize) {
     (renamed, count as usize)
 }
 
+/// Renumbers the labels in place, as [`contiguous`] does, and lists the faces of each segment.
+pub(super) fn members(labels: &mut Vec<u32>) -> Vec<Vec<u32>> {
+    let (fresh, count) = contiguous(labels);
+    *labels = fresh;
+    let mut members = vec![Vec::new(); count];
+    (0..).zip(labels.iter()).for_each(|(f, &label): (u32, _)| members[label as usize].push(f));
+    members
+}
+
 /// The connected pieces of equal labels, numbered in the order of their first faces, and how many there are.
 pub(super) fn pieces(surface: &Surface<'_>, labels: &[u32]) -> (Vec<u32>, usize) {
     let mut piece = vec![NONE; labels.len()];
