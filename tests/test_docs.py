@@ -6,6 +6,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from american_words import british_lines, british_words
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted(
@@ -16,7 +17,9 @@ PAGES = sorted(
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 CODE = re.compile(r"^```.*?^```\n", re.MULTILINE | re.DOTALL)
 LARGEST_PICTURE = 350_000
-README_LINES = 150
+README_LINES = 170
+LINE_LENGTH = 110
+DECISIONS = ROOT / "docs/decisions"
 
 
 def name_of(page):
@@ -65,10 +68,47 @@ def test_relative_links_and_pictures_exist(page):
             assert anchor in anchors(where), f"{target} names no heading"
 
 
+def reached_from(page):
+    return {(page.parent / link.partition("#")[0]).resolve() for link in relative_links(page)}
+
+
 @pytest.mark.parametrize("page", [page for page in PAGES if page.parent == ROOT / "docs"], ids=name_of)
 def test_every_page_is_reached_from_the_readme(page):
-    reached = {(ROOT / link.partition("#")[0]).resolve() for link in relative_links(ROOT / "README.md")}
-    assert page in reached
+    assert page in reached_from(ROOT / "README.md")
+
+
+def test_every_decision_is_in_the_index_and_says_why():
+    pages = sorted(DECISIONS.glob("*.md"))
+    index = DECISIONS / "README.md"
+    assert reached_from(index) == set(pages) - {index}
+    for page in set(pages) - {index}:
+        headings = re.findall(r"^## (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+        assert headings == ["Context", "Choice", "Evidence", "Rejected"], page.name
+
+
+def test_the_words_are_american():
+    assert british_words("The COLOUR of a neighbouring centre: labelled, unfactorised") == [
+        "COLOUR",
+        "neighbouring",
+        "centre",
+        "labelled",
+        "unfactorised",
+    ]
+    assert british_words("Colors, centers, realistic analyses, l2_norm, revise, promise, raised") == []
+    assert [line for page in PAGES for line in british_lines(page)] == []
+
+
+def prose(page):
+    """The lines of a page with their numbers, without code, tables, pictures, and what programs write."""
+    text = page.read_text(encoding="utf-8")
+    for skipped in (CODE, re.compile(r"<!-- (.+?):begin -->.*?<!-- \1:end -->", re.DOTALL)):
+        text = skipped.sub(lambda found: "\n" * found[0].count("\n"), text)
+    return [line for line in enumerate(text.splitlines(), 1) if not line[1].startswith(("|", "!["))]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_lines_fit_into_an_editor(page):
+    assert [number for number, line in prose(page) if len(line) > LINE_LENGTH] == []
 
 
 def test_every_picture_is_shown_and_small():

@@ -135,7 +135,7 @@ def draw(folder: Path) -> dict[str, str]:
     ]
     header = ["energy"]
     for name in TRUTHS:
-        header += [f"{name}: fidelity", "bent in a tenth", "gap"]
+        header += [f"{name}: fidelity", "bending in a tenth", "gap"]
     return {
         "heights": table(["noise left", *TRUTHS], [[words, *row] for words, row in errors.items()]),
         "heights long": table(["noise left", *(f"seed {k}" for k in range(SEEDS)), "mean"], of_long),
