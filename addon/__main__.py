@@ -7,7 +7,7 @@ import sys
 
 import bpy
 
-from .batch import main
+from .framework.batch import main
 
 if __name__ == "__main__":
     code = main(sys.argv[1:])

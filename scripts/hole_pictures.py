@@ -13,11 +13,11 @@ import shapes
 from numpy.typing import NDArray
 from picture_geometry import Lines
 
-from addon import mesh_io
-from addon.hole_settings import HoleSettings
-from addon.patching.extension import PATCH_NAME
-from addon.shared_settings import defaults_of
-from addon.tools.fill_holes import HoleFilling
+from addon.blender import mesh_io
+from addon.framework.shared_settings import defaults_of
+from addon.holes.extension import PATCH_NAME
+from addon.holes.settings import HoleSettings
+from addon.holes.tool import HoleFilling
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

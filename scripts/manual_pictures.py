@@ -30,7 +30,7 @@ def stylized(vertices: np.ndarray, faces: np.ndarray, **changes: object) -> np.n
     """The vertices after the flow, with the add-on's defaults but for `changes`."""
     import ridgeform  # noqa: PLC0415
 
-    from addon.settings import default_settings, stylize_options  # noqa: PLC0415
+    from addon.stylize.settings import default_settings, stylize_options  # noqa: PLC0415
 
     options = stylize_options(default_settings(**changes))
     begin = time.perf_counter()
@@ -124,10 +124,10 @@ def attributes() -> None:
     import pictures  # noqa: PLC0415
     import ridgeform  # noqa: PLC0415
 
-    from addon import ramp  # noqa: PLC0415
-    from addon.attribute_settings import DenoiseSettings, solve_options  # noqa: PLC0415
-    from addon.shared_settings import defaults_of  # noqa: PLC0415
-    from addon.tools.denoise import fidelity_for  # noqa: PLC0415
+    from addon.attributes.denoise import fidelity_for  # noqa: PLC0415
+    from addon.attributes.settings import DenoiseSettings, solve_options  # noqa: PLC0415
+    from addon.blender import ramp  # noqa: PLC0415
+    from addon.framework.shared_settings import defaults_of  # noqa: PLC0415
 
     vertices, faces = source("spot")
     mesh, truth = ridgeform.Mesh(vertices, faces), creased(vertices)
@@ -155,9 +155,9 @@ def segments() -> None:
     import ridgeform  # noqa: PLC0415
     import shapes  # noqa: PLC0415
 
-    from addon.segment_settings import SegmentSettings, segment_options  # noqa: PLC0415
-    from addon.segmenting.slots import color_of  # noqa: PLC0415
-    from addon.shared_settings import defaults_of  # noqa: PLC0415
+    from addon.framework.shared_settings import defaults_of  # noqa: PLC0415
+    from addon.segments.settings import SegmentSettings, segment_options  # noqa: PLC0415
+    from addon.segments.slots import color_of  # noqa: PLC0415
 
     vertices, faces = shapes.house(4)
     house = shapes.add_noise(vertices, faces, HOUSE_NOISE, seed=1), faces

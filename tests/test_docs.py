@@ -133,6 +133,7 @@ def test_every_name_in_the_index_of_equations_is_defined():
 def test_every_file_named_in_the_architecture_exists():
     text = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
     folders = [ROOT, ROOT / "rust/core/src", ROOT / "rust/core/src/solve", ROOT / "addon"]
+    folders += [ROOT / "addon" / name for name in ("blender", "framework", "holes", "attributes")]
     named = re.findall(r"`([\w./*]+(?:\.(?:py|rs|toml)|/))`", text)
     assert len(named) > 15
     for name in named:
@@ -141,10 +142,11 @@ def test_every_file_named_in_the_architecture_exists():
 
 def test_the_manual_names_every_setting_and_every_option_of_the_command():
     manual = "".join(path.read_text(encoding="utf-8") for path in sorted((ROOT / "docs").glob("manual*.md")))
-    sources = [path.read_text(encoding="utf-8") for path in sorted((ROOT / "addon").glob("*settings.py"))]
+    sources = [path.read_text(encoding="utf-8") for path in sorted((ROOT / "addon").rglob("*settings.py"))]
     settings = re.findall(r'\bname="([^"]+)"', "\n".join(sources))
     command = "".join(
-        (ROOT / f"addon/{name}.py").read_text(encoding="utf-8") for name in ("batch", "batch_options")
+        (ROOT / f"addon/framework/{name}.py").read_text(encoding="utf-8")
+        for name in ("batch", "batch_options")
     )
     options = re.findall(r'"(--[a-z][a-z-]*)"', command)
     fields = re.findall(r'^        "(\w+)": (?:None|\[\]|str)', command, re.MULTILINE)

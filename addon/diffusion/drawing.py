@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from .. import attribute_names, display, mesh_io
-from ..welding import Weld
+from ..blender import attribute_names, display, mesh_io
+from ..blender.welding import Weld
 from .sources import SUFFIX
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import ridgeform
 
-from ..welding import Weld
+from ..blender.welding import Weld
 from .curves_io import CurvePoints
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from .. import attribute_io, mesh_io
-from ..attribute_names import COLORS, SHOWN, AttributeRefusedError
+from ..blender import attribute_io, mesh_io
+from ..blender.attribute_names import COLORS, SHOWN, AttributeRefusedError
 
 SUFFIX = "_diffused"
 """What the name of the rebuilt colours ends with."""

@@ -4,8 +4,8 @@
 import bpy
 import numpy as np
 
-from .. import mesh_io
-from ..attribute_names import result_name
+from ..blender import mesh_io
+from ..blender.attribute_names import result_name
 from . import curves_io
 from .curves_io import CurvePoints, CurvesRefusedError
 from .sources import SUFFIX

@@ -5,8 +5,8 @@ import bpy
 import numpy as np
 import ridgeform
 
-from ..attribute_names import AttributeRefusedError
-from ..welding import Weld
+from ..blender.attribute_names import AttributeRefusedError
+from ..blender.welding import Weld
 from .bezier import straightened
 from .curves_io import LEFT, MARK, RIGHT, CurvePoints, CurvesRefusedError, DrawnCurves, read_curves
 from .layout import offsets, point_edges

@@ -33,7 +33,7 @@ def signed(modes: Array) -> Array:
 
 def draw(folder: Path) -> dict[str, str]:
     """A row of modes per surface and energy."""
-    from addon import ramp  # noqa: PLC0415
+    from addon.blender import ramp  # noqa: PLC0415
 
     from . import panels  # noqa: PLC0415
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from picture_geometry import Dots, Lines
 from picture_isolines import bands, isolines
 
-from addon import ramp
+from addon.blender import ramp
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

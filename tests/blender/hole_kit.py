@@ -4,9 +4,9 @@ import addon_kit as kit
 import bpy
 import numpy as np
 import ridgeform
-from bl_ext.user_default.ridgeform import mesh_io
-from bl_ext.user_default.ridgeform.hole_settings import HoleSettings, hole_options
-from bl_ext.user_default.ridgeform.shared_settings import defaults_of
+from bl_ext.user_default.ridgeform.blender import mesh_io
+from bl_ext.user_default.ridgeform.framework.shared_settings import defaults_of
+from bl_ext.user_default.ridgeform.holes.settings import HoleSettings, hole_options
 
 SIZES = {"FLOAT2": 2, "FLOAT_VECTOR": 3, "FLOAT_COLOR": 4, "BYTE_COLOR": 4}
 PROPS = {"FLOAT2": "vector", "FLOAT_VECTOR": "vector", "FLOAT_COLOR": "color", "BYTE_COLOR": "color"}

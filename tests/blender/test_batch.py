@@ -11,7 +11,7 @@ import bpy
 import hole_kit
 import numpy as np
 import pytest
-from bl_ext.user_default.ridgeform import batch, files
+from bl_ext.user_default.ridgeform.framework import batch, files
 
 STEPS = ("--steps", "2")
 

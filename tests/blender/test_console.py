@@ -4,7 +4,7 @@ import importlib.util
 import io
 
 import pytest
-from bl_ext.user_default.ridgeform.console import ProgressBar
+from bl_ext.user_default.ridgeform.framework.console import ProgressBar
 
 
 class Terminal(io.StringIO):

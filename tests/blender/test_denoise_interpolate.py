@@ -5,15 +5,16 @@ import bpy
 import numpy as np
 import pytest
 import ridgeform
-from bl_ext.user_default.ridgeform import attribute_io, job, mesh_io
-from bl_ext.user_default.ridgeform.attribute_settings import (
+from bl_ext.user_default.ridgeform.attributes.denoise import fidelity_for
+from bl_ext.user_default.ridgeform.attributes.settings import (
     ENERGIES,
     DenoiseSettings,
     InterpolateSettings,
     solve_options,
 )
-from bl_ext.user_default.ridgeform.shared_settings import defaults_of, ridge_weights_of
-from bl_ext.user_default.ridgeform.tools.denoise import fidelity_for
+from bl_ext.user_default.ridgeform.blender import attribute_io, mesh_io
+from bl_ext.user_default.ridgeform.framework import job
+from bl_ext.user_default.ridgeform.framework.shared_settings import defaults_of, ridge_weights_of
 
 KINDS = [
     ("FLOAT", "POINT"),

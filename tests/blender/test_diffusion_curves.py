@@ -7,8 +7,9 @@ import bpy
 import numpy as np
 import pytest
 import ridgeform
-from bl_ext.user_default.ridgeform import job, mesh_io
+from bl_ext.user_default.ridgeform.blender import mesh_io
 from bl_ext.user_default.ridgeform.diffusion import curves_io, sources, svg
+from bl_ext.user_default.ridgeform.framework import job
 
 RED, BLUE = (0.8, 0.1, 0.05, 1.0), (0.05, 0.2, 0.7, 1.0)
 CELLS = 16

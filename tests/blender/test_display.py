@@ -3,8 +3,8 @@
 import addon_kit as kit
 import bpy
 import numpy as np
-from bl_ext.user_default.ridgeform import ramp
-from bl_ext.user_default.ridgeform.attribute_names import SHOWN
+from bl_ext.user_default.ridgeform.blender import ramp
+from bl_ext.user_default.ridgeform.blender.attribute_names import SHOWN
 
 
 def heated_box(name="Box", scale=1.0):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import ridgeform
 import shapes
-from bl_ext.user_default.ridgeform import job
+from bl_ext.user_default.ridgeform.framework import job
 from blender_profile import EXTENSION
 
 

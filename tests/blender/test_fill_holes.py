@@ -5,11 +5,12 @@ import bpy
 import hole_kit
 import numpy as np
 import pytest
-from bl_ext.user_default.ridgeform import job, mesh_io
-from bl_ext.user_default.ridgeform.hole_settings import HoleSettings
-from bl_ext.user_default.ridgeform.shared_settings import defaults_of
-from bl_ext.user_default.ridgeform.tools.fill_holes import HoleFilling
-from bl_ext.user_default.ridgeform.tools.run import RefusedError
+from bl_ext.user_default.ridgeform.blender import mesh_io
+from bl_ext.user_default.ridgeform.framework import job
+from bl_ext.user_default.ridgeform.framework.run import RefusedError
+from bl_ext.user_default.ridgeform.framework.shared_settings import defaults_of
+from bl_ext.user_default.ridgeform.holes.settings import HoleSettings
+from bl_ext.user_default.ridgeform.holes.tool import HoleFilling
 
 FRONT, BACK = (1.0, 0.0, 1.0), (-1.0, 0.0, -1.0)
 

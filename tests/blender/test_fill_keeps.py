@@ -5,8 +5,8 @@ import bpy
 import hole_kit
 import numpy as np
 import pytest
-from bl_ext.user_default.ridgeform.mesh_layers import ATTRIBUTE_KINDS
-from bl_ext.user_default.ridgeform.patching import growing
+from bl_ext.user_default.ridgeform.blender.mesh_layers import ATTRIBUTE_KINDS
+from bl_ext.user_default.ridgeform.holes import growing
 
 EXTRAS = ("nothing", "group", "key", "text", "normals")
 MADE_ANEW = {".select_vert", ".select_edge", ".select_poly"}

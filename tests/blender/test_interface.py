@@ -7,17 +7,17 @@ import bpy
 import hole_kit
 import pytest
 from bl_ext.user_default import ridgeform as addon
-from bl_ext.user_default.ridgeform import job
-from bl_ext.user_default.ridgeform.attribute_settings import (
+from bl_ext.user_default.ridgeform.attributes.settings import (
     DenoiseSettings,
     InterpolateSettings,
     ModesSettings,
 )
-from bl_ext.user_default.ridgeform.diffusion_settings import DiffusionSettings
-from bl_ext.user_default.ridgeform.hole_settings import HoleSettings
-from bl_ext.user_default.ridgeform.segment_settings import SegmentSettings
-from bl_ext.user_default.ridgeform.settings import StylizeSettings, default_settings, fidelity_of
-from bl_ext.user_default.ridgeform.shared_settings import defaults_of, setting_names
+from bl_ext.user_default.ridgeform.diffusion.settings import DiffusionSettings
+from bl_ext.user_default.ridgeform.framework import job
+from bl_ext.user_default.ridgeform.framework.shared_settings import defaults_of, setting_names
+from bl_ext.user_default.ridgeform.holes.settings import HoleSettings
+from bl_ext.user_default.ridgeform.segments.settings import SegmentSettings
+from bl_ext.user_default.ridgeform.stylize.settings import StylizeSettings, default_settings, fidelity_of
 
 CLASSES = (
     "RIDGEFORM_OT_stylize",
@@ -209,9 +209,9 @@ def test_operator_is_undoable_and_takes_presets(tool):
 
 
 def test_wrong_wheel_is_refused(monkeypatch):
-    monkeypatch.setattr(addon.wheel.ridgeform, "__version__", "0.0.0")
+    monkeypatch.setattr(addon.framework.wheel.ridgeform, "__version__", "0.0.0")
     with pytest.raises(RuntimeError, match=r"found version 0\.0\.0 of its native module"):
-        addon.wheel.check_version()
+        addon.framework.wheel.check_version()
 
 
 def test_more_strength_means_less_fidelity():

@@ -7,10 +7,9 @@ import addon_kit as kit
 import bpy
 import numpy as np
 import pytest
-from bl_ext.user_default.ridgeform import job
-from bl_ext.user_default.ridgeform.operators import modal
-from bl_ext.user_default.ridgeform.settings import default_settings
-from bl_ext.user_default.ridgeform.tools.stylize import Stylization
+from bl_ext.user_default.ridgeform.framework import job, modal
+from bl_ext.user_default.ridgeform.stylize.settings import default_settings
+from bl_ext.user_default.ridgeform.stylize.tool import Stylization
 
 PATIENCE = 60.0
 

@@ -7,17 +7,17 @@ import addon_kit as kit
 import bpy
 import numpy as np
 import pytest
-from bl_ext.user_default.ridgeform.attribute_names import SHOWN
-from bl_ext.user_default.ridgeform.attribute_settings import (
+from bl_ext.user_default.ridgeform.attributes.denoise import Denoising
+from bl_ext.user_default.ridgeform.attributes.interpolate import Interpolation
+from bl_ext.user_default.ridgeform.attributes.modes import VibrationModes
+from bl_ext.user_default.ridgeform.attributes.settings import (
     DenoiseSettings,
     InterpolateSettings,
     ModesSettings,
 )
-from bl_ext.user_default.ridgeform.operators import modal
-from bl_ext.user_default.ridgeform.shared_settings import defaults_of
-from bl_ext.user_default.ridgeform.tools.denoise import Denoising
-from bl_ext.user_default.ridgeform.tools.interpolate import Interpolation
-from bl_ext.user_default.ridgeform.tools.modes import VibrationModes
+from bl_ext.user_default.ridgeform.blender.attribute_names import SHOWN
+from bl_ext.user_default.ridgeform.framework import modal
+from bl_ext.user_default.ridgeform.framework.shared_settings import defaults_of
 from test_modal import FakeContext, event, poll_to_the_end
 
 TOOLS = {

@@ -5,8 +5,9 @@ import bpy
 import numpy as np
 import pytest
 import ridgeform
-from bl_ext.user_default.ridgeform import job, mesh_io, ramp
-from bl_ext.user_default.ridgeform.attribute_names import SHOWN
+from bl_ext.user_default.ridgeform.blender import mesh_io, ramp
+from bl_ext.user_default.ridgeform.blender.attribute_names import SHOWN
+from bl_ext.user_default.ridgeform.framework import job
 
 COUNT = 4
 

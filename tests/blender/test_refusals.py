@@ -4,9 +4,9 @@ import addon_kit as kit
 import bpy
 import numpy as np
 import pytest
-from bl_ext.user_default.ridgeform import selection
-from bl_ext.user_default.ridgeform.tools.denoise import Denoising
-from bl_ext.user_default.ridgeform.tools.interpolate import Interpolation
+from bl_ext.user_default.ridgeform.attributes.denoise import Denoising
+from bl_ext.user_default.ridgeform.attributes.interpolate import Interpolation
+from bl_ext.user_default.ridgeform.blender import selection
 
 
 def heated_box(**kind):

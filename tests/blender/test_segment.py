@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import ridgeform
 import shapes
-from bl_ext.user_default.ridgeform import attribute_io, job, mesh_io
-from bl_ext.user_default.ridgeform.segment_settings import SegmentSettings, segment_options
-from bl_ext.user_default.ridgeform.segmenting import layers, slots
-from bl_ext.user_default.ridgeform.shared_settings import defaults_of
-from bl_ext.user_default.ridgeform.tools import segment as tool
+from bl_ext.user_default.ridgeform.blender import attribute_io, mesh_io
+from bl_ext.user_default.ridgeform.framework import job
+from bl_ext.user_default.ridgeform.framework.shared_settings import defaults_of
+from bl_ext.user_default.ridgeform.segments import layers, slots, tool
+from bl_ext.user_default.ridgeform.segments.settings import SegmentSettings, segment_options
 from test_modal import FakeContext, event, poll_to_the_end
 from test_modal_attributes import FakeOperator
 

@@ -4,7 +4,7 @@ import addon_kit as kit
 import bpy
 import numpy as np
 import pytest
-from bl_ext.user_default.ridgeform import selection
+from bl_ext.user_default.ridgeform.blender import selection
 
 
 def reason():

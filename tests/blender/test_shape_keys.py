@@ -6,8 +6,8 @@ import bpy
 import numpy as np
 import pytest
 import ridgeform
-from bl_ext.user_default.ridgeform import mesh_io
-from bl_ext.user_default.ridgeform.settings import default_settings, stylize_options
+from bl_ext.user_default.ridgeform.blender import mesh_io
+from bl_ext.user_default.ridgeform.stylize.settings import default_settings, stylize_options
 
 STEPS = 3
 

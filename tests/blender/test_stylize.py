@@ -5,10 +5,11 @@ import bpy
 import numpy as np
 import pytest
 import ridgeform
-from bl_ext.user_default.ridgeform import job, mesh_io
-from bl_ext.user_default.ridgeform.settings import default_settings, stylize_options
-from bl_ext.user_default.ridgeform.shared_settings import ridge_weights_of
-from bl_ext.user_default.ridgeform.tools import stylize as tool
+from bl_ext.user_default.ridgeform.blender import mesh_io
+from bl_ext.user_default.ridgeform.framework import job
+from bl_ext.user_default.ridgeform.framework.shared_settings import ridge_weights_of
+from bl_ext.user_default.ridgeform.stylize import tool
+from bl_ext.user_default.ridgeform.stylize.settings import default_settings, stylize_options
 
 STEPS = 3
 

@@ -5,7 +5,7 @@ import bpy
 import hole_kit
 import numpy as np
 import pytest
-from bl_ext.user_default.ridgeform import attribute_io, attribute_names
+from bl_ext.user_default.ridgeform.blender import attribute_io, attribute_names
 
 STEPS = 3
 

@@ -1,7 +1,7 @@
 """Split seams are computed as one surface, and only they."""
 
 import numpy as np
-from bl_ext.user_default.ridgeform.welding import weld_seams
+from bl_ext.user_default.ridgeform.blender.welding import weld_seams
 
 SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float32)
 

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What denoising and interpolating an attribute share: reading it, writing the result, the report."""
+
+from abc import abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
+
+import bpy
+import numpy as np
+import ridgeform
+
+from ..blender import attribute_io, attribute_names, display, mesh_io
+from ..blender.attribute_io import PointValues
+from ..blender.attribute_names import AttributeRefusedError
+from ..blender.welding import Weld
+from ..framework.run import Part, RefusedError, Run, group_weights, meshes_phrase, welded
+from ..framework.shared_settings import ridge_weights_of
+from .settings import solve_options
+
+SUFFIXES = ("_denoised", "_interpolated")
+VISIBLE = 1e-5
+"""A value changed by less to fit its range is not worth a word: solutions are exact to about that."""
+
+
+@dataclass
+class Surface:
+    """What the wheel gets of a mesh: its welded vertices and triangles, and a weight (l,) per triangle."""
+
+    weld: Weld
+    mesh: ridgeform.Mesh
+    face_weights: np.ndarray | None = None
+
+
+def surface_of(obj: bpy.types.Object) -> Surface:
+    """The surface of an object in Object Mode; `RefusedError` if the wheel cannot use it."""
+    coordinates = mesh_io.open_coordinates(obj).original
+    weld, _ = welded(obj, coordinates)
+    try:
+        return Surface(weld, ridgeform.Mesh(coordinates[weld.first].astype(np.float64), weld.triangles))
+    except ridgeform.RidgeformError as error:
+        raise RefusedError(f'"{obj.name}": {error}') from error
+
+
+@dataclass
+class Solved:
+    """What came of one mesh."""
+
+    values: np.ndarray
+    """Values (k, c) of the welded vertices."""
+    energy_before: float | None
+    energy_after: float
+    solution: ridgeform.Solution
+
+
+@dataclass(kw_only=True)
+class AttributePart(Part):
+    """One mesh of a run on an attribute."""
+
+    source: PointValues
+    weld: Weld
+    computed: np.ndarray
+    """Which vertices (n,) bool take the result."""
+    columns: np.ndarray
+    """Which components (k,) bool are computed."""
+    constants: np.ndarray
+    """The components (k,) where they are the same everywhere, and so were not computed."""
+    target: str = ""
+    """The name of the result."""
+
+    def merged(self) -> np.ndarray:
+        """The values (n, k) float32 to be written: the result, with the old bits where none was asked for."""
+        new = attribute_io.limited(self.source.data_type, self._full())
+        return np.where(self.computed[:, None], new.astype(np.float32), self.source.values)
+
+    def limited_vertices(self) -> int:
+        """How many vertices have a value that does not fit into the range of its type."""
+        full = self._full()
+        off = np.abs(attribute_io.limited(self.source.data_type, full) - full) > VISIBLE
+        return int((off.any(axis=1) & self.computed).sum())
+
+    def _full(self) -> np.ndarray:
+        full = np.repeat(self.constants[None].astype(np.float64), self.n_vertices, axis=0)
+        full[:, self.columns] = self.task.result.values[self.weld.vertex]
+        return full
+
+
+class AttributeRun(Run):
+    """A run of a tool on one attribute of each mesh."""
+
+    suffix: ClassVar[str]
+    """What the name of a new attribute ends with."""
+    done_word: ClassVar[str]
+
+    def _prepare_all(self, objects: Sequence[bpy.types.Object]) -> None:
+        self._in_edit_mode = bpy.context.mode == "EDIT_MESH"
+        with mesh_io.object_mode():
+            super()._prepare_all(objects)
+
+    def prepare(self, obj: bpy.types.Object) -> AttributePart:
+        """Read the attribute, the selection and the ridge paint of one mesh."""
+        try:
+            name = self.settings.attribute or attribute_names.default_name(obj, SUFFIXES)
+            source = attribute_io.read_values(obj, name)
+        except AttributeRefusedError as refusal:
+            raise RefusedError(str(refusal)) from refusal
+        if self.settings.output == "IN_PLACE":
+            reason = attribute_io.reason_locked(obj, source)
+            if reason is not None:
+                raise RefusedError(reason)
+        surface = surface_of(obj)
+        if self.settings.ridge_group:
+            painted = group_weights(obj, self.settings.ridge_group)
+            triangles = mesh_io.triangles(obj.data)[surface.weld.kept]
+            surface.face_weights = ridge_weights_of(painted, triangles, self.settings.avoid_ridges)
+        return self.pose(obj, source, surface)
+
+    @abstractmethod
+    def pose(self, obj: bpy.types.Object, source: PointValues, surface: Surface) -> AttributePart:
+        """Make the problem of one mesh; `RefusedError` if there is none to be solved."""
+
+    def selected(self, obj: bpy.types.Object) -> np.ndarray:
+        """Which vertices (n,) bool of a mesh, now in Object Mode, are selected."""
+        return mesh_io.selected_vertices(obj.data)
+
+    @property
+    def options(self) -> dict[str, object]:
+        """The keyword arguments for the wheel that are the same for every mesh."""
+        return solve_options(self.settings)
+
+    def write(self, parts: Sequence[AttributePart]) -> None:
+        """Write the results, and show them."""
+        with mesh_io.object_mode():
+            for part in parts:
+                in_place = self.settings.output == "IN_PLACE"
+                name = part.source.name
+                target = name if in_place else attribute_names.result_name(name, self.suffix)
+                part.target = attribute_io.write_values(part.object, part.source, part.merged(), target)
+                part.warnings += _notes(part)
+            notes = display.show([(part.object, part.target) for part in parts], self.settings)
+        for part, note in zip(parts, notes, strict=True):
+            part.warnings += note
+
+    def figures(self, part: AttributePart) -> dict[str, object]:
+        """Energies, gap, iterations, and the names of the attributes."""
+        solved = part.task.result
+        return {
+            "attribute": part.source.name,
+            "result": part.target,
+            "energy_before": solved.energy_before,
+            "energy_after": solved.energy_after,
+            "gap": float(solved.solution.gap),
+            "steps": int(solved.solution.iterations),
+            "status": str(solved.solution.status),
+        }
+
+    def headline(self, done: Sequence[dict[str, object]]) -> str:
+        """Which attribute of which mesh, energies, gap, time."""
+        names = sorted({str(entry["attribute"]) for entry in done})
+        results = sorted({str(entry["result"]) for entry in done})
+        into = f' into "{results[0]}"' if len(results) == 1 and results != names else ""
+        what = f'"{names[0]}"' if len(names) == 1 else f"{len(names)} attributes"
+        after = f"{sum(entry['energy_after'] for entry in done):.4g}"
+        befores = [entry["energy_before"] for entry in done if entry["energy_before"] is not None]
+        energy = f"{sum(befores):.4g} → {after}" if befores else after
+        gap = max(entry["gap"] for entry in done)
+        seconds = sum(entry["seconds"] for entry in done)
+        where = meshes_phrase(done)
+        return f"{self.done_word} {what} of {where}{into}: energy {energy}, gap {gap:.1g}, {seconds:.1f} s"
+
+
+def energy_on(mesh: ridgeform.Mesh, options: dict[str, object]) -> Callable[[np.ndarray], float]:
+    """The energy of values (k,) or (k, c) that the options stand for, on the edges it is solved on."""
+    edges = ridgeform.intrinsic_delaunay(mesh) if options["delaunay"] else mesh
+    return partial(ridgeform.energy, edges, kind=options["energy"], dual=options["dual"])
+
+
+def refuse_non_finite(obj: bpy.types.Object, source: PointValues, needed: np.ndarray) -> None:
+    """`RefusedError` if a value that is needed (n,) bool is not a finite number."""
+    broken = np.flatnonzero(needed & ~np.isfinite(source.values).all(axis=1))
+    if len(broken):
+        raise RefusedError(
+            f'"{source.name}" of "{obj.name}" is not a finite number at vertex {broken[0]} ({len(broken)} in '
+            "all): select these vertices and fill them in with Interpolate Attribute, Fill the Selection"
+        )
+
+
+def refuse_mixed(obj: bpy.types.Object, source: PointValues, needed: np.ndarray) -> None:
+    """`RefusedError` if a vertex that is needed (n,) bool has several colours at its face corners."""
+    mixed = np.flatnonzero(needed & source.mixed)
+    if len(mixed):
+        raise RefusedError(
+            f'The face corners of "{obj.name}" have different "{source.name}" at vertex {mixed[0]} '
+            f"({len(mixed)} in all): convert it to the domain Vertex with Object Data ▸ Color Attributes ▸ "
+            "Convert Attribute"
+        )
+
+
+def varying(values: np.ndarray) -> np.ndarray:
+    """Which columns (k,) bool of values (n, k) are not the same everywhere."""
+    return (values != values[:1]).any(axis=0)
+
+
+def as_argument(values: np.ndarray) -> np.ndarray:
+    """Values (k, c) as the wheel wants them: one column is (k,)."""
+    return values[:, 0] if values.shape[1] == 1 else values
+
+
+def _notes(part: AttributePart) -> list[str]:
+    notes = []
+    solution = part.task.result.solution
+    if solution.status == "inaccurate":
+        notes.append(f"the tolerance was not reached, the gap is {solution.gap:.1g}")
+    elif solution.status == "stopped":
+        notes.append("stopped early, what was reached is kept")
+    limited = part.limited_vertices()
+    if limited:
+        notes.append(f"values were limited to the range that they can have, at {limited} vertices")
+    return notes

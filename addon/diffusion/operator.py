@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The operators of diffusion curves: find them, redraw from them, export them."""
+
+from pathlib import Path
+
+import bpy
+import ridgeform
+from bpy.props import BoolProperty, FloatProperty, StringProperty
+from bpy_extras.io_utils import ExportHelper
+
+from ..blender import mesh_io
+from ..framework.run import RefusedError
+from ..framework.tool_operator import ToolOperator
+from . import curves_io, drawing, svg
+from .redraw_curves import read_on_mesh, redraw
+from .rows import draw_settings
+from .settings import DiffusionSettings
+from .tool import DiffusionCurves
+
+
+class RIDGEFORM_OT_diffusion_curves(DiffusionSettings, ToolOperator, bpy.types.Operator):  # noqa: N801
+    """Find the few curves, with a color on each side, that redraw the painted surface"""
+
+    bl_idname = "ridgeform.diffusion_curves"
+    bl_label = "Diffusion Curves"
+    bl_options = {"REGISTER", "UNDO", "PRESET"}
+    tool = DiffusionCurves
+    settings = DiffusionSettings
+    panel = "ridgeform_diffusion"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draw the redo panel."""
+        draw_settings(self.layout, self)
+
+
+def _pair(context: bpy.types.Context) -> tuple[bpy.types.Object, bpy.types.Object] | str:
+    """The mesh object and its diffusion curves, whichever of them is active, or why there are none."""
+    obj = context.object
+    if curves_io.is_curves(obj):
+        parent = obj.parent
+        if parent is None or parent.type != "MESH":
+            return f'"{obj.name}" is no child of a mesh: parent it to the mesh that it belongs to'
+        return parent, obj
+    if obj is None or obj.type != "MESH":
+        return "Select a mesh with diffusion curves, or the curves"
+    child = curves_io.curves_of(obj)
+    return (obj, child) if child is not None else f'"{obj.name}" has no diffusion curves: find them first'
+
+
+class _OnCurves:
+    """Mixin for an operator over a mesh with diffusion curves."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Whether there are curves; the tooltip says why not."""
+        pair = _pair(context)
+        if isinstance(pair, str):
+            cls.poll_message_set(pair)
+            return False
+        reason = cls.reason_against(pair[0])
+        if reason is not None:
+            cls.poll_message_set(reason)
+        return reason is None
+
+    @classmethod
+    def reason_against(cls, _obj: bpy.types.Object) -> str | None:
+        """Why the mesh cannot be used."""
+        return None
+
+
+class RIDGEFORM_OT_redraw_diffusion_curves(_OnCurves, bpy.types.Operator):  # noqa: N801
+    """Redraw the colors of the mesh from its diffusion curves as they are now"""
+
+    bl_idname = "ridgeform.redraw_diffusion_curves"
+    bl_label = "Redraw from Curves"
+    bl_options = {"REGISTER", "UNDO"}
+
+    show: BoolProperty(
+        name="Show Result",
+        description="Make the redrawn colors the active ones and show them in Solid shading",
+        default=True,
+    )
+
+    @classmethod
+    def reason_against(cls, obj: bpy.types.Object) -> str | None:
+        """Why the mesh cannot be written to."""
+        editable = obj.data.library is None and obj.data.override_library is None
+        return None if editable else f'"{obj.name}" is linked or overridden: make its mesh local first'
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Redraw."""
+        obj, child = _pair(context)
+        try:
+            name = redraw(obj, child)
+        except (RefusedError, curves_io.CurvesRefusedError, ridgeform.RidgeformError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        notes = drawing.show(obj, name) if self.show else []
+        self.report(
+            {"INFO"},
+            "; ".join([f'Redrew "{name}" of "{obj.name}" from {len(child.data.curves)} curves', *notes]),
+        )
+        return {"FINISHED"}
+
+
+class RIDGEFORM_OT_export_diffusion_svg(_OnCurves, bpy.types.Operator, ExportHelper):  # noqa: N801
+    """Draw the diffusion curves of a flat mesh into an SVG file, each with its two colors"""
+
+    bl_idname = "ridgeform.export_diffusion_svg"
+    bl_label = "Diffusion Curves (.svg)"
+    filename_ext = ".svg"
+
+    filter_glob: StringProperty(default="*.svg", options={"HIDDEN"})
+    width: FloatProperty(
+        name="Band Width",
+        description="Width of the two bands of color of a curve, in hundredths of the drawing's longer side",
+        default=0.8,
+        min=0.01,
+        max=20.0,
+        soft_max=5.0,
+    )
+    fill: BoolProperty(
+        name="Fill",
+        description="Draw the redrawn colors of the faces under the curves",
+        default=True,
+    )
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Write the file."""
+        obj, child = _pair(context)
+        try:
+            with mesh_io.object_mode():
+                _, points = read_on_mesh(obj, child)
+            text = svg.drawing(obj, child, points, self.width / 100.0, self.fill)
+            Path(self.filepath).write_text(text, encoding="utf-8")
+        except (RefusedError, curves_io.CurvesRefusedError, ridgeform.RidgeformError, OSError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self.report({"INFO"}, f"Wrote {len(child.data.curves)} curves to {self.filepath}")
+        return {"FINISHED"}

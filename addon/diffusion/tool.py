@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Diffusion curves of painted meshes: Rowe et al. 2024, section 7.6."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import bpy
+import numpy as np
+import ridgeform
+
+from ..attributes.attribute_run import Surface, surface_of
+from ..blender import mesh_io
+from ..blender.attribute_names import FACE_NUMBERS, AttributeRefusedError
+from ..blender.selection import Needs
+from ..framework.job import Task
+from ..framework.run import Part, RefusedError, Run, meshes_phrase
+from . import curves_io, drawing
+from .layout import curve_points
+from .sources import Colors, attribute_colors, image_colors
+
+EXACT = 120.0
+"""Decibels beyond which colours are exact, but for the rounding of single precision."""
+
+
+@dataclass(kw_only=True)
+class DiffusionPart(Part):
+    """One mesh of a run."""
+
+    surface: Surface
+    colors: Colors
+    alpha: float
+    """The alpha of the colours where it is the same everywhere, and so was not computed."""
+    target: str = ""
+    """The name of the rebuilt colours."""
+
+
+class DiffusionCurves(Run):
+    """One run of diffusion curves, on whole meshes."""
+
+    name = "diffusion_curves"
+    needs = Needs(coordinates=False, selection=False)
+
+    def _prepare_all(self, objects: Sequence[bpy.types.Object]) -> None:
+        with mesh_io.object_mode():
+            super()._prepare_all(objects)
+
+    def prepare(self, obj: bpy.types.Object) -> DiffusionPart:
+        """Read the colours and the regions of one mesh."""
+        try:
+            from_image = self.settings.source == "IMAGE"
+            colors = image_colors(obj) if from_image else attribute_colors(obj, self.settings.attribute)
+        except AttributeRefusedError as refusal:
+            raise RefusedError(str(refusal)) from refusal
+        surface = surface_of(obj)
+        # One of the vertices that lie in the same place, not their mean: see `attribute_colors`.
+        values = colors.values[surface.weld.first]
+        opaque = bool((values[:, 3] == values[0, 3]).all())
+        values = values[:, :3] if opaque else values
+        task = Task(obj.name, self._call(obj, surface, values), counted="stage")
+        return DiffusionPart(
+            obj,
+            task,
+            len(obj.data.vertices),
+            list(colors.notes),
+            surface=surface,
+            colors=colors,
+            alpha=float(colors.values[surface.weld.first[0], 3]),
+        )
+
+    def _call(self, obj: bpy.types.Object, surface: Surface, values: np.ndarray) -> partial:
+        settings = self.settings
+        faces = mesh_io.triangle_faces(obj.data)[surface.weld.kept]
+        if settings.regions == "COLORS":
+            regions = {
+                "n_regions": settings.count or None,
+                "min_faces": settings.least_faces,
+                "face_groups": faces,
+            }
+        else:
+            regions = {"labels": _face_labels(obj, settings)[faces]}
+        options = {
+            "fidelity": settings.fidelity,
+            "rims": settings.rims,
+            "refine": settings.refine,
+            "color_error": settings.color_error,
+        }
+        return partial(_drawn, surface.mesh, values, regions | options)
+
+    def write(self, parts: Sequence[DiffusionPart]) -> None:
+        """Write the curves as child objects and the rebuilt colours as an attribute, and show them."""
+        with mesh_io.object_mode():
+            for part in parts:
+                found = part.task.result
+                points = curve_points(found, part.surface.mesh, part.surface.weld, part.alpha)
+                child = curves_io.write_curves(part.object, points, part.colors.name)
+                part.target = drawing.write_corners(
+                    part.object, part.surface.weld, found.corners, part.colors.name, part.alpha
+                )
+                part.warnings += drawing.show(part.object, part.target) if self.settings.show else []
+                if not len(found.edges):
+                    part.warnings.append(f'there is one region only, so "{child.name}" has no curve')
+
+    def figures(self, part: DiffusionPart) -> dict[str, object]:
+        """How good the rebuilt colours are, and how many numbers the curves are."""
+        found = part.task.result
+        return {
+            "attribute": part.colors.name,
+            "result": part.target,
+            "curves": len(found.starts) - 1,
+            "regions": len(np.unique(found.labels)),
+            "psnr": float(found.psnr) if found.psnr < EXACT else None,
+            "numbers_before": int(found.n_numbers_before),
+            "numbers_after": int(found.n_numbers),
+            "steps": len(found.starts) - 1,
+            "status": "finished",
+        }
+
+    def headline(self, done: Sequence[dict[str, object]]) -> str:
+        """How many curves of which mesh, how few numbers they are, and how good they are."""
+        curves, before, after = (
+            sum(entry[key] for entry in done) for key in ("curves", "numbers_before", "numbers_after")
+        )
+        quality = [entry["psnr"] for entry in done if entry["psnr"] is not None]
+        error = f"PSNR {min(quality):.1f} dB" if quality else "no error"
+        seconds = sum(entry["seconds"] for entry in done)
+        where = meshes_phrase(done)
+        return f"{curves} curves of {where}: {after} numbers instead of {before}, {error}, {seconds:.1f} s"
+
+
+def _face_labels(obj: bpy.types.Object, settings: object) -> np.ndarray:
+    """The region (f,) of every face by its material slot or an attribute; `RefusedError` if there is none."""
+    mesh = obj.data
+    labels = np.empty(len(mesh.polygons), np.int32)
+    if settings.regions == "MATERIALS":
+        mesh.polygons.foreach_get("material_index", labels)
+        return labels
+    attribute = mesh.attributes.get(settings.region_attribute)
+    if attribute is None or (attribute.data_type, attribute.domain) != FACE_NUMBERS:
+        raise RefusedError(
+            f'"{obj.name}" has no attribute "{settings.region_attribute}" of whole numbers on its faces'
+        )
+    attribute.data.foreach_get("value", labels)
+    return labels
+
+
+def _drawn(
+    mesh: ridgeform.Mesh, values: np.ndarray, options: dict[str, object], progress: ridgeform.Progress
+) -> ridgeform.DiffusionCurves:
+    return ridgeform.diffusion_curves(mesh, values, progress=progress, **options)

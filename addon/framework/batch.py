@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The batch command: the tools on files, without a window.
+
+`blender --command ridgeform stylize FILES -o OUT` with the installed extension, or, from a checkout with the
+wheel and the `bpy` package installed, `python -m addon stylize FILES -o OUT`.
+"""
+
+import argparse
+import contextlib
+import ctypes
+import json
+import os
+import sys
+import time
+import traceback
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import bpy
+
+from ..blender import selection
+from . import files
+from .batch_options import TOOLS, parser, settings_from
+from .console import ProgressBar
+from .run import NO_RESULT, RefusedError, Run
+
+COMMAND = "ridgeform"
+POLL_SECONDS = 0.05
+INTERRUPTED = 130
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Run the command line; returns 0, 1 if a file failed, 2 if it is wrong, 130 if interrupted."""
+    try:
+        options = parser().parse_args(arguments)
+    except SystemExit as leaving:
+        return int(leaving.code or 0)
+    settings = settings_from(options)
+    failed = False
+    taken: set[Path] = set()
+    try:
+        with _clean_output(options.json) as emit:
+            for source in options.files:
+                record = _one_file(source, options, settings, taken)
+                failed |= record["error"] is not None
+                emit(record)
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    return 1 if failed else 0
+
+
+def _one_file(
+    source: Path, options: argparse.Namespace, settings: object, taken: set[Path]
+) -> dict[str, object]:
+    record: dict[str, object] = {
+        "file": str(source),
+        "output": None,
+        "vertices": None,
+        "faces": None,
+        "energy_before": None,
+        "energy_after": None,
+        "gap": None,
+        "seconds": None,
+        "warnings": [],
+        "error": None,
+        "meshes": [],
+    }
+    begin = time.perf_counter()
+    try:
+        target = _target(source, options)
+        if target in taken:
+            raise files.FileError(f"{target} is already the output of another file")
+        if target == source.resolve():
+            raise files.FileError(f"{source.name} would be overwritten: choose another output")
+        run = _run_file(source, TOOLS[options.tool].run, settings)
+        files.write_file(target)
+        taken.add(target)
+        record |= _record_of(run) | {"output": str(target)}
+        if run.errors:
+            record["error"] = "; ".join(run.errors)
+    except (files.FileError, RefusedError) as error:
+        record["error"] = str(error)
+    except Exception as error:
+        # A fault of the program: the other files are still worth doing.
+        traceback.print_exc()
+        record["error"] = f"{type(error).__name__}: {error}"
+    record["seconds"] = round(time.perf_counter() - begin, 3)
+    return record
+
+
+def _run_file(source: Path, tool: type[Run], settings: object) -> Run:
+    chosen = selection.usable(files.read_file(source), tool.needs)
+    run = tool(chosen.objects, settings, chosen.skipped)
+    run.job.start()
+    try:
+        with ProgressBar(source.name) as bar:
+            while run.job.is_running:
+                bar.show(run.job.fraction)
+                time.sleep(POLL_SECONDS)
+            bar.show(1.0)
+    except BaseException:
+        run.job.cancel()
+        raise
+    run.apply()
+    return run
+
+
+def _record_of(run: Run) -> dict[str, object]:
+    done = [entry for entry in run.summary if entry["status"] not in NO_RESULT]
+    warnings = [f'"{entry["name"]}": {note}' for entry in run.summary for note in entry["warnings"]]
+    return {
+        "vertices": sum(entry["vertices"] for entry in done),
+        "faces": sum(entry["faces"] for entry in done),
+        "energy_before": _total(done, "energy_before"),
+        "energy_after": _total(done, "energy_after"),
+        "gap": max((entry["gap"] for entry in done if entry["gap"] is not None), default=None),
+        "warnings": warnings + run.skipped,
+        "meshes": run.summary,
+    }
+
+
+def _total(entries: Sequence[dict[str, object]], key: str) -> float | None:
+    values = [entry[key] for entry in entries]
+    return None if None in values else sum(values)
+
+
+def _target(source: Path, options: argparse.Namespace) -> Path:
+    out: Path = options.output
+    into_folder = len(options.files) > 1 or options.format is not None or out.is_dir() or not out.suffix
+    target = out / (source.stem + (options.format or source.suffix.lower())) if into_folder else out
+    files.check_suffix(target)
+    return target.resolve()
+
+
+@contextlib.contextmanager
+def _clean_output(as_json: bool) -> Iterator[object]:
+    """Give a function that prints a record; with JSON, what Blender prints goes to standard error."""
+    if not as_json:
+        yield lambda record: print(_sentence(record), flush=True)
+        return
+    flush_output()
+    saved = os.dup(1)
+    os.dup2(2, 1)
+    try:
+        # Blender's add-ons print through Python, Blender itself through C: both are sent away.
+        with (
+            contextlib.redirect_stdout(sys.stderr),
+            os.fdopen(os.dup(saved), "w", encoding="utf-8") as stream,
+        ):
+            yield lambda record: print(json.dumps(record, ensure_ascii=False), file=stream, flush=True)
+    finally:
+        flush_output()
+        os.dup2(saved, 1)
+        os.close(saved)
+
+
+def flush_output() -> None:
+    """Write out what Python and Blender have printed; Blender's own output has a buffer in C."""
+    sys.stdout.flush()
+    ctypes.CDLL("ucrtbase" if os.name == "nt" else None).fflush(None)
+
+
+def _sentence(record: dict[str, object]) -> str:
+    if record["error"] is not None:
+        return f"{record['file']}: failed: {record['error']}"
+    notes = "".join(f"\n  note: {note}" for note in record["warnings"])
+    where = f"{record['file']} → {record['output']}"
+    parts = [f"{record['vertices']} vertices"]
+    if record["energy_after"] is not None:
+        before = "" if record["energy_before"] is None else f"{record['energy_before']:.4g} → "
+        parts.append(f"energy {before}{record['energy_after']:.4g}")
+    if record["gap"] is not None:
+        parts.append(f"gap {record['gap']:.1g}")
+    segments = [entry["segments"] for entry in record["meshes"] if "segments" in entry]
+    if segments:
+        parts.append(f"{sum(segments)} segments")
+    holes = [entry["holes"] for entry in record["meshes"] if "holes" in entry]
+    if holes:
+        parts.append(f"{sum(holes)} holes filled")
+    drawn = [entry for entry in record["meshes"] if "numbers_after" in entry]
+    if drawn:
+        after, before = (sum(entry[key] for entry in drawn) for key in ("numbers_after", "numbers_before"))
+        parts.append(f"{sum(entry['curves'] for entry in drawn)} curves, {after} numbers instead of {before}")
+    return f"{where}: {', '.join(parts)}, {record['seconds']:.1f} s{notes}"
+
+
+_command = None
+
+
+def register() -> None:
+    """Register `blender --command ridgeform`."""
+    global _command  # noqa: PLW0603
+    _command = bpy.utils.register_cli_command(COMMAND, main)
+
+
+def unregister() -> None:
+    """Unregister the command."""
+    bpy.utils.unregister_cli_command(_command)

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One run of a tool over some meshes: what all tools share from reading a mesh to reporting on it."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+import bpy
+import numpy as np
+import ridgeform
+
+from ..blender import mesh_io
+from ..blender.selection import MOVES
+from ..blender.welding import Weld, weld_seams
+from .job import Job, Task, store_summary
+
+NOT_BEGUN = "not begun"
+FAILED = "failed"
+NO_RESULT = {NOT_BEGUN, FAILED}
+"""What a summary says the status of a mesh is that has no result."""
+
+
+class RefusedError(Exception):
+    """A mesh that cannot be worked on; the message says why."""
+
+
+@dataclass
+class Part:
+    """One mesh of a run."""
+
+    object: bpy.types.Object
+    task: Task
+    n_vertices: int
+    warnings: list[str] = field(default_factory=list)
+
+
+class Run(ABC):
+    """Some meshes and one tool: prepare, let `job` run, then `apply` or `restore`.
+
+    `skipped` are sentences on objects that do not take part. Meshes that cannot be worked on are added to it,
+    unless none is left: then `RefusedError` is raised.
+    """
+
+    name: ClassVar[str]
+    """The tool's name in the summary."""
+    needs = MOVES
+    """What it needs of a mesh."""
+
+    def __init__(
+        self, objects: Sequence[bpy.types.Object], settings: object, skipped: Sequence[str] = ()
+    ) -> None:
+        """Read the meshes of the objects and prepare one task each."""
+        self.settings = settings
+        self.skipped = list(skipped)
+        self.parts: list[Part] = []
+        self._prepare_all(objects)
+        if not self.parts:
+            raise RefusedError(self.skipped[-1] if self.skipped else "Select a mesh object")
+        self.job = Job([part.task for part in self.parts])
+        self.summary: list[dict[str, object]] = []
+
+    def _prepare_all(self, objects: Sequence[bpy.types.Object]) -> None:
+        for obj in objects:
+            try:
+                self.parts.append(self.prepare(obj))
+            except RefusedError as refusal:
+                self.skipped.append(str(refusal))
+
+    @abstractmethod
+    def prepare(self, obj: bpy.types.Object) -> Part:
+        """Read one mesh and make its task; `RefusedError` if the tool has no use for it."""
+
+    @abstractmethod
+    def write(self, parts: Sequence[Part]) -> None:
+        """Write the results of those parts that have one."""
+
+    @abstractmethod
+    def figures(self, part: Part) -> dict[str, object]:
+        """What the summary says of a part that has a result: energies, gap, steps, status."""
+
+    @abstractmethod
+    def headline(self, done: Sequence[dict[str, object]]) -> str:
+        """The first words of the report on the summaries of the parts that are done."""
+
+    def preview(self) -> bool:
+        """Show how far the job is; whether there was something new."""
+        return False
+
+    def restore(self) -> None:  # noqa: B027
+        """Put everything back as it was; nothing to do for a tool that writes at the end only."""
+
+    @property
+    def done(self) -> list[Part]:
+        """The parts that have a result."""
+        return [part for part in self.parts if part.task.result is not None]
+
+    @property
+    def errors(self) -> list[str]:
+        """A sentence for each mesh that failed."""
+        return [
+            f'"{part.object.name}": {part.task.error}' for part in self.parts if part.task.error is not None
+        ]
+
+    def apply(self) -> None:
+        """Write the results; parts that failed or were never begun stay as they were.
+
+        An error that is not the wheel's own is a fault of the program: all is restored, and it is raised.
+        """
+        for part in self.parts:
+            if part.task.error is not None and not isinstance(part.task.error, ridgeform.RidgeformError):
+                self.restore()
+                raise part.task.error
+        self.write(self.done)
+        self.summary = [self._summary_of(part) for part in self.parts]
+        store_summary(self.summary)
+
+    def report(self) -> str:
+        """What happened, in one line, with what was skipped and why."""
+        done = [entry for entry in self.summary if entry["status"] not in NO_RESULT]
+        notes = [f'"{entry["name"]}": {note}' for entry in self.summary for note in entry["warnings"]]
+        idle = [f'"{entry["name"]}" was not begun' for entry in self.summary if entry["status"] == NOT_BEGUN]
+        return "; ".join([self.headline(done), *notes, *idle, *self.skipped, *self.errors])
+
+    def _summary_of(self, part: Part) -> dict[str, object]:
+        error = part.task.error
+        entry = {
+            "tool": self.name,
+            "name": part.object.name,
+            "vertices": part.n_vertices,
+            "faces": len(part.object.data.polygons),
+            "energy_before": None,
+            "energy_after": None,
+            "gap": None,
+            "steps": 0,
+            "status": NOT_BEGUN if error is None else FAILED,
+            "seconds": part.task.seconds,
+            "warnings": list(part.warnings),
+            "error": None if error is None else str(error),
+        }
+        return entry if part.task.result is None else entry | self.figures(part)
+
+
+def meshes_phrase(done: Sequence[dict[str, object]]) -> str:
+    """The name of the one mesh that is done, or how many there are."""
+    return f'"{done[0]["name"]}"' if len(done) == 1 else f"{len(done)} meshes"
+
+
+def welded(
+    obj: bpy.types.Object, coordinates: np.ndarray, triangles: np.ndarray | None = None
+) -> tuple[Weld, np.ndarray]:
+    """The mesh of an object with its seams welded, and all its loop triangles (m, 3) int32, if not given.
+
+    `RefusedError` for a mesh without faces, or with a coordinate (n, 3) that is not a finite number.
+    """
+    triangles = mesh_io.triangles(obj.data) if triangles is None else triangles
+    if len(triangles) == 0:
+        raise RefusedError(f'"{obj.name}" has no faces')
+    if not np.isfinite(coordinates).all():
+        broken = np.flatnonzero(~np.isfinite(coordinates).all(axis=1))
+        raise RefusedError(
+            f'Vertex {broken[0]} of "{obj.name}" has a coordinate that is not a finite number '
+            f"({len(broken)} in all): delete or move it"
+        )
+    return weld_seams(coordinates, triangles, mesh_io.border_vertices(obj.data)), triangles
+
+
+def group_weights(obj: bpy.types.Object, name: str) -> np.ndarray:
+    """The weights (n,) of a vertex group, 0 outside it; `RefusedError` if the object has no such group."""
+    if name not in obj.vertex_groups:
+        raise RefusedError(f'"{obj.name}" has no vertex group "{name}"')
+    return mesh_io.group_weights(obj, name)

@@ -1,0 +1,6 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Segment: the parts of a shape or an attribute, and what is made of them on a mesh in Object Mode.
+
+`labels` (f,) int32 are the segments of the faces, -1 for none; `taking` (f,) bool says which faces took part,
+all others keep what they have.
+"""

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Segments as attributes, face sets, vertex groups and edge marks."""
+
+from collections.abc import Iterable
+
+import bpy
+import numpy as np
+
+from ..blender import mesh_io
+
+SEGMENT = "ridgeform_segment"
+"""The face attribute with the segments."""
+INDICATOR = "ridgeform_indicator"
+MARKED = "ridgeform_marked"
+"""The edge attribute that says which marks are ours: a bit for each of `MARKS`."""
+FACE_SET = ".sculpt_face_set"
+GROUP = "ridgeform_segment_"
+"""What names of vertex groups begin with; the number of the segment follows."""
+MARKS = {"SEAMS": (1, "use_seam"), "SHARP": (2, "use_edge_sharp")}
+"""Kinds of marks: their bit, and Blender's name of the flag."""
+_KINDS = {"INT": np.int32, "FLOAT": np.float32}
+
+
+def read_ints(mesh: bpy.types.Mesh, name: str, domain: str, default: int) -> np.ndarray:
+    """Values int32 of an attribute; the default everywhere if none has this name, type and domain."""
+    n = len(mesh.polygons) if domain == "FACE" else len(mesh.edges)
+    values = np.full(n, default, np.int32)
+    attribute = mesh.attributes.get(name)
+    if attribute is not None and (attribute.data_type, attribute.domain) == ("INT", domain):
+        attribute.data.foreach_get("value", values)
+    return values
+
+
+def write(mesh: bpy.types.Mesh, name: str, data_type: str, domain: str, values: np.ndarray) -> None:
+    """Store numbers in an attribute of this name; one of another type or domain is replaced."""
+    attribute = mesh.attributes.get(name)
+    if attribute is not None and (attribute.data_type, attribute.domain) != (data_type, domain):
+        mesh.attributes.remove(attribute)
+        attribute = None
+    attribute = attribute or mesh.attributes.new(name, data_type, domain)
+    attribute.data.foreach_set("value", np.ascontiguousarray(values, _KINDS[data_type]))
+
+
+def merged_labels(mesh: bpy.types.Mesh, labels: np.ndarray, taking: np.ndarray) -> np.ndarray:
+    """Labels (f,) for the attribute: the new ones after the old ones of faces that took no part."""
+    if taking.all():
+        return labels
+    kept = read_ints(mesh, SEGMENT, "FACE", -1)
+    first = 1 + kept[~taking].max(initial=-1)
+    return np.where(taking & (labels >= 0), labels + first, np.where(taking, -1, kept)).astype(np.int32)
+
+
+def write_face_sets(mesh: bpy.types.Mesh, labels: np.ndarray, taking: np.ndarray) -> None:
+    """Make each segment a face set, with numbers above those of faces that took no part."""
+    sets = read_ints(mesh, FACE_SET, "FACE", 1)
+    first = 1 + sets[~taking].max(initial=0)
+    sets[taking] = labels[taking] + first
+    write(mesh, FACE_SET, "INT", "FACE", sets)
+
+
+def write_groups(obj: bpy.types.Object, labels: np.ndarray) -> None:
+    """Make each segment of all labels (f,) a vertex group, and take away those of an earlier run."""
+    mesh = obj.data
+    for group in [group for group in obj.vertex_groups if _is_own(group.name)]:
+        obj.vertex_groups.remove(group)
+    _, vertices, _ = mesh_io.face_corners(mesh)
+    corner_labels = labels[_corner_faces(mesh)]
+    for segment in np.unique(labels[labels >= 0]).tolist():
+        group = obj.vertex_groups.new(name=f"{GROUP}{segment}")
+        group.add(np.unique(vertices[corner_labels == segment]).tolist(), 1.0, "REPLACE")
+
+
+def _is_own(name: str) -> bool:
+    return name.startswith(GROUP) and name.removeprefix(GROUP).isdecimal()
+
+
+def border_edges(mesh: bpy.types.Mesh, labels: np.ndarray) -> np.ndarray:
+    """Which edges (k,) bool lie between faces of two segments; faces with the label -1 do not count."""
+    _, _, edge = mesh_io.face_corners(mesh)
+    corner_labels = labels[_corner_faces(mesh)]
+    counts = corner_labels >= 0
+    low = np.full(len(mesh.edges), np.iinfo(np.int32).max)
+    high = np.full(len(mesh.edges), -1)
+    np.minimum.at(low, edge[counts], corner_labels[counts])
+    np.maximum.at(high, edge[counts], corner_labels[counts])
+    return (high >= 0) & (low < high)
+
+
+def mark_borders(mesh: bpy.types.Mesh, borders: np.ndarray, free: np.ndarray, kinds: Iterable[str]) -> None:
+    """Mark border edges (k,) bool; of the marks that a run has made, those on other `free` edges go."""
+    ours = read_ints(mesh, MARKED, "EDGE", 0)
+    for kind in kinds:
+        bit, flag = MARKS[kind]
+        marked = np.zeros(len(mesh.edges), bool)
+        mesh.edges.foreach_get(flag, marked)
+        stale = (ours & bit > 0) & free & ~borders
+        marked &= ~stale
+        ours[stale] &= ~bit
+        ours[borders & ~marked] |= bit
+        mesh.edges.foreach_set(flag, marked | borders)
+    write(mesh, MARKED, "INT", "EDGE", ours)
+
+
+def edges_within(mesh: bpy.types.Mesh, taking: np.ndarray) -> np.ndarray:
+    """Which edges (k,) bool have only faces that take part."""
+    _, _, edge = mesh_io.face_corners(mesh)
+    within = np.ones(len(mesh.edges), bool)
+    within[edge[~taking[_corner_faces(mesh)]]] = False
+    return within
+
+
+def _corner_faces(mesh: bpy.types.Mesh) -> np.ndarray:
+    """The face (c,) of each corner."""
+    totals = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_total", totals)
+    return np.repeat(np.arange(len(totals)), totals)

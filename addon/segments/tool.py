@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Segmenting a shape or an attribute: Rowe et al. 2024, eq. (41), the selected faces only in Edit Mode."""
+
+import hashlib
+from collections import OrderedDict
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import bpy
+import numpy as np
+import ridgeform
+
+from ..attributes.attribute_run import (
+    Surface,
+    as_argument,
+    refuse_mixed,
+    refuse_non_finite,
+    surface_of,
+    varying,
+)
+from ..blender import attribute_io, attribute_names, display, mesh_io
+from ..blender.attribute_io import PointValues
+from ..blender.attribute_names import AttributeRefusedError
+from ..blender.selection import Needs
+from ..blender.welding import Weld
+from ..framework.job import Task
+from ..framework.run import Part, RefusedError, Run, group_weights, meshes_phrase
+from ..framework.shared_settings import ridge_weights_of
+from . import layers, slots
+from .parts import separate
+from .settings import segment_options
+
+SUFFIX = "_sharpened"
+KEY_NAME = "Sharpened"
+MEMORY = 4
+"""Results that are kept, so that their number of segments changes at once; each is as large as its mesh."""
+
+
+@dataclass(kw_only=True)
+class SegmentPart(Part):
+    """One mesh of a run."""
+
+    weld: Weld
+    faces: np.ndarray
+    """The face (l,) of each welded triangle."""
+    areas: np.ndarray
+    """The area (l,) of each welded triangle."""
+    taking: np.ndarray
+    """Which faces (f,) bool take part."""
+    source: PointValues | None
+    """What the segments are found on, if not the shape."""
+    columns: np.ndarray | None = None
+    """Which components (k,) bool of it vary."""
+    n_segments: int = 0
+
+    def face_labels(self, labels: np.ndarray) -> np.ndarray:
+        """The segment (f,) of each face, from 0: that of most of its area, given the triangles', or -1."""
+        chosen = labels >= 0
+        if not chosen.any():
+            return np.full(len(self.taking), -1, np.int32)
+        count = int(labels.max()) + 1
+        keys, place = np.unique(
+            self.faces[chosen].astype(np.int64) * count + labels[chosen], return_inverse=True
+        )
+        area = np.bincount(place, weights=self.areas[chosen])
+        # Sorted by face and then area: the last entry of a face is its largest.
+        order = np.lexsort((area, keys // count))
+        result = np.full(len(self.taking), -1, np.int64)
+        result[keys[order] // count] = keys[order] % count
+        result[~self.taking] = -1
+        found, compact = np.unique(result, return_inverse=True)
+        return (compact.reshape(-1) - int(found[0] == -1)).astype(np.int32)
+
+    def face_means(self, values: np.ndarray) -> np.ndarray:
+        """The mean (f,) over the area of values (l,) of triangles."""
+        n = len(self.taking)
+        weights = self.areas + np.finfo(float).tiny
+        total = np.bincount(self.faces, weights=weights, minlength=n)
+        sums = np.bincount(self.faces, weights=weights * values, minlength=n)
+        return np.divide(sums, total, out=np.ones(n), where=total > 0)
+
+
+class Segmenting(Run):
+    """One run of segmenting."""
+
+    name = "segment"
+    needs = Needs(coordinates=False)
+
+    def _prepare_all(self, objects: Sequence[bpy.types.Object]) -> None:
+        self._in_edit_mode = bpy.context.mode == "EDIT_MESH"
+        with mesh_io.object_mode():
+            super()._prepare_all(objects)
+
+    def prepare(self, obj: bpy.types.Object) -> SegmentPart:
+        """Read shape or attribute, selection and paint of one mesh."""
+        taking = (
+            mesh_io.selected_faces(obj.data) if self._in_edit_mode else np.ones(len(obj.data.polygons), bool)
+        )
+        if not taking.any():
+            raise RefusedError(f'No face of "{obj.name}" is selected: select the faces to segment')
+        surface = surface_of(obj)
+        weld = surface.weld
+        faces = mesh_io.triangle_faces(obj.data)[weld.kept]
+        options = segment_options(self.settings)
+        source, columns = None, None
+        if self.settings.source == "ATTRIBUTE":
+            source = self._read_source(obj)
+            columns = varying(source.values)
+            if not columns.any():
+                raise RefusedError(f'"{source.name}" of "{obj.name}" has the same value everywhere')
+            values = np.stack([weld.mean_of(column) for column in source.values[:, columns].T], axis=1)
+            options["values"] = as_argument(values)
+        if self.settings.ridge_group:
+            painted = group_weights(obj, self.settings.ridge_group)
+            triangles = mesh_io.triangles(obj.data)[weld.kept]
+            options["face_weights"] = ridge_weights_of(painted, triangles, self.settings.avoid_ridges)
+        if not taking.all():
+            options["faces"] = taking[faces]
+        task = Task(obj.name, partial(_segmented, surface, options), counted="iteration")
+        part = SegmentPart(
+            obj,
+            task,
+            len(obj.data.vertices),
+            weld=weld,
+            faces=faces,
+            areas=_areas(surface.mesh),
+            taking=taking,
+            source=source,
+            columns=columns,
+        )
+        return part
+
+    def _read_source(self, obj: bpy.types.Object) -> PointValues:
+        try:
+            name = self.settings.attribute or attribute_names.default_name(obj, (SUFFIX,))
+            source = attribute_io.read_values(obj, name)
+        except AttributeRefusedError as refusal:
+            raise RefusedError(str(refusal)) from refusal
+        everywhere = np.ones(len(source.values), bool)
+        refuse_mixed(obj, source, everywhere)
+        refuse_non_finite(obj, source, everywhere)
+        return source
+
+    def write(self, parts: Sequence[SegmentPart]) -> None:
+        """Write what was asked for."""
+        with mesh_io.object_mode():
+            for part in parts:
+                self._write_one(part)
+        if "MATERIALS" in self.settings.outputs and parts:
+            display.show_materials()
+
+    def _write_one(self, part: SegmentPart) -> None:
+        mesh, found, outputs = part.object.data, part.task.result, self.settings.outputs
+        labels = found.labels
+        if self.settings.use_count:
+            labels = found.labels_at(self.settings.count)
+        labels = part.face_labels(labels)
+        part.n_segments = int(labels.max()) + 1
+        part.warnings += self._notes(part)
+        taking = part.taking & (labels >= 0)
+        whole = layers.merged_labels(mesh, labels, part.taking)
+        if "FACE_SETS" in outputs:
+            layers.write_face_sets(mesh, labels, taking)
+        layers.write(mesh, layers.SEGMENT, "INT", "FACE", whole)
+        marks = [kind for kind in layers.MARKS if kind in outputs]
+        if marks:
+            borders = layers.border_edges(mesh, labels)
+            layers.mark_borders(mesh, borders, layers.edges_within(mesh, part.taking), marks)
+        if "VERTEX_GROUPS" in outputs:
+            layers.write_groups(part.object, whole)
+        if "INDICATOR" in outputs:
+            layers.write(mesh, layers.INDICATOR, "FLOAT", "FACE", part.face_means(found.indicator))
+        if "SHARPENED" in outputs:
+            _write_sharpened(part)
+        if "MATERIALS" in outputs:
+            slots.assign(mesh, labels, taking)
+        mesh.update()
+        if "OBJECTS" in outputs and not self._in_edit_mode:
+            _separate(part, labels)
+
+    def _notes(self, part: SegmentPart) -> list[str]:
+        notes = []
+        if self.settings.use_count and part.n_segments != self.settings.count:
+            fewest, most = part.task.result.range
+            notes.append(f"{self.settings.count} segments were asked for, {fewest} to {most} are possible")
+        if part.task.result.status == "inaccurate":
+            notes.append("the tolerance was not reached")
+        elif part.task.result.status == "stopped":
+            notes.append("stopped early, what was reached is kept")
+        if "OBJECTS" in self.settings.outputs and self._in_edit_mode:
+            notes.append("segments become objects in Object Mode only")
+        return notes
+
+    def figures(self, part: SegmentPart) -> dict[str, object]:
+        """How many segments there are, and from how few to how many there might be."""
+        found = part.task.result
+        return {
+            "attribute": part.source.name if part.source is not None else None,
+            "segments": part.n_segments,
+            "possible": list(map(int, found.range)),
+            "noise": float(found.noise),
+            "steps": int(found.alternations),
+            "status": str(found.status),
+        }
+
+    def headline(self, done: Sequence[dict[str, object]]) -> str:
+        """How many segments of which mesh, how many there might be, time."""
+        count = sum(entry["segments"] for entry in done)
+        word = "segment" if count == 1 else "segments"
+        fewest, most = (sum(ends) for ends in zip(*(entry["possible"] for entry in done), strict=True))
+        seconds = sum(entry["seconds"] for entry in done)
+        where = meshes_phrase(done)
+        return f"{count} {word} on {where} ({fewest} to {most} are possible), {seconds:.1f} s"
+
+
+_known: OrderedDict[bytes, ridgeform.Segmentation] = OrderedDict()
+
+
+def forget() -> None:
+    """Let go of the results that are kept."""
+    _known.clear()
+
+
+def _segmented(
+    surface: Surface, options: dict[str, object], progress: ridgeform.Progress
+) -> ridgeform.Segmentation:
+    """The result for a mesh and options; the same ones again are found by all that goes in, bit by bit."""
+    key = _digest(surface, options)
+    if key in _known:
+        _known.move_to_end(key)
+        return _known[key]
+    found = ridgeform.segment(surface.mesh, progress=progress, **options)
+    if found.status != "stopped":
+        _known[key] = found
+        while len(_known) > MEMORY:
+            _known.popitem(last=False)
+    return found
+
+
+def _digest(surface: Surface, options: dict[str, object]) -> bytes:
+    total = hashlib.blake2b(surface.mesh.vertices.tobytes())
+    total.update(surface.mesh.faces.tobytes())
+    for name in sorted(options):
+        value = options[name]
+        total.update(name.encode())
+        if isinstance(value, np.ndarray):
+            total.update(repr((value.dtype.str, value.shape)).encode() + value.tobytes())
+        else:
+            total.update(repr(value).encode())
+    return total.digest()
+
+
+def _areas(mesh: ridgeform.Mesh) -> np.ndarray:
+    a, b, c = (mesh.vertices[mesh.faces[:, corner]] for corner in range(3))
+    return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+
+
+def _write_sharpened(part: SegmentPart) -> None:
+    values = part.task.result.values
+    if part.source is None:
+        mesh_io.add_shape_key(part.object, values[part.weld.vertex].astype(np.float32), KEY_NAME)
+        return
+    full = part.source.values.astype(np.float64)
+    full[:, part.columns] = values.reshape(len(values), -1)[part.weld.vertex]
+    name = attribute_names.result_name(part.source.name, SUFFIX)
+    limited = attribute_io.limited(part.source.data_type, full)
+    attribute_io.write_values(part.object, part.source, limited.astype(np.float32), name)
+
+
+def _separate(part: SegmentPart, labels: np.ndarray) -> None:
+    made = separate(part.object, labels)
+    if len(made) > 1:
+        part.warnings.append(f"separated into {len(made)} objects")

@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Stylizing meshes piecewise flat: Rowe et al. 2024, eq. (24), from reading a mesh to writing it back."""
+
+import contextlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import bpy
+import numpy as np
+import ridgeform
+
+from ..blender import mesh_io
+from ..blender.welding import Weld
+from ..framework.job import Task
+from ..framework.run import Part, RefusedError, Run, group_weights, meshes_phrase, welded
+from ..framework.shared_settings import ridge_weights_of
+from .reduction import reduce_mesh
+from .ridges import ridge_edges
+from .settings import stylize_options
+from .volume import keep_volume
+
+KEY_NAME = "Stylized"
+UNEVEN_SCALE = 1.1
+"""Object scales that differ by more than this ratio visibly change which facets the flow prefers."""
+
+
+@dataclass(kw_only=True)
+class FlowPart(Part):
+    """One mesh of a run of stylize."""
+
+    coordinates: mesh_io.Coordinates
+    weld: Weld
+    free: np.ndarray
+    """Which vertices (n,) bool may move."""
+
+    def merged(self, vertices: np.ndarray) -> np.ndarray:
+        """Coordinates (n, 3) float32 from welded vertices, with the old bits where none may move."""
+        new = np.asarray(vertices, np.float32)[self.weld.vertex]
+        return np.where(self.free[:, None], new, self.coordinates.original)
+
+
+class Stylization(Run):
+    """One run of stylize: the flow on each mesh, its steps shown as they are done, then the last steps."""
+
+    name = "stylize"
+
+    def __init__(
+        self, objects: Sequence[bpy.types.Object], settings: object, skipped: Sequence[str] = ()
+    ) -> None:
+        """Read the meshes of the objects and prepare one task each."""
+        super().__init__(objects, settings, skipped)
+        self._shown: dict[int, tuple[int, float]] = {}
+
+    def prepare(self, obj: bpy.types.Object) -> FlowPart:
+        """Read coordinates, selection, mask and ridge paint of one mesh."""
+        return _prepare(obj, self.settings)
+
+    def preview(self) -> bool:
+        """Write the vertices after the last finished step of every part; whether any has moved on."""
+        moved = False
+        for index, part in enumerate(self.parts):
+            progress = part.task.progress
+            mark = (progress.iteration, progress.fraction)
+            if not part.task.started or self._shown.get(index) == mark:
+                continue
+            vertices = progress.snapshot()
+            if vertices is not None:
+                part.coordinates.write(part.merged(vertices))
+                self._shown[index] = mark
+                moved = True
+        return moved
+
+    def restore(self) -> None:
+        """Put back every mesh that is still there, bit by bit."""
+        for part in self.parts:
+            # An object whose file was closed, or that a script deleted meanwhile, needs nothing put back.
+            with contextlib.suppress(ReferenceError):
+                part.coordinates.restore()
+
+    @property
+    def steps_done(self) -> int:
+        """The most flow steps that any part has made."""
+        return max((part.task.result.iterations for part in self.done), default=0)
+
+    def write(self, parts: Sequence[FlowPart]) -> None:
+        """Write the results and do the last steps; parts without a result are restored."""
+        for part in self.parts:
+            if part.task.result is None:
+                part.coordinates.restore()
+        _write_results(parts, self.settings)
+
+    def figures(self, part: FlowPart) -> dict[str, object]:
+        """Energy before and after, the largest gap of any step, and how many steps were made."""
+        result = part.task.result
+        return {
+            "energy_before": float(result.energy[0]),
+            "energy_after": float(result.energy[-1]),
+            "gap": float(result.gap.max()) if len(result.gap) else 0.0,
+            "steps": int(result.iterations),
+            "status": str(result.status),
+        }
+
+    def headline(self, done: Sequence[dict[str, object]]) -> str:
+        """Energy before and after, gap, steps, time."""
+        before = sum(entry["energy_before"] for entry in done)
+        after = sum(entry["energy_after"] for entry in done)
+        gap = max((entry["gap"] for entry in done), default=0.0)
+        steps = max((entry["steps"] for entry in done), default=0)
+        seconds = sum(entry["seconds"] for entry in done)
+        energies = f"energy {before:.4g} → {after:.4g}, gap {gap:.1g}"
+        return f"Stylized {meshes_phrase(done)}: {energies}, {steps} steps, {seconds:.1f} s"
+
+
+def stylize_objects(
+    objects: Sequence[bpy.types.Object], settings: object, skipped: Sequence[str] = ()
+) -> Stylization:
+    """Stylize these objects here and now, without a window; `RefusedError` if none of them can be."""
+    run = Stylization(objects, settings, skipped)
+    run.job.run()
+    run.apply()
+    return run
+
+
+def _prepare(obj: bpy.types.Object, settings: object) -> FlowPart:
+    mesh = obj.data
+    mesh_io.flush_edit_mode(obj)
+    coordinates = mesh_io.open_coordinates(obj)
+    vertices = coordinates.original
+    weld, triangles = welded(obj, vertices)
+    free = mesh_io.selected_vertices(mesh) if mesh.is_editmode else np.ones(len(vertices), bool)
+    options = stylize_options(settings)
+    if settings.strength_group:
+        strength = weld.mean_of(group_weights(obj, settings.strength_group))
+        free &= strength[weld.vertex] > 0
+        options["strength"] = strength
+    if settings.ridge_group:
+        painted = group_weights(obj, settings.ridge_group)
+        options["ridge_weights"] = ridge_weights_of(painted, triangles[weld.kept], settings.avoid_ridges)
+    moving = weld.all_of(free)
+    if not moving.any():
+        raise RefusedError(f'No vertex of "{obj.name}" may move: the mask is empty where it is selected')
+    if not moving.all():
+        options["fixed"] = ~moving
+    task = Task(obj.name, partial(_flow, vertices[weld.first], weld.triangles, options))
+    part = FlowPart(obj, task, len(vertices), coordinates=coordinates, weld=weld, free=moving[weld.vertex])
+    scales = np.abs(obj.matrix_world.to_scale())
+    if scales.max() > UNEVEN_SCALE * scales.min():
+        part.warnings.append(
+            "its scale is uneven, so facets follow the unscaled shape (apply the scale to avoid that)"
+        )
+    return part
+
+
+def _flow(
+    vertices: np.ndarray, triangles: np.ndarray, options: dict[str, object], progress: ridgeform.Progress
+) -> ridgeform.Stylized:
+    mesh = ridgeform.Mesh(vertices.astype(np.float64), triangles)
+    return ridgeform.stylize(mesh, **options, progress=progress)
+
+
+def _write_results(parts: Sequence[FlowPart], settings: object) -> None:
+    if settings.output != "SHAPE_KEY":
+        for part in parts:
+            _write_result(part, settings)
+        return
+    for part in parts:
+        part.coordinates.restore()
+    # Shape keys cannot be made in Edit Mode.
+    with mesh_io.object_mode():
+        for part in parts:
+            _write_result(part, settings)
+
+
+def _write_result(part: FlowPart, settings: object) -> None:
+    result = part.task.result
+    if result.status == "collapsed":
+        part.warnings.append(
+            f"the shape collapsed, step {result.iterations} is kept: less strength or fewer steps avoid it"
+        )
+    elif result.status == "converged":
+        part.warnings.append(f"nothing moved any more after step {result.iterations}")
+    coordinates = part.merged(result.vertices)
+    if settings.keep_volume:
+        if part.free.all():
+            first = part.weld.first
+            scaled, reason = keep_volume(
+                part.coordinates.original[first], coordinates[first], part.weld.triangles
+            )
+            coordinates = part.merged(scaled)
+        else:
+            reason = "the volume was not kept, because only a part of the mesh was free to move"
+        if reason is not None:
+            part.warnings.append(reason)
+    if settings.output == "SHAPE_KEY":
+        mesh_io.add_shape_key(part.object, coordinates, KEY_NAME)
+    else:
+        part.coordinates.write(coordinates)
+    if settings.reduce:
+        note = reduce_mesh(part.object, settings.reduce_ratio)
+        if note is not None:
+            part.warnings.append(note)
+    if settings.marks:
+        _mark_ridges(part, settings)
+
+
+def _mark_ridges(part: FlowPart, settings: object) -> None:
+    obj = part.object
+    mesh_io.flush_edit_mode(obj)
+    ends = mesh_io.edges(obj.data)
+    coordinates = mesh_io.open_coordinates(obj).original
+    ridges = ridge_edges(coordinates, mesh_io.face_corners(obj.data), len(ends), settings.mark_angle)
+    if len(coordinates) == len(part.free):
+        ridges &= part.free[ends].all(axis=1)
+    mesh_io.mark_edges(obj.data, ridges, settings.marks)
