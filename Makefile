@@ -2,12 +2,14 @@
 PYTHON ?= python3
 RUN = @$(PYTHON) scripts/setup_env.py
 
-.PHONY: help demo test lint bench bench-holes bench-segments extension wheel fixtures pictures gallery
+.PHONY: help demo test lint bench bench-holes bench-segments notices advisories extension wheel fixtures pictures gallery
 
 help:
 	@echo "make demo        stylize a real scan in Blender, without a window: out/demo.png, out/demo.blend"
 	@echo "make test        all tests: Rust, the wheel, the extension in every Blender found"
 	@echo "make lint        formatting and lints of Rust and Python"
+	@echo "make notices     write the licences of all dependencies again: rust/THIRD-PARTY-NOTICES.txt"
+	@echo "make advisories  ask the database of known vulnerabilities about the dependencies; needs the network"
 	@echo "make bench       measure against peers: benchmarks/results.md, the table in the README"
 	@echo "                 ARGS=--quick: a minute, keeps nothing; ARGS=--large: a million vertices as well"
 	@echo "make bench-holes fill holes with known truth by every tool: benchmarks/holes.md"
@@ -26,6 +28,12 @@ test:
 
 lint:
 	$(RUN) scripts/lint.py
+
+notices:
+	$(RUN) scripts/notices.py
+
+advisories:
+	$(RUN) scripts/advisories.py
 
 bench:
 	$(RUN) benchmarks/run.py $(ARGS)

@@ -16,6 +16,7 @@ import sys
 from pathlib import Path
 
 from build_wheel import build_wheel
+from notices import NOTICES, extension_notices
 from setup_env import environments
 from workspace import ROOT, STATE, digest, files_in, is_current, run, stop, version
 
@@ -90,6 +91,7 @@ def stage(wheels: list[Path], targets: list[str]) -> None:
     (STAGE / "wheels").mkdir()
     for wheel in wheels:
         shutil.copy2(wheel, STAGE / "wheels")
+    (STAGE / NOTICES.name).write_text(extension_notices(wheels), encoding="utf-8")
     names = sorted({f"./wheels/{wheel.name}" for wheel in wheels})
     manifest = STAGE / "blender_manifest.toml"
     text = manifest.read_text(encoding="utf-8")
@@ -127,7 +129,7 @@ def build_extension(wheels_folder: Path | None = None) -> list[Path]:
     targets = sorted({target_of(wheel) for wheel in own})
     wheels = own + [wheel for target in targets for wheel in bundled_wheels(target)]
     stamp = STATE / "extension.stamp"
-    wanted = digest(files_in(ROOT / "addon") + wheels + [Path(__file__)], version())
+    wanted = digest([*files_in(ROOT / "addon"), NOTICES, *wheels, Path(__file__)], version())
     built = sorted(EXTENSION.glob("*.zip"))
     if is_current(stamp, wanted) and built:
         return built

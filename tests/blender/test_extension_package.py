@@ -80,8 +80,27 @@ def test_native_module_asks_for_no_newer_glibc_than_blender(package):
 def test_only_sources_licence_manifest_and_wheels(package):
     names = [name for name in package.namelist() if not name.endswith("/")]
     assert "LICENSE" in names
-    odd = [name for name in names if not re.search(r"\.(py|whl)$|^LICENSE$|^blender_manifest\.toml$", name)]
+    odd = [
+        name
+        for name in names
+        if not re.search(r"\.(py|whl)$|^LICENSE$|^blender_manifest\.toml$|^THIRD-PARTY-NOTICES\.txt$", name)
+    ]
     assert not odd
+
+
+def test_notices_of_all_that_is_packed(package):
+    said = package.read("THIRD-PARTY-NOTICES.txt").decode()
+    for name in package.namelist():
+        if name.endswith(".whl") and "/ridgeform-" not in name:
+            project, version = Path(name).name.split("-")[:2]
+            assert f"\n{project} {version}\n" in said
+    (own,) = (name for name in package.namelist() if "/ridgeform-" in name)
+    with package.open(own) as stream, zipfile.ZipFile(stream) as wheel:
+        (inside,) = (name for name in wheel.namelist() if name.endswith("THIRD-PARTY-NOTICES.txt"))
+        linked = wheel.read(inside).decode().strip()
+    assert linked in said
+    for crate in ("clarabel 0.", "faer 0.", "numpy 0.", "pyo3 0."):
+        assert f"\n{crate}" in linked
 
 
 def test_every_source_names_its_licence_and_breaks_no_rule(package):
