@@ -2,9 +2,9 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use criterion::{criterion_group, criterion_main, BatchSize, Criterion};
+use ridgeform_core::linear::cholesky::Cholesky;
 use ridgeform_core::operators::{voronoi_mass, Dual, HessianPattern};
 use ridgeform_core::shapes;
-use ridgeform_core::solve::cholesky::Cholesky;
 use ridgeform_core::solve::normal_matrix::NormalMatrix;
 
 fn factorisation(criterion: &mut Criterion) {

@@ -3,12 +3,14 @@
 
 use criterion::{criterion_group, criterion_main, BatchSize, Criterion};
 use ridgeform_core::block_rows::BLOCK;
+use ridgeform_core::linear::cholesky::Cholesky;
+use ridgeform_core::linear::Columns;
 use ridgeform_core::operators::{voronoi_mass, Dual, HessianPattern};
 use ridgeform_core::progress::Progress;
 use ridgeform_core::shapes;
-use ridgeform_core::solve::cholesky::Cholesky;
+use ridgeform_core::solve::fast::Sweep;
 use ridgeform_core::solve::normal_matrix::NormalMatrix;
-use ridgeform_core::solve::{Columns, Coupling, FreeOperator, Problem, Reduced, Sweep};
+use ridgeform_core::solve::{Coupling, FreeOperator, Problem, Reduced};
 use ridgeform_core::tools::{stylize, SolveOptions, StylizeOptions};
 
 fn solver(criterion: &mut Criterion) {

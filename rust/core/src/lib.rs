@@ -1,10 +1,11 @@
 //! The L1 surface Hessian of triangle meshes [Rowe, Jacobson and Stein 2024]: operators, solvers, flows.
 //!
-//! Read in this order: [`mesh`] → [`operators`] → [`solve`] → [`tools`].
+//! Read in this order: [`mesh`] → [`operators`] → [`linear`] → [`solve`] → [`tools`].
 pub mod block_rows;
 pub mod error;
 pub mod hole_filling;
 pub mod intrinsic;
+pub mod linear;
 pub mod mesh;
 pub mod operators;
 pub mod progress;

@@ -5,8 +5,9 @@
 mod random_problems;
 
 use random_problems::Case;
+use ridgeform_core::linear::Columns;
 use ridgeform_core::shapes::Random;
-use ridgeform_core::solve::{solve, Columns, Coupling, FastSolver, Problem, Settings, Solution, Solver, Status};
+use ridgeform_core::solve::{solve, Coupling, Problem, Session, Settings, Solution, Solver, Status};
 use ridgeform_core::Progress;
 
 /// Rounding of the objective and of the bound, as a part of the larger of the objective and of what it would be if nothing in
@@ -140,7 +141,7 @@ impl Tally {
         let exact = solve(&problem, Solver::ClarabelQdldl, &settings(REFERENCE), &Progress::new()).unwrap();
         // How much the comparison can tell.
         self.sharp += usize::from(exact.gap <= 1e-6);
-        let mut solver = FastSolver::new();
+        let mut solver = Session::new();
         if seed.is_multiple_of(3) {
             solver.solve(&case.neighbour(seed), &settings(1e-3), &Progress::new()).map(drop).unwrap_or(());
         }

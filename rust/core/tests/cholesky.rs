@@ -5,9 +5,10 @@ use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
 use ridgeform_core::error::SolveError;
+use ridgeform_core::linear::cholesky::Cholesky;
+use ridgeform_core::linear::pattern::LowerPattern;
 use ridgeform_core::operators::{Dual, HessianPattern};
 use ridgeform_core::shapes;
-use ridgeform_core::solve::cholesky::{Cholesky, LowerPattern};
 use ridgeform_core::solve::normal_matrix::NormalMatrix;
 
 /// Numbers without a pattern, the same every time (splitmix64).

@@ -1,8 +1,8 @@
 //! Regions of painted surfaces: known paints, whose curves redraw them exactly.
 #![allow(clippy::unwrap_used)]
 
+use ridgeform_core::linear::Columns;
 use ridgeform_core::shapes::{self, Shape};
-use ridgeform_core::solve::Columns;
 use ridgeform_core::tools::{
     color_regions, diffusion_curves, follow_colors, DiffusionCurves, DiffusionCurvesOptions, SegmentOptions,
 };

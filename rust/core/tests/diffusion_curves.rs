@@ -1,9 +1,9 @@
 //! Diffusion curves: borders as curves, colours on their sides, and the surface that they rebuild.
 #![allow(clippy::unwrap_used, clippy::float_cmp)]
 
+use ridgeform_core::linear::Columns;
 use ridgeform_core::mesh::{CutMesh, EdgeTable, Mesh};
 use ridgeform_core::shapes::{self, Random, Shape};
-use ridgeform_core::solve::Columns;
 use ridgeform_core::tools::{
     diffusion_curves, follow_colors, redraw, ColoredCurves, DiffusionCurves, DiffusionCurvesOptions,
 };

@@ -1,10 +1,11 @@
 //! The flow: invariance, robustness, who moves and who does not, and how it ends.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+use ridgeform_core::linear::Columns;
 use ridgeform_core::mesh::Mesh;
 use ridgeform_core::operators::{hessian_norm, Dual};
 use ridgeform_core::shapes::{self, Shape};
-use ridgeform_core::solve::{Columns, Coupling, Solver};
+use ridgeform_core::solve::{Coupling, Solver};
 use ridgeform_core::tools::{stylize, FlowStatus, Scale, SolveOptions, StylizeOptions, Stylized};
 use ridgeform_core::{Error, Progress};
 

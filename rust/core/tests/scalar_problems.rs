@@ -2,10 +2,11 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use ridgeform_core::intrinsic::{delaunay_flips, delaunay_flips_carrying};
+use ridgeform_core::linear::Columns;
 use ridgeform_core::mesh::{triangle, Mesh};
 use ridgeform_core::operators::{voronoi_mass, Dual, Energy, EnergyForm};
 use ridgeform_core::shapes::{self, Random};
-use ridgeform_core::solve::{Columns, Coupling, Solution, Solver, Status};
+use ridgeform_core::solve::{Coupling, Solution, Solver, Status};
 use ridgeform_core::tools::{denoise, interpolate, DenoiseOptions, EnergyOptions, ScalarOptions, SolveOptions};
 use ridgeform_core::{Error, Progress, Result};
 

@@ -2,10 +2,11 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use ridgeform_core::block_rows::BlockRows;
+use ridgeform_core::linear::Columns;
 use ridgeform_core::mesh::Mesh;
 use ridgeform_core::operators::{voronoi_mass, Dual, HessianPattern};
 use ridgeform_core::shapes::{self, Random};
-use ridgeform_core::solve::{solve, Columns, Coupling, Problem, Settings, Solution, Solver, Status};
+use ridgeform_core::solve::{solve, Coupling, Problem, Settings, Solution, Solver, Status};
 use ridgeform_core::{Error, Progress};
 
 fn operator(mesh: &Mesh) -> BlockRows {

@@ -3,7 +3,7 @@
 use numpy::ndarray::{Array1, Array2};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
-use ridgeform_core::solve::Columns;
+use ridgeform_core::linear::Columns;
 
 use crate::arrays::{finite_floats, shape_text};
 use crate::errors::argument;

@@ -3,7 +3,7 @@
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::exceptions::PyModuleNotFoundError;
 use pyo3::prelude::*;
-use ridgeform_core::solve::Columns;
+use ridgeform_core::linear::Columns;
 use ridgeform_core::Error;
 use sprs::{CsMat, TriMat};
 

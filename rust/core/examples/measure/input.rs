@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
+use ridgeform_core::linear::Columns;
 use ridgeform_core::mesh::Mesh;
-use ridgeform_core::solve::Columns;
 use sprs::{CsMat, TriMat};
 
 /// `KIND FOLDER [KEY=VALUE ...]`.

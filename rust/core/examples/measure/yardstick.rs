@@ -7,9 +7,9 @@
 use std::convert::Infallible;
 
 use ridgeform_core::block_rows::{BlockRows, BLOCK};
+use ridgeform_core::linear::cholesky::Cholesky;
 use ridgeform_core::mesh::{triangle, Mesh};
 use ridgeform_core::operators::{voronoi_mass, Dual, HessianPattern};
-use ridgeform_core::solve::cholesky::Cholesky;
 use ridgeform_core::solve::cones::Block;
 use ridgeform_core::solve::normal_matrix::NormalMatrix;
 

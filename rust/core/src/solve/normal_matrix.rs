@@ -1,7 +1,7 @@
 //! `HᵀRH + D` for a block operator `H`, a scalar `R` per block and a diagonal `D`, on a pattern found once.
 
 use crate::block_rows::{BlockRows, BLOCK};
-use crate::solve::cholesky::LowerPattern;
+use crate::linear::pattern::LowerPattern;
 use crate::solve::primal_dual::Stiffness;
 
 /// Where each product of two entries of a block lands in the lower triangle of `HᵀRH`.
@@ -122,7 +122,7 @@ impl NormalMatrix {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::solve::cholesky::Cholesky;
+    use crate::linear::cholesky::Cholesky;
 
     fn operator() -> BlockRows {
         BlockRows {

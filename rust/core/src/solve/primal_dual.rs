@@ -185,8 +185,9 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::block_rows::BlockRows;
-    use crate::solve::system::System;
-    use crate::solve::{Columns, Coupling, FreeOperator, Problem};
+    use crate::linear::Columns;
+    use crate::solve::fast::system::System;
+    use crate::solve::{Coupling, FreeOperator, Problem};
 
     /// Blocks over three neighbours on a line, weights from nothing to two, fidelity on every other row, two ends known.
     fn problem(operator: &BlockRows) -> Problem<'_> {

@@ -3,7 +3,7 @@
 use sprs::CsMat;
 
 use crate::block_rows::BlockRows;
-use crate::solve::Columns;
+use crate::linear::Columns;
 use crate::{Error, Result};
 
 /// How the norms of several columns add up.

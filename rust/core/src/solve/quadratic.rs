@@ -6,9 +6,9 @@
 
 use crate::block_rows::BlockRows;
 use crate::error::SolveError;
+use crate::linear::cholesky::Cholesky;
 use crate::progress::Progress;
-use crate::solve::cholesky::Cholesky;
-use crate::solve::linear_constraints::LinearConstraints;
+use crate::solve::constraints::LinearConstraints;
 use crate::solve::normal_matrix::NormalMatrix;
 use crate::solve::problem::{Problem, Settings, Solution, Solver, Status};
 use crate::solve::reduced::FreeOperator;

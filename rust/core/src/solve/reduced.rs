@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use crate::block_rows::{BlockRows, BLOCK};
 use crate::error::SolveError;
 use crate::solve::cones::{norm, Block};
-use crate::solve::linear_constraints::LinearConstraints;
+use crate::solve::constraints::LinearConstraints;
 use crate::solve::problem::Problem;
 use rayon::prelude::*;
 

@@ -1,9 +1,10 @@
 //! Denoising of functions on a surface (Rowe et al. 2024, eqs. (21) and (23)).
 
 use super::scalar::{ScalarOptions, ScalarProblem};
+use crate::linear::Columns;
 use crate::mesh::Mesh;
 use crate::progress::Progress;
-use crate::solve::{Columns, Solution};
+use crate::solve::Solution;
 use crate::{Error, Result};
 
 /// How to denoise.

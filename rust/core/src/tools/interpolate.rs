@@ -1,9 +1,10 @@
 //! Scattered data interpolation (Rowe et al. 2024, eq. (22)).
 
 use super::scalar::{ScalarOptions, ScalarProblem};
+use crate::linear::Columns;
 use crate::mesh::{Connectivity, Mesh};
 use crate::progress::Progress;
-use crate::solve::{Columns, Solution};
+use crate::solve::Solution;
 use crate::{Error, Result};
 
 /// `min_u E(u)` with `u` given at the vertices `indices`: row `r` of `values` belongs to `indices[r]`, `E` is the energy of the

@@ -4,11 +4,13 @@ use sprs::{CsMat, TriMat};
 
 use super::unseen::{extend, unseen};
 use super::{EnergyOptions, SolveOptions};
+use crate::linear::small::symmetric_eigen;
+use crate::linear::Columns;
 use crate::mesh::{triangle, Mesh};
 use crate::operators::{cotangent_laplacian, voronoi_mass, Energy, EnergyForm};
 use crate::progress::{Progress, Report};
-use crate::solve::eigen::{mass_dot, symmetric_eigen, Eigenpairs, Pencil};
-use crate::solve::{solve, Columns, Coupling, FastSolver, Problem, Settings, Solution, Solver, Status};
+use crate::solve::eigen::{mass_dot, Eigenpairs, Pencil};
+use crate::solve::{solve, Coupling, Problem, Session, Settings, Solution, Solver, Status};
 use crate::{Error, Result};
 
 /// Eigenvalues below this part of the largest one computed belong to the kernel of an energy: those of the kernel come out at
@@ -98,7 +100,7 @@ impl Sequence<'_> {
         let weights = self.weights_of_squares();
         let start = self.pencil(&weights).smallest(count, self.progress)?;
         let (mut modes, mut status) = (self.kernel(&start), Status::Solved);
-        let mut solver = FastSolver::new();
+        let mut solver = Session::new();
         while modes.len() < count {
             if self.progress.is_finishing() {
                 status = Status::Stopped;
@@ -166,7 +168,7 @@ impl Sequence<'_> {
         start: &[f64],
         modes: &[Vec<f64>],
         count: usize,
-        solver: &mut FastSolver,
+        solver: &mut Session,
     ) -> Result<(Vec<f64>, Status)> {
         let enough = self.settings.tolerance.unwrap_or(1e-4);
         let mut direction = orthonormal(self.mass, start.to_vec(), modes);
@@ -192,7 +194,7 @@ impl Sequence<'_> {
     }
 
     /// The first line of (38): the least energy among functions orthogonal to `modes` whose product with `direction` is 1.
-    fn alternate(&self, direction: &[f64], modes: &[Vec<f64>], solver: &mut FastSolver) -> Result<Solution> {
+    fn alternate(&self, direction: &[f64], modes: &[Vec<f64>], solver: &mut Session) -> Result<Solution> {
         let n = self.mass.len();
         let mut right = vec![0.0; modes.len()];
         right.push(1.0);

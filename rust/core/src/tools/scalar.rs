@@ -6,10 +6,11 @@ use super::options::check_range;
 use super::sharpness::{block_norms, sharpened_weights};
 use super::unseen::{extend, unseen};
 use super::{EnergyOptions, SolveOptions};
+use crate::linear::Columns;
 use crate::mesh::{triangle, Mesh};
 use crate::operators::{voronoi_mass, Energy};
 use crate::progress::{Progress, Report};
-use crate::solve::{quadratic, solve, Columns, Coupling, Problem, Settings, Solution};
+use crate::solve::{quadratic, solve, Coupling, Problem, Settings, Solution};
 use crate::{Error, Result};
 
 /// Reweighted rounds after the first solution: the weights hardly change after the third.

@@ -6,7 +6,8 @@
 use rayon::prelude::*;
 
 use crate::block_rows::BlockRows;
-use crate::solve::{Columns, Coupling};
+use crate::linear::Columns;
+use crate::solve::Coupling;
 
 /// Curvature below this part of the mean counts as none: keeps the weights of flat faces finite. 0.03 and 0.1 look
 /// alike, 0.1 converges faster.

@@ -7,10 +7,11 @@ use super::SolveOptions;
 use crate::block_rows::BlockRows;
 use crate::error::MeshError;
 use crate::intrinsic::delaunay_flips_carrying;
+use crate::linear::Columns;
 use crate::mesh::{edge_lengths, triangle, Connectivity, Mesh};
 use crate::operators::{mollify, voronoi_mass, Dual, HessianPattern};
 use crate::progress::{Progress, Report};
-use crate::solve::{solve, Columns, Coupling, FastSolver, Problem, Settings, Solution, Solver};
+use crate::solve::{solve, Coupling, Problem, Session, Settings, Solution, Solver};
 use crate::{Error, Result};
 
 /// A step that moves the vertices by less than this part of the shape's size (root mean square) moves nothing.
@@ -149,7 +150,7 @@ struct Flow<'a> {
     points: Vec<[f64; 3]>,
     base: Vec<f64>,
     pattern: HessianPattern,
-    solver: FastSolver,
+    solver: Session,
     size: f64,
     area: f64,
     result: Stylized,
@@ -180,7 +181,7 @@ impl<'a> Flow<'a> {
             points: start.to_vec(),
             base,
             pattern: HessianPattern::new(connectivity),
-            solver: FastSolver::new(),
+            solver: Session::new(),
             size,
             area,
             result: Stylized {

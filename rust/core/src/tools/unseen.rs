@@ -1,9 +1,10 @@
 //! Vertices that an energy does not touch: with the Hessian of Stein et al. 2018b, the tips of triangles with two boundary edges.
 
+use crate::linear::Columns;
 use crate::mesh::Mesh;
 use crate::operators::{Dual, Energy, EnergyForm};
 use crate::progress::Progress;
-use crate::solve::{quadratic, Columns, Coupling, Problem, Settings};
+use crate::solve::{quadratic, Coupling, Problem, Settings};
 use crate::Result;
 
 /// The vertices of faces that no block of the energy touches, if there are any.

@@ -3,10 +3,11 @@
 mod surfaces;
 
 use ridgeform_core::block_rows::BlockRows;
+use ridgeform_core::linear::Columns;
 use ridgeform_core::mesh::{triangle, Mesh};
 use ridgeform_core::operators::{voronoi_mass, Dual, HessianPattern};
 use ridgeform_core::shapes::Random;
-use ridgeform_core::solve::{Columns, Coupling, Problem};
+use ridgeform_core::solve::{Coupling, Problem};
 use ridgeform_core::tools::sharpened_weights;
 use sprs::{CsMat, TriMat};
 

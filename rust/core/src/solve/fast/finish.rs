@@ -2,13 +2,13 @@
 
 use super::{Run, FACTORISATION, RESIDUAL_GOAL};
 use crate::error::SolveError;
+use crate::linear::conjugate_gradients::{add, conjugate_gradients};
 use crate::progress::Progress;
 use crate::solve::certificate::spread;
 use crate::solve::cones::Block;
-use crate::solve::conjugate_gradients::{add, conjugate_gradients};
+use crate::solve::fast::sweep::Sweep;
 use crate::solve::primal_dual::{clip, dual_point, follow, Model, Stiffness};
 use crate::solve::problem::{Problem, Settings};
-use crate::solve::sweep::Sweep;
 use crate::{Error, Result};
 
 /// Alternating directions go this far at least: the steps need few factorisations from where the ridges show.

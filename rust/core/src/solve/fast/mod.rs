@@ -5,6 +5,11 @@
 //! the dual equations exactly, which is what the certificate is made of.
 
 mod finish;
+pub mod penalty;
+mod sweep;
+pub mod system;
+
+pub use sweep::Sweep;
 
 use finish::FIRST_STEPS;
 
@@ -12,11 +17,12 @@ use crate::block_rows::BLOCK;
 use crate::progress::{Progress, Report};
 use crate::solve::certificate::{bound_along_ray, spread, DualPoint};
 use crate::solve::cones::{norm, scaled, Block};
-use crate::solve::penalty::{reweighted, uniform};
+use crate::solve::fast::penalty::{reweighted, uniform};
+use crate::solve::fast::sweep::Sums;
+use crate::solve::fast::system::System;
+use crate::solve::outcome::{Outcome, Warm};
 use crate::solve::problem::{Problem, Settings, Status};
 use crate::solve::reduced::Reduced;
-use crate::solve::sweep::{Sums, Sweep};
-use crate::solve::system::System;
 use crate::Result;
 
 /// Iterations between two looks at the certificate and the stopping rules.
@@ -49,36 +55,6 @@ const REWEIGHT_WARM: usize = 30;
 
 /// Iterations that cost as much as one factorisation (12 to 20 measured, from 9k to 200k vertices).
 const FACTORISATION: f64 = 15.0;
-
-/// What a finished run leaves to the next, similar problem, in units that survive new weights and a new operator.
-#[derive(Debug, Clone)]
-pub struct Warm<const K: usize> {
-    /// The split variable.
-    pub z: Vec<Block<K>>,
-    /// The multipliers, divided by the weights.
-    pub p: Vec<Block<K>>,
-    /// The typical length of `(H u + c)_b` and `z_b`.
-    pub length: Vec<f64>,
-}
-
-/// The result of a run, free rows only.
-#[derive(Debug)]
-pub struct Outcome<const K: usize> {
-    /// The best point found.
-    pub u: Vec<[f64; K]>,
-    /// Its objective.
-    pub primal: f64,
-    /// The best lower bound found.
-    pub dual: f64,
-    /// What counts as an objective of zero, see [`Reduced::floor`].
-    pub floor: f64,
-    /// Iterations made.
-    pub iterations: usize,
-    /// Why it stopped.
-    pub status: Status,
-    /// For the next problem, from solvers that can use it.
-    pub warm: Option<Warm<K>>,
-}
 
 /// Minimises a reduced problem.
 ///

@@ -4,8 +4,8 @@ use super::chains::{sided, CurveEdge};
 use super::fit::Fit;
 use super::redraw::{copy_at, ColoredCurves};
 use super::thinning::thin;
+use crate::linear::Columns;
 use crate::mesh::{Connectivity, CutMesh, EdgeTable};
-use crate::solve::Columns;
 
 /// The borders on a cut mesh.
 pub(super) struct Borders<'a> {

@@ -1,11 +1,11 @@
 //! The colours of a surface along its curves: the screened Poisson fit of the paper, then least squares.
 
 use super::membrane::{Harmonic, Membrane};
+use crate::linear::bounded::{self, Limits};
+use crate::linear::Columns;
 use crate::mesh::partition::Partition;
 use crate::mesh::CutMesh;
 use crate::progress::Progress;
-use crate::solve::bounded::{self, Limits};
-use crate::solve::Columns;
 use crate::Result;
 
 /// On painted meshes the error of the rebuilt colours stays within 0.01 dB after some 20 products.

@@ -3,11 +3,12 @@
 use sprs::CsMat;
 
 use crate::intrinsic::delaunay_flips;
+use crate::linear::cholesky::Cholesky;
+use crate::linear::pattern::LowerPattern;
+use crate::linear::Columns;
 use crate::mesh::{Connectivity, CutMesh};
 use crate::operators::{cotangent_laplacian, mollify, voronoi_mass};
 use crate::progress::Progress;
-use crate::solve::cholesky::{Cholesky, LowerPattern};
-use crate::solve::Columns;
 use crate::Result;
 
 /// The least weight of an edge. Delaunay edges inside have weights from 0 up; only edges with one face opposite an obtuse

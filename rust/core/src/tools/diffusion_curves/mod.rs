@@ -28,10 +28,10 @@ pub use trace::{trace_curves, TracedCurve};
 
 use super::options::check_range;
 use crate::error::MeshError;
+use crate::linear::Columns;
 use crate::mesh::{triangle, CutMesh, EdgeTable, Mesh};
 use crate::operators::voronoi_mass;
 use crate::progress::{Progress, Report};
-use crate::solve::Columns;
 use crate::{Error, Result};
 use borders::Borders;
 use chains::{border_edges, chain};

@@ -3,9 +3,9 @@
 use super::chains::sided;
 use super::fit::pieces;
 use super::membrane::{Harmonic, Membrane};
+use crate::linear::Columns;
 use crate::mesh::{Connectivity, CutMesh, EdgeTable, Mesh};
 use crate::progress::{Progress, Report};
-use crate::solve::Columns;
 use crate::{Error, Result};
 
 /// Colours on both sides of edges of a mesh, and at single vertices.

@@ -7,9 +7,9 @@ use super::sharpen::sharpened;
 use super::sorting::{Paint, Sorted};
 use super::weak::merge_weak;
 use super::{check_fidelity, check_labels};
+use crate::linear::Columns;
 use crate::mesh::Mesh;
 use crate::progress::{Progress, Report};
-use crate::solve::Columns;
 use crate::tools::{segment, SegmentOptions};
 use crate::Result;
 

@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 
 use super::patches::Parts;
 use super::sorting::{neighbours, Paint};
-use crate::solve::Columns;
+use crate::linear::Columns;
 
 /// Steps towards the nearest mixture of colours. Two colours need one, three at most some ten until the rest is below what is tolerated.
 const MIXING_STEPS: usize = 32;

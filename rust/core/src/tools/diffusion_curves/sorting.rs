@@ -3,9 +3,9 @@
 use super::chains::border_edges;
 use super::fit::Task;
 use super::membrane::Membrane;
+use crate::linear::Columns;
 use crate::mesh::{triangle, CutMesh, EdgeTable, Mesh};
 use crate::progress::Progress;
-use crate::solve::Columns;
 use crate::Result;
 
 /// A region must explain a vertex better than any other by this factor: a gentle change of colour is no reason to move a border.

@@ -5,11 +5,12 @@ use super::region::Region;
 use super::ridge_curves::third_derivatives;
 use super::surface::Surface;
 use crate::block_rows::BlockRows;
+use crate::linear::Columns;
 use crate::mesh::vector::norm;
 use crate::mesh::Mesh;
 use crate::operators::{Dual, Energy, EnergyForm};
 use crate::progress::Progress;
-use crate::solve::{quadratic, Columns, Coupling, Problem, Settings};
+use crate::solve::{quadratic, Coupling, Problem, Settings};
 use crate::Result;
 
 /// How much the third derivative along ridges counts beside the second ones of the surfaces, in units of the patch's size: a

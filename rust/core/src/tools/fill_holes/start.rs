@@ -1,9 +1,10 @@
 //! Where the flow starts: the smooth patch.
 
 use super::region::Region;
+use crate::linear::Columns;
 use crate::operators::{Dual, Energy, EnergyForm};
 use crate::progress::Progress;
-use crate::solve::{quadratic, Columns, Coupling, Problem, Settings};
+use crate::solve::{quadratic, Coupling, Problem, Settings};
 use crate::Result;
 
 /// Moves the patch to the minimiser of a quadratic energy of its coordinates, everything around it fixed, `rounds` times:

@@ -7,9 +7,9 @@ use rayon::prelude::*;
 
 use super::surface::{Surface, NONE};
 use super::walk::{Marks, Walk};
+use crate::linear::Columns;
 use crate::mesh::triangle;
 use crate::mesh::vector::Point;
-use crate::solve::Columns;
 
 /// How far, in mean edges, the gradient is averaged on either side, longer the more noise there is in mean edges, up to a limit: on the
 /// coarsest noisy shapes a limit of 3 finds more parts than 2.5, 3.5 or 5.

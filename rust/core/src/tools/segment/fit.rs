@@ -1,9 +1,9 @@
 //! What a segment would look like at a face if it went on there: a plane, or a quadratic function fitted to its faces nearby.
 
 use super::surface::Surface;
+use crate::linear::small::symmetric_eigen;
+use crate::linear::Columns;
 use crate::mesh::vector::{add, dot, norm, scale, sub, unit, Point};
-use crate::solve::eigen::symmetric_eigen;
-use crate::solve::Columns;
 use crate::tools::heights::{frame, solve, TERMS};
 
 /// Faces of a segment that a local fit looks at: few where the surface is clean and may be curved, more where noise has to be

@@ -13,8 +13,8 @@ use super::straighten::Straighten;
 use super::surface::{contiguous, Surface};
 use super::threshold::cut_and_merge;
 use super::watershed::watershed;
+use crate::linear::Columns;
 use crate::progress::{Progress, Report};
-use crate::solve::Columns;
 use crate::Result;
 
 /// Two basins of the indicator stay apart if the pass between them lies deeper than this. Low, since borders that are none are found

@@ -3,9 +3,10 @@
 use super::indicator_step::IndicatorStep;
 use super::surface::Surface;
 use crate::block_rows::BlockRows;
+use crate::linear::Columns;
 use crate::operators::{voronoi_mass, Dual, HessianPattern};
 use crate::progress::{Progress, Report};
-use crate::solve::{solve, Columns, Coupling, FastSolver, Problem, Settings, Solution, Solver, Status};
+use crate::solve::{solve, Coupling, Problem, Session, Settings, Solution, Solver, Status};
 use crate::tools::sharpness::block_norms;
 use crate::Result;
 
@@ -64,7 +65,7 @@ impl Functional<'_> {
             total: mass.iter().sum(),
             fixed: mass.iter().map(|m| *m <= 0.0).collect(),
             mass,
-            solver: FastSolver::new(),
+            solver: Session::new(),
             step: IndicatorStep::new(surface, self.length_weight, self.face_costs)?,
             progress,
             reached: Minimiser {
@@ -121,7 +122,7 @@ struct Run<'a> {
     mass: Vec<f64>,
     total: f64,
     fixed: Vec<bool>,
-    solver: FastSolver,
+    solver: Session,
     step: IndicatorStep,
     progress: &'a Progress,
     reached: Minimiser,

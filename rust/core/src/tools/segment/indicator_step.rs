@@ -1,8 +1,9 @@
 //! The indicator of borders for a fixed signal: one linear system on the faces, its pattern analysed once.
 
 use super::surface::Surface;
+use crate::linear::cholesky::Cholesky;
+use crate::linear::pattern::LowerPattern;
 use crate::operators::face_laplacian_weights;
-use crate::solve::cholesky::{Cholesky, LowerPattern};
 use crate::Result;
 
 /// `v ← argmin vᵀ (diag ‖(H u)_f‖ + λ ε L + λ/(4ε) M_F) v − λ/(2ε) 1ᵀ M_F v` (Rowe et al. 2024, supplement E), for one `ε`

@@ -31,9 +31,10 @@ pub use hierarchy::Hierarchy;
 pub use options::{SegmentMethod, SegmentOptions};
 
 use crate::error::MeshError;
+use crate::linear::Columns;
 use crate::mesh::Mesh;
 use crate::progress::Progress;
-use crate::solve::{Columns, Settings, Status};
+use crate::solve::{Settings, Status};
 use crate::tools::Scale;
 use crate::Result;
 use exact::coarse_planes;

@@ -1,8 +1,8 @@
 //! How noisy a function is: from the jumps of its gradient across edges, most of which lie on no border.
 
 use super::surface::Surface;
+use crate::linear::Columns;
 use crate::operators::Hinge;
-use crate::solve::Columns;
 
 /// The median of the length of a standard normal vector, by its number of entries (1 to 4; the square root of the median of a
 /// chi-squared variable).

@@ -1,8 +1,9 @@
 //! How to segment.
 
 use super::DEFAULT_SCALE;
+use crate::linear::Columns;
 use crate::mesh::Mesh;
-use crate::solve::{Columns, MAX_JOINT_COLUMNS};
+use crate::solve::MAX_JOINT_COLUMNS;
 use crate::tools::options::{check_range, check_weights};
 use crate::tools::{Scale, SolveOptions};
 use crate::{Error, Result};

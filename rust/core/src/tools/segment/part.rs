@@ -2,8 +2,8 @@
 
 use super::{SegmentOptions, Segmentation};
 use crate::error::MeshError;
+use crate::linear::Columns;
 use crate::mesh::Mesh;
-use crate::solve::Columns;
 use crate::Result;
 
 /// Runs `segment` on the mesh of the faces in `mask` and puts its result into the whole one: other faces have the label −1 and

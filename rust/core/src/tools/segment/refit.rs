@@ -7,9 +7,9 @@ use std::collections::BTreeMap;
 
 use super::fit::{nearby, patch_size, Patch, Plane};
 use super::surface::{pieces, Surface};
+use crate::linear::Columns;
 use crate::mesh::vector::{distance, unit};
 use crate::progress::Progress;
-use crate::solve::Columns;
 use crate::Result;
 
 /// Rounds of fits, and sweeps over the faces with the fits of a round.

@@ -13,7 +13,7 @@ use crate::error::SolveError;
 use crate::progress::Progress;
 use crate::solve::certificate::{bound_along_ray, DualPoint};
 use crate::solve::cones::{norm, scaled, Block};
-use crate::solve::fast::Outcome;
+use crate::solve::outcome::Outcome;
 use crate::solve::problem::{Problem, Settings, Status};
 use crate::solve::reduced::Reduced;
 use crate::{Error, Result};

@@ -16,7 +16,7 @@ use dense::Front;
 use rayon::prelude::*;
 pub use tree::Tree;
 
-use crate::solve::triangular::Panels;
+use crate::linear::triangular::Panels;
 
 /// Factors the matrix with these values (one per entry of the pattern) into `factor`, panel by panel as in `panels`; `None` when
 /// it is not positive definite.

@@ -222,8 +222,9 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::block_rows::BlockRows;
+    use crate::linear::Columns;
     use crate::solve::cones::scaled;
-    use crate::solve::{Columns, Coupling, FreeOperator, Problem};
+    use crate::solve::{Coupling, FreeOperator, Problem};
 
     /// Enough blocks for several parts, over columns of a ring; the first column is fixed.
     fn operator(m: usize) -> BlockRows {

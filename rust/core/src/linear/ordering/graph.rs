@@ -1,6 +1,6 @@
 //! A weighted graph, its coarser versions and its parts.
 
-use crate::solve::cholesky::LowerPattern;
+use crate::linear::pattern::LowerPattern;
 
 /// An undirected graph with weights on vertices and edges; every edge stands at both of its ends.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -3,15 +3,11 @@
 //! A small separator cuts the graph of the matrix in two, its rows come last, and each half is ordered in the same way
 //! (George 1973), down to parts that minimum degree orders as well.
 
-mod graph;
-mod postorder;
-mod separator;
-
+use super::graph::{Graph, Random};
+use super::minimum_degree::minimum_degree;
+use super::separator::{separator, SEPARATOR};
 use crate::error::SolveError;
-use crate::solve::cholesky::{minimum_degree, LowerPattern};
-use graph::{Graph, Random};
-pub use postorder::postordered;
-use separator::{separator, SEPARATOR};
+use crate::linear::pattern::LowerPattern;
 
 /// Parts of at most so many rows are left to minimum degree: with 200 one factor entry in twenty goes, for twice the time.
 const LEAF: usize = 1000;

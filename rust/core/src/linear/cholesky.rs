@@ -1,24 +1,22 @@
-//! Sparse Cholesky factorisation: the one file that names the library that orders and analyses.
+//! Sparse Cholesky factorisation: the one file that names the library that analyses.
 //!
 //! Symbolic analysis once per pattern, numeric factorisation as often as the values change, solves for several right
 //! sides at once. Results do not depend on the number of threads.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::solvers::{Llt, Solve};
 use faer::perm::PermRef;
-use faer::sparse::linalg::amd;
 use faer::sparse::linalg::cholesky::{
     factorize_symbolic_cholesky, CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
 };
 use faer::sparse::linalg::{SupernodalThreshold, SymbolicSupernodalParams};
 use faer::sparse::SymbolicSparseColMatRef;
-use faer::{Mat, MatRef, Side};
+use faer::Side;
 
 use crate::error::SolveError;
-use crate::solve::dissection::{nested_dissection, postordered};
-use crate::solve::multifrontal::{self, Tree, Workspace};
-use crate::solve::subtrees::Subtrees;
-use crate::solve::triangular::{Panels, Values, LANES};
+use crate::linear::multifrontal::{self, Tree, Workspace};
+use crate::linear::ordering::{minimum_degree, nested_dissection, postordered};
+use crate::linear::pattern::LowerPattern;
+use crate::linear::subtrees::Subtrees;
+use crate::linear::triangular::{Panels, Values, LANES};
 
 /// Neighbouring supernodes of at most so many columns are joined while less than this part of the result is zero. The
 /// library's own thresholds make one solve a tenth slower and the factorisation no faster (measured on 10k and 58k rows).
@@ -27,17 +25,6 @@ const RELAXATION: &[(usize, f64)] = &[(8, 0.3), (16, 0.1)];
 /// From this number of rows on nested dissection comes first. On matrices of this kind it leaves 19 % fewer entries than minimum
 /// degree at 58k and at 200k rows, and none at 9k, and costs half a factorisation (measured).
 const DISSECTED_FROM: usize = 25_000;
-
-/// The lower triangle of a symmetric matrix, column by column with sorted rows.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct LowerPattern {
-    /// Number of rows and columns.
-    pub n: usize,
-    /// Column `j` owns the entries `starts[j]..starts[j + 1]`.
-    pub starts: Vec<usize>,
-    /// The row of each entry, `>= j`; the diagonal entry comes first.
-    pub rows: Vec<usize>,
-}
 
 /// A factorisation whose pattern is analysed once.
 pub struct Cholesky {
@@ -166,20 +153,6 @@ impl Cholesky {
     }
 }
 
-/// The rows of a pattern in an order that approximate minimum degree finds.
-///
-/// # Errors
-/// [`SolveError::Factorisation`] when the library refuses the pattern.
-pub fn minimum_degree(pattern: &LowerPattern) -> Result<Vec<u32>, SolveError> {
-    let n = pattern.n;
-    let view = SymbolicSparseColMatRef::new_checked(n, n, &pattern.starts, None, &pattern.rows);
-    let (mut forward, mut backward) = (vec![0usize; n], vec![0usize; n]);
-    let mut memory = MemBuffer::new(amd::order_scratch::<usize>(n, pattern.rows.len()));
-    amd::order(&mut forward, &mut backward, view, amd::Control::default(), MemStack::new(&mut memory))
-        .map_err(|e| SolveError::Factorisation { reason: format!("{e:?}") })?;
-    Ok(forward.iter().map(|&i| i as u32).collect())
-}
-
 /// The supernodes of the factor; a factor without any, of a matrix that is nearly diagonal, has panels of one column.
 fn panels(symbolic: &SymbolicCholesky<usize>) -> Panels {
     let mut panels = Panels { below: vec![0], ..Panels::default() };
@@ -206,36 +179,6 @@ fn panels(symbolic: &SymbolicCholesky<usize>) -> Panels {
     }
     panels.begin.push(symbolic.ncols());
     panels
-}
-
-/// The factorisation of a small dense matrix.
-#[derive(Debug)]
-pub struct DenseCholesky {
-    factor: Llt<f64>,
-}
-
-impl DenseCholesky {
-    /// Factors the lower triangle of a `p × p` matrix stored column by column; `None` when it is not clearly positive
-    /// definite: a pivot under 1e-12 of its diagonal entry is lost to rounding.
-    #[must_use]
-    pub fn new(matrix: &[f64], p: usize) -> Option<Self> {
-        let matrix = MatRef::from_column_major_slice(matrix, p, p);
-        let factor = Llt::new(matrix, Side::Lower).ok()?;
-        let lower = factor.L();
-        let sound = (0..p).all(|i| lower[(i, i)] * lower[(i, i)] > 1e-12 * matrix[(i, i)]);
-        sound.then_some(Self { factor })
-    }
-
-    /// Solves in place for `K` right sides stored row by row.
-    pub fn solve<const K: usize>(&self, right: &mut [[f64; K]]) {
-        let mut dense = Mat::from_fn(right.len(), K, |i, c| right[i][c]);
-        self.factor.solve_in_place(&mut dense);
-        for (i, row) in right.iter_mut().enumerate() {
-            for (c, x) in row.iter_mut().enumerate() {
-                *x = dense[(i, c)];
-            }
-        }
-    }
 }
 
 #[cfg(test)]

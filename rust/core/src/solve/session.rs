@@ -1,13 +1,14 @@
 //! The fast solver for whole problems: fixed rows, joint or separate columns, and what one run leaves to the next.
 
 use crate::block_rows::BLOCK;
+use crate::linear::Columns;
 use crate::progress::Progress;
-use crate::solve::conic;
-use crate::solve::fast::{self, Outcome, Warm};
+use crate::solve::clarabel;
+use crate::solve::fast;
+use crate::solve::fast::system::System;
+use crate::solve::outcome::{Outcome, Warm};
 use crate::solve::problem::{Coupling, Problem, Settings, Solution, Solver, Status};
 use crate::solve::reduced::{FreeOperator, Reduced};
-use crate::solve::system::System;
-use crate::solve::Columns;
 use crate::{Error, Result};
 
 /// At most this many columns in one joint norm.
@@ -16,7 +17,7 @@ pub const MAX_JOINT_COLUMNS: usize = 16;
 /// A solver that keeps the symbolic factorisation while the operator's pattern stays, and starts each run from the
 /// multipliers of the last one while the problems stay alike.
 #[derive(Debug, Default)]
-pub struct FastSolver {
+pub struct Session {
     structure: Option<Structure>,
     warm: Vec<StoredWarm>,
 }
@@ -32,7 +33,7 @@ struct Structure {
 pub(super) enum Method {
     /// [`crate::solve::fast`].
     Fast,
-    /// [`crate::solve::conic`] with this factorisation.
+    /// [`crate::solve::clarabel`] with this factorisation.
     Clarabel(Solver),
 }
 
@@ -51,7 +52,7 @@ struct StoredWarm {
     length: Vec<f64>,
 }
 
-impl FastSolver {
+impl Session {
     /// A solver that knows nothing yet.
     #[must_use]
     pub fn new() -> Self {
@@ -144,7 +145,7 @@ impl FastSolver {
         let outcome = match call.method {
             Method::Clarabel(solver) => {
                 let method = if solver == Solver::ClarabelFaer { "faer" } else { "qdldl" };
-                conic::minimise(&reduced, method, call.settings, call.progress)?
+                clarabel::minimise(&reduced, method, call.settings, call.progress)?
             }
             Method::Fast => {
                 let system = match &mut structure.system {

@@ -1,6 +1,6 @@
 //! Postorders of elimination trees.
 
-use crate::solve::cholesky::LowerPattern;
+use crate::linear::pattern::LowerPattern;
 
 /// No row.
 const NONE: u32 = u32::MAX;

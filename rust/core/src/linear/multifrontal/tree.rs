@@ -2,8 +2,8 @@
 
 use super::dense::{update_len, Padded};
 use crate::error::SolveError;
-use crate::solve::cholesky::LowerPattern;
-use crate::solve::triangular::Panels;
+use crate::linear::pattern::LowerPattern;
+use crate::linear::triangular::Panels;
 
 /// No panel.
 pub const NONE: u32 = u32::MAX;

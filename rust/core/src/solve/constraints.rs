@@ -3,9 +3,10 @@
 use sprs::CsMat;
 
 use crate::error::SolveError;
-use crate::solve::cholesky::{Cholesky, DenseCholesky};
+use crate::linear::cholesky::Cholesky;
+use crate::linear::small::DenseCholesky;
+use crate::linear::Columns;
 use crate::solve::reduced::FreeOperator;
-use crate::solve::Columns;
 
 /// Constraints on the free rows, and the Schur complement that belongs to the last factorisation.
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! The linear system of the fast solver: pattern and ordering once, factorisation as often as the penalties change.
 
 use crate::error::SolveError;
-use crate::solve::cholesky::Cholesky;
+use crate::linear::cholesky::Cholesky;
 use crate::solve::normal_matrix::NormalMatrix;
 use crate::solve::primal_dual::Stiffness;
 use crate::solve::reduced::{FreeOperator, Reduced};

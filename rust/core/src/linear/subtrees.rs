@@ -8,8 +8,8 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use crate::solve::multifrontal::Tree;
-use crate::solve::triangular::{Panel, Panels, Values, LANES};
+use crate::linear::multifrontal::Tree;
+use crate::linear::triangular::{Panel, Panels, Values, LANES};
 
 /// Subtrees with more than this part of all entries are cut at their root: eight or nine are left, and a quarter of all entries above
 /// them. Half of it leaves twice as many, and a third above.

@@ -3,7 +3,7 @@
 
 use std::collections::BinaryHeap;
 
-use crate::solve::dissection::graph::{Graph, Random};
+use crate::linear::ordering::graph::{Graph, Random};
 
 /// The side that stands for the separator; the others are 0 and 1.
 pub const SEPARATOR: u8 = 2;

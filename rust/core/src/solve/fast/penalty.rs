@@ -1,8 +1,8 @@
 //! The penalties of the fast solver: found from the problem itself, never set by hand.
 
 use crate::solve::cones::{norm, scaled, Block};
+use crate::solve::fast::system::System;
 use crate::solve::reduced::Reduced;
-use crate::solve::system::System;
 use crate::{Progress, Result};
 
 /// The product of penalty and typical block length, in units of the weight, at which alternating directions converge

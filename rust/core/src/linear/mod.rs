@@ -1,0 +1,17 @@
+//! Matrices, and nothing of what they stand for: patterns, orderings, one sparse Cholesky factorisation, iterations that need
+//! products only.
+//!
+//! [`cholesky`] analyses a [`pattern`] in an [`ordering`]; `multifrontal` factors; `triangular` and `subtrees` solve.
+
+pub mod bounded;
+pub mod cholesky;
+mod columns;
+pub mod conjugate_gradients;
+mod multifrontal;
+pub mod ordering;
+pub mod pattern;
+pub mod small;
+mod subtrees;
+mod triangular;
+
+pub use columns::Columns;
