@@ -14,23 +14,19 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 import tempfile
 from pathlib import Path
 
+import holes_run
+import holes_table
 import numpy as np
+from build_wheel import build_wheel
+from driver import Record
+from holes_cases import cases, holed
+from run import machine
+from workspace import WHEEL_SITE
 
 ROOT = Path(__file__).resolve().parents[1]
-# Beside this folder: the shapes of the tests, and what all scripts share.
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests")]
-
-import holes_run  # noqa: E402
-import holes_table  # noqa: E402
-from build_wheel import build_wheel  # noqa: E402
-from driver import Record  # noqa: E402
-from holes_cases import cases, holed  # noqa: E402
-from run import machine  # noqa: E402
-from workspace import WHEEL_SITE  # noqa: E402
 
 RESULTS = ROOT / "benchmarks/holes"
 LIMITS = ("locality", "long", "ridges", "stress")

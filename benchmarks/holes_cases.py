@@ -6,9 +6,9 @@ import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import holed_shapes
 import numpy as np
-from holed_shapes import Holed, Solid
+from known_shapes import holed_shapes
+from known_shapes.holed_shapes import Holed, Solid
 from numpy.typing import NDArray
 
 DENSITIES = (12, 24)

@@ -13,19 +13,12 @@ import json
 import sys
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
-
-import fill_measures
-import random_holes
-import random_ridges
 import ridgeform
-import shapes
 from holes_long import LOOPS, holes_border, without
+from known_shapes import fill_measures, random_holes, random_ridges, shapes
 from numpy.typing import NDArray
 
 REPEATS = 5

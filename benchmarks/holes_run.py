@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 from driver import Record
-from fill_measures import (
+from known_shapes.fill_measures import (
     mean_and_rms,
     new_faces,
     nonmanifold_edges,
@@ -20,8 +20,8 @@ from fill_measures import (
     qualities,
     samples,
 )
-from holed_shapes import Holed
-from workspace import ROOT, STATE, WHEEL_SITE, digest, is_current
+from known_shapes.holed_shapes import Holed
+from workspace import ROOT, STATE, WHEEL_SITE, digest, is_current, python_path
 
 PEER = ROOT / "benchmarks/holes_peer.py"
 REQUIREMENTS = ROOT / "benchmarks/requirements-holes.txt"
@@ -63,7 +63,7 @@ def peers_python() -> tuple[Path, dict[str, str]]:
 def fill(tool: str, folder: Path, site: Path = WHEEL_SITE) -> None:
     """Let a tool fill all meshes of a folder; where it crashes is noted, and it goes on after that."""
     if tool == OURS:
-        python, environment = sys.executable, {"PYTHONPATH": str(site)}
+        python, environment = sys.executable, {"PYTHONPATH": python_path(site)}
     else:
         python, environment = str(peers_python()[0]), {}
     while open_cases(folder):
@@ -89,7 +89,7 @@ def fill(tool: str, folder: Path, site: Path = WHEEL_SITE) -> None:
 def limit(kind: str, site: Path, *words: str) -> Record:
     """What `holes_limits.py` says of ours, or why it says nothing."""
     command = [sys.executable, str(ROOT / "benchmarks/holes_limits.py"), kind, *words]
-    environment = {**os.environ, "PYTHONPATH": str(site)}
+    environment = {**os.environ, "PYTHONPATH": python_path(site)}
     try:
         done = subprocess.run(
             command, env=environment, capture_output=True, text=True, timeout=PATIENCE, check=False

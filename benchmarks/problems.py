@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-import shapes
+from known_shapes import shapes
 from numpy.typing import NDArray
 from workspace import ROOT
 

@@ -13,22 +13,19 @@ import argparse
 import json
 import os
 import platform
-import sys
 import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
-# Beside this folder: the shapes of the tests, and what all scripts share.
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests")]
+import driver
+import scalar_table
+import suite
+import table
+from classes import CLASSES, points
+from problems import Mesh, Problem, load_obj, mesh
 
-import driver  # noqa: E402
-import scalar_table  # noqa: E402
-import suite  # noqa: E402
-import table  # noqa: E402
-from classes import CLASSES, points  # noqa: E402
-from problems import Mesh, Problem, load_obj, mesh  # noqa: E402
+ROOT = Path(__file__).resolve().parents[1]
 
 RESULTS = ROOT / "benchmarks/results"
 

@@ -19,18 +19,14 @@ import time
 from pathlib import Path
 
 import numpy as np
+from build_wheel import build_wheel
+from cells import duration, grid
+from known_shapes import segment_shapes, shapes
+from known_shapes.segment_shapes import SHAPES, Part, adjusted_rand_index
+from numpy.typing import NDArray
+from workspace import STATE, WHEEL_SITE, digest, is_current
 
 ROOT = Path(__file__).resolve().parents[1]
-# Beside this folder: the shapes of the tests, and what all scripts share.
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests")]
-
-import segment_shapes  # noqa: E402
-import shapes  # noqa: E402
-from build_wheel import build_wheel  # noqa: E402
-from cells import duration, grid  # noqa: E402
-from numpy.typing import NDArray  # noqa: E402
-from segment_shapes import SHAPES, Part, adjusted_rand_index  # noqa: E402
-from workspace import STATE, WHEEL_SITE, digest, is_current  # noqa: E402
 
 RESULTS = ROOT / "benchmarks/segments.md"
 REQUIREMENTS = ROOT / "benchmarks/requirements-segments.txt"
@@ -213,13 +209,13 @@ def main() -> None:
 INTRODUCTION = """# Segments against known truth
 
 `make bench-segments` makes this page. Shapes with known parts
-([segment_shapes.py](../tests/segment_shapes.py)), three densities, Gaussian noise in every coordinate of
-the given share of the mean edge, random rotations. Each cell: segments found, and the adjusted Rand index
-with the truth, the least of two noises and rotations; one set of defaults for all. Bold: the true count and
-at least 0.98 up to noise of 0.1, at least 0.92 at 0.2 ({total}). *As the paper*: `method="paper"` with ε
-down to 0.02, cut at 0.6, pieces under 20 faces merged. *trimesh facets*: faces in no facet count one by
-one. *Linked flat*: Blender's selection over edges flatter than an angle, the best of {angles} degrees,
-chosen with the truth. Time: processor time of ours, mean.
+([segment_shapes.py](../tests/known_shapes/segment_shapes.py)), three densities, Gaussian noise in every
+coordinate of the given share of the mean edge, random rotations. Each cell: segments found, and the
+adjusted Rand index with the truth, the least of two noises and rotations; one set of defaults for all.
+Bold: the true count and at least 0.98 up to noise of 0.1, at least 0.92 at 0.2 ({total}). *As the paper*:
+`method="paper"` with ε down to 0.02, cut at 0.6, pieces under 20 faces merged. *trimesh facets*: faces in
+no facet count one by one. *Linked flat*: Blender's selection over edges flatter than an angle, the best of
+{angles} degrees, chosen with the truth. Time: processor time of ours, mean.
 
 """
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-import shapes
+from known_shapes import shapes
 from mathutils import Euler, Matrix
 from numpy.typing import ArrayLike
 

@@ -48,7 +48,7 @@ def main(names: list[str]) -> None:
     if unknown:
         stop(f"no figure is called {', '.join(unknown)}: there are {', '.join(FIGURES)}")
     build_wheel()
-    sys.path[:0] = [str(WHEEL_SITE), str(ROOT), str(ROOT / "tests")]
+    sys.path[:0] = [str(WHEEL_SITE), str(ROOT)]
     # Before everything that might load another NumPy.
     import bpy  # noqa: F401, PLC0415
 

@@ -6,10 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import bpy
-import holed_shapes
 import numpy as np
 import pictures
-import shapes
+from known_shapes import holed_shapes, shapes
 from numpy.typing import NDArray
 from picture_geometry import Lines
 

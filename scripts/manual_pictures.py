@@ -3,7 +3,7 @@
     python scripts/setup_env.py scripts/manual_pictures.py [NAME ...]
 
 Everything is computed with the sliders of the add-on, from the meshes of `blend_fixtures` and of
-`tests/shapes.py`.
+`tests/known_shapes/shapes.py`.
 """
 
 import sys
@@ -84,7 +84,7 @@ def sliders(name: str, view: tuple[float, float, float], size: tuple[int, int]) 
 def density() -> None:
     """One strength on Spot at four densities."""
     import pictures  # noqa: PLC0415
-    import shapes  # noqa: PLC0415
+    from known_shapes import shapes  # noqa: PLC0415
 
     coarse, fine = source("spot_low_resolution"), source("spot")
     row, captions = [], []
@@ -98,7 +98,7 @@ def density() -> None:
 def noisy_cube() -> None:
     """A cube under noise, restored with the paper's weight."""
     import pictures  # noqa: PLC0415
-    import shapes  # noqa: PLC0415
+    from known_shapes import shapes  # noqa: PLC0415
 
     vertices, faces = shapes.noisy_cube(seed=0)
     paper = {"use_fidelity": True, "fidelity": 500.0, "scale": "max_edge"}
@@ -153,7 +153,7 @@ def segments() -> None:
     """A house under noise, and the bust from one run in three numbers of segments."""
     import pictures  # noqa: PLC0415
     import ridgeform  # noqa: PLC0415
-    import shapes  # noqa: PLC0415
+    from known_shapes import shapes  # noqa: PLC0415
 
     from addon.framework.shared_settings import defaults_of  # noqa: PLC0415
     from addon.segments.settings import SegmentSettings, segment_options  # noqa: PLC0415
@@ -200,7 +200,7 @@ DRAWN = {
 def main(names: list[str]) -> None:
     """Draw all pictures, or those named."""
     build_wheel()
-    sys.path[:0] = [str(WHEEL_SITE), str(ROOT), str(ROOT / "tests")]
+    sys.path[:0] = [str(WHEEL_SITE), str(ROOT)]
     import bpy  # noqa: F401, PLC0415
 
     PICTURES.mkdir(parents=True, exist_ok=True)

@@ -17,7 +17,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from workspace import ROOT, STATE, digest, is_current, run, stop
+from workspace import ROOT, STATE, digest, is_current, python_path, run, stop
 
 PYTHONS = {"3.11": "4.2 LTS", "3.13": "5.2 LTS"}
 """Python versions, and the Blender whose `bpy` package needs them."""
@@ -153,6 +153,7 @@ def main(arguments: list[str]) -> int:
     if not arguments:
         return 0
     os.environ["RIDGEFORM_VERSIONS"] = " ".join(pythons)
+    os.environ["PYTHONPATH"] = python_path()
     first = environment_python(next(iter(pythons)))
     return subprocess.run([str(first), *arguments], cwd=str(ROOT), check=False).returncode
 

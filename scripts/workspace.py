@@ -22,6 +22,11 @@ WHEEL_SITE = STATE / "wheel-site"
 """The built wheel, unpacked; kept out of the environments, so that Blender can only find the bundled one."""
 
 
+def python_path(*folders: Path) -> str:
+    """PYTHONPATH with these folders, then `known_shapes` and what all scripts share."""
+    return os.pathsep.join(map(str, [*folders, ROOT / "tests", ROOT / "scripts"]))
+
+
 def stop(message: str) -> NoReturn:
     """End with one line on what is missing or went wrong."""
     sys.exit("ridgeform: " + message)

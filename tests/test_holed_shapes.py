@@ -1,10 +1,8 @@
 """The shapes with holes are what they promise, and the measures on them give known answers."""
 
-import fill_measures
-import holed_shapes
 import numpy as np
 import pytest
-import shapes
+from known_shapes import fill_measures, holed_shapes, shapes
 
 CENTRES = {
     "cube": (1, 0.1, 1),

@@ -3,7 +3,7 @@
 import numpy as np
 import picture_isolines
 import pytest
-import shapes
+from known_shapes import shapes
 
 LEVELS = np.linspace(-0.8, 0.8, 9)
 

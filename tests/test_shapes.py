@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-import shapes
+from known_shapes import shapes
 
 CLOSED = {  # name: (Euler characteristic, area, volume), None where the shape approximates a curved one
     "cube": (2, 24.0, 8.0),

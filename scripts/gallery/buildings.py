@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import ridgeform
-import shapes
+from known_shapes import shapes
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]

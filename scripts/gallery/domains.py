@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import shapes
+from known_shapes import shapes
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay
 from workspace import ROOT

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import ridgeform
-import shapes
+from known_shapes import shapes
 from numpy.typing import NDArray
 
 from . import domains, functions

@@ -6,11 +6,10 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-import holed_shapes
 import numpy as np
 import ridgeform
-import shapes
-from fill_measures import point_distances
+from known_shapes import holed_shapes, shapes
+from known_shapes.fill_measures import point_distances
 from numpy.typing import NDArray
 
 from . import domains

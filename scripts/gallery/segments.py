@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import ridgeform
-import segment_shapes
+from known_shapes import segment_shapes
 from numpy.typing import NDArray
 from ridgeform import Segmentation
 

@@ -10,9 +10,9 @@ import fast_simplification
 import numpy as np
 import pytest
 import ridgeform
-import shapes
 from bl_ext.user_default.ridgeform.framework import job
 from blender_profile import EXTENSION
+from known_shapes import shapes
 
 
 def test_enabled_from_the_profile(profile):

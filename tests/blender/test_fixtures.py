@@ -5,7 +5,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-import shapes
+from known_shapes import shapes
 
 FOLDER = Path(__file__).resolve().parents[2] / "blend_fixtures"
 

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pictures
 import pytest
-import shapes
+from known_shapes import shapes
 from picture_geometry import Dots, Lines
 from picture_scene import load_png, save_png, save_small_png
 

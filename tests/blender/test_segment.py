@@ -5,12 +5,12 @@ import bpy
 import numpy as np
 import pytest
 import ridgeform
-import shapes
 from bl_ext.user_default.ridgeform.blender import attribute_io, mesh_io
 from bl_ext.user_default.ridgeform.framework import job
 from bl_ext.user_default.ridgeform.framework.shared_settings import defaults_of
 from bl_ext.user_default.ridgeform.segments import layers, slots, tool
 from bl_ext.user_default.ridgeform.segments.settings import SegmentSettings, segment_options
+from known_shapes import shapes
 from test_modal import FakeContext, event, poll_to_the_end
 from test_modal_attributes import FakeOperator
 

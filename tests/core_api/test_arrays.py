@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import ridgeform
-import shapes
+from known_shapes import shapes
 
 VERTICES = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])

@@ -1,10 +1,9 @@
 """`segment` on shapes modelled by hand, whose sides are a few triangles."""
 
-import coarse_shapes
 import numpy as np
 import pytest
 import ridgeform
-import segment_shapes
+from known_shapes import coarse_shapes, segment_shapes
 
 SHAPES = {
     "cube": (coarse_shapes.box(), 6),

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import ridgeform
-import shapes
+from known_shapes import shapes
 
 KINDS = (
     "l1_hessian",

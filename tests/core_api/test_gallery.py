@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import ridgeform
-import shapes
 from gallery import distances, domains, heights, measures
+from known_shapes import shapes
 
 SIDE = 18
 

@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 import ridgeform
-import shapes
+from known_shapes import shapes
 
 
 @pytest.fixture

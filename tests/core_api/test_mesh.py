@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import ridgeform
-import shapes
+from known_shapes import shapes
 
 
 def test_a_mesh_gives_back_what_it_was_made_from():

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 import ridgeform
-import shapes
 from hypothesis import given
 from hypothesis import strategies as st
+from known_shapes import shapes
 from reference import block_norms, dense_hessian
 
 

@@ -8,7 +8,7 @@ import time
 import numpy as np
 import pytest
 import ridgeform
-import shapes
+from known_shapes import shapes
 
 # One inner iteration or factorisation here takes up to half a second; the rest is for busy machines.
 PATIENCE = 5.0

@@ -5,8 +5,8 @@
 
 import numpy as np
 import pytest
-import random_holes
 import ridgeform
+from known_shapes import random_holes
 
 SEEDS = range(20)
 """Two for each mesh."""

@@ -5,8 +5,8 @@
 
 import numpy as np
 import pytest
-import random_ridges
 import ridgeform
+from known_shapes import random_ridges
 
 SEEDS = range(6)
 """Holes of each kind."""

@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import ridgeform
-import segment_shapes
-import shapes
+from known_shapes import segment_shapes, shapes
 
 SOURCES = Path(__file__).parents[2] / "blend_fixtures/sources"
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from segment_shapes import Part, parts_by_angle
+
+from .segment_shapes import Part, parts_by_angle
 
 Polygons = Sequence[Sequence[int]]
 

@@ -9,9 +9,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import shapes
-from fill_measures import boundary_edges, point_distances
 from numpy.typing import NDArray
+
+from . import shapes
+from .fill_measures import boundary_edges, point_distances
 
 Points = NDArray[np.float64]
 Faces = NDArray[np.int64]

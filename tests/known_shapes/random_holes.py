@@ -6,16 +6,15 @@ import functools
 from collections.abc import Callable
 from pathlib import Path
 
-import fill_measures
-import holed_shapes
 import numpy as np
-import shapes
 from numpy.typing import NDArray
+
+from . import fill_measures, holed_shapes, shapes
 
 Points = NDArray[np.float64]
 Faces = NDArray[np.int64]
 
-SOURCES = Path(__file__).parents[1] / "blend_fixtures/sources"
+SOURCES = Path(__file__).parents[2] / "blend_fixtures/sources"
 FOLDED = np.cos(np.radians(175.0))
 """Two faces that turn back on each other by more are taken for flipped: no ridge in use is as sharp."""
 LEAST_QUALITY = 1e-4

@@ -10,8 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-import shapes
 from numpy.typing import NDArray
+
+from . import shapes
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import functools
 
-import fill_measures
-import holed_shapes
 import numpy as np
-from holed_shapes import Holed, Solid
+
+from . import fill_measures, holed_shapes
+from .holed_shapes import Holed, Solid
 
 KINDS = {
     "cube, edge": (holed_shapes.cube, (1, 0, 1), (0, 0.25, 0)),
