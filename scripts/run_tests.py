@@ -23,10 +23,10 @@ def main(arguments: list[str]) -> None:
         )
         in_blender = {"RIDGEFORM_EXTENSION": str(extension), "PYTHONPATH": ""}
         # In a process of its own: after an undo the glTF exporter of Blender 4.2 crashes now and then.
-        batch = "tests/blender/test_batch.py"
-        parts[f"batch command in Blender {PYTHONS[version]}"] = ([*pytest, batch], in_blender)
+        batch = sorted((ROOT / "tests/blender").glob("test_batch*.py"))
+        parts[f"batch command in Blender {PYTHONS[version]}"] = ([*pytest, *batch], in_blender)
         parts[f"extension in Blender {PYTHONS[version]}"] = (
-            [*pytest, "tests/blender", f"--ignore={batch}"],
+            [*pytest, "tests/blender", *(f"--ignore={path}" for path in batch)],
             in_blender,
         )
     parts["Rust tests"] = (

@@ -11,6 +11,7 @@ from bpy_extras.io_utils import ExportHelper
 from ..blender import mesh_io
 from ..framework.run import RefusedError
 from ..framework.tool_operator import ToolOperator
+from ..framework.writing import write_text
 from . import curves_io, drawing, svg
 from .redraw_curves import read_on_mesh, redraw
 from .rows import draw_settings
@@ -132,7 +133,7 @@ class RIDGEFORM_OT_export_diffusion_svg(_OnCurves, bpy.types.Operator, ExportHel
             with mesh_io.object_mode():
                 _, points = read_on_mesh(obj, child)
             text = svg.drawing(obj, child, points, self.width / 100.0, self.fill)
-            Path(self.filepath).write_text(text, encoding="utf-8")
+            write_text(Path(self.filepath), text)
         except (RefusedError, curves_io.CurvesRefusedError, ridgeform.RidgeformError, OSError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}

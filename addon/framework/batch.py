@@ -5,7 +5,6 @@
 wheel and the `bpy` package installed, `python -m addon stylize FILES -o OUT`.
 """
 
-import argparse
 import contextlib
 import ctypes
 import json
@@ -23,6 +22,7 @@ from . import files
 from .batch_options import TOOLS, parser, settings_from
 from .console import ProgressBar
 from .run import NO_RESULT, RefusedError, Run
+from .targets import Ledger, Target, assign
 
 COMMAND = "ridgeform"
 POLL_SECONDS = 0.05
@@ -37,11 +37,11 @@ def main(arguments: Sequence[str]) -> int:
         return int(leaving.code or 0)
     settings = settings_from(options)
     failed = False
-    taken: set[Path] = set()
     try:
         with _clean_output(options.json) as emit:
-            for source in options.files:
-                record = _one_file(source, options, settings, taken)
+            targets, ledger = assign(options.files, options.output, options.format)
+            for target in targets:
+                record = _one_file(target, TOOLS[options.tool].run, settings, ledger)
                 failed |= record["error"] is not None
                 emit(record)
     except KeyboardInterrupt:
@@ -49,11 +49,9 @@ def main(arguments: Sequence[str]) -> int:
     return 1 if failed else 0
 
 
-def _one_file(
-    source: Path, options: argparse.Namespace, settings: object, taken: set[Path]
-) -> dict[str, object]:
+def _one_file(target: Target, tool: type[Run], settings: object, ledger: Ledger) -> dict[str, object]:
     record: dict[str, object] = {
-        "file": str(source),
+        "file": str(target.source),
         "output": None,
         "vertices": None,
         "faces": None,
@@ -67,15 +65,11 @@ def _one_file(
     }
     begin = time.perf_counter()
     try:
-        target = _target(source, options)
-        if target in taken:
-            raise files.FileError(f"{target} is already the output of another file")
-        if target == source.resolve():
-            raise files.FileError(f"{source.name} would be overwritten: choose another output")
-        run = _run_file(source, TOOLS[options.tool].run, settings)
-        files.write_file(target)
-        taken.add(target)
-        record |= _record_of(run) | {"output": str(target)}
+        if target.error is not None:
+            raise files.FileError(f"{target.error}: choose another output")
+        run = _run_file(target.source, tool, settings, ledger)
+        files.write_file(target.path, ledger)
+        record |= _record_of(run) | {"output": str(target.path)}
         if run.errors:
             record["error"] = "; ".join(run.errors)
     except (files.FileError, RefusedError) as error:
@@ -88,8 +82,9 @@ def _one_file(
     return record
 
 
-def _run_file(source: Path, tool: type[Run], settings: object) -> Run:
+def _run_file(source: Path, tool: type[Run], settings: object, ledger: Ledger) -> Run:
     chosen = selection.usable(files.read_file(source), tool.needs)
+    ledger.add_inputs(files.files_in_use())
     run = tool(chosen.objects, settings, chosen.skipped)
     run.job.start()
     try:
@@ -122,14 +117,6 @@ def _record_of(run: Run) -> dict[str, object]:
 def _total(entries: Sequence[dict[str, object]], key: str) -> float | None:
     values = [entry[key] for entry in entries]
     return None if None in values else sum(values)
-
-
-def _target(source: Path, options: argparse.Namespace) -> Path:
-    out: Path = options.output
-    into_folder = len(options.files) > 1 or options.format is not None or out.is_dir() or not out.suffix
-    target = out / (source.stem + (options.format or source.suffix.lower())) if into_folder else out
-    files.check_suffix(target)
-    return target.resolve()
 
 
 @contextlib.contextmanager

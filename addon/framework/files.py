@@ -1,10 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reading and writing files in the formats that Blender itself reads and writes."""
 
-from collections.abc import Callable
+import contextlib
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
+
+from .completeness_blend import IncompleteError
+from .writing import Protected, write_whole
+
+UNSAFE = re.compile(r"[^\w .-]|^\.+")
+"""What makes the name of an image more than the name of a file."""
+RAISED = re.compile(r"\w+(Error|Exception): ")
+"""How the line of a traceback begins that says what was raised."""
 
 
 def _import_fbx(filepath: str) -> None:
@@ -23,32 +34,57 @@ def _import_gltf(filepath: str) -> None:
 
 def _export_gltf(filepath: str) -> None:
     kind = "GLB" if filepath.lower().endswith(".glb") else "GLTF_SEPARATE"
-    bpy.ops.export_scene.gltf(filepath=filepath, export_format=kind)
+    with _plain_image_names():
+        bpy.ops.export_scene.gltf(filepath=filepath, export_format=kind)
 
 
-_USD = (lambda path: bpy.ops.wm.usd_import(filepath=path), lambda path: bpy.ops.wm.usd_export(filepath=path))
-_GLTF = (_import_gltf, _export_gltf)
+@contextlib.contextmanager
+def _plain_image_names() -> Iterator[None]:
+    """Have no image called like a path: Blender 5.2 writes one called "../wood" outside the folder."""
+    names = {image: image.name for image in bpy.data.images if UNSAFE.search(image.name)}
+    try:
+        for image, name in names.items():
+            image.name = UNSAFE.sub("_", name)
+        yield
+    finally:
+        for image, name in names.items():
+            image.name = name
 
-FORMATS: dict[str, tuple[Callable[[str], object], Callable[[str], object]]] = {
-    ".blend": (
-        lambda path: bpy.ops.wm.open_mainfile(filepath=path, load_ui=False),
+
+@dataclass(frozen=True)
+class Format:
+    """How Blender reads and writes one kind of file."""
+
+    read: Callable[[str], object]
+    write: Callable[[str], object]
+    several: bool = False
+    """Whether materials, images or numbers go into files of their own, beside it."""
+
+
+_USD = Format(
+    lambda path: bpy.ops.wm.usd_import(filepath=path), lambda path: bpy.ops.wm.usd_export(filepath=path), True
+)
+
+FORMATS: dict[str, Format] = {
+    ".blend": Format(
+        # Scripts in a file are somebody else's: they do not run, whatever the preferences say.
+        lambda path: bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False),
         lambda path: bpy.ops.wm.save_as_mainfile(filepath=path, copy=True),
     ),
-    ".obj": (
+    ".obj": Format(
         lambda path: bpy.ops.wm.obj_import(filepath=path),
         lambda path: bpy.ops.wm.obj_export(filepath=path),
+        True,
     ),
-    ".ply": (
-        lambda path: bpy.ops.wm.ply_import(filepath=path),
-        lambda path: bpy.ops.wm.ply_export(filepath=path),
+    ".ply": Format(
+        lambda path: bpy.ops.wm.ply_import(filepath=path), lambda path: bpy.ops.wm.ply_export(filepath=path)
     ),
-    ".stl": (
-        lambda path: bpy.ops.wm.stl_import(filepath=path),
-        lambda path: bpy.ops.wm.stl_export(filepath=path),
+    ".stl": Format(
+        lambda path: bpy.ops.wm.stl_import(filepath=path), lambda path: bpy.ops.wm.stl_export(filepath=path)
     ),
-    ".glb": _GLTF,
-    ".gltf": _GLTF,
-    ".fbx": (_import_fbx, lambda path: bpy.ops.export_scene.fbx(filepath=path)),
+    ".glb": Format(_import_gltf, _export_gltf),
+    ".gltf": Format(_import_gltf, _export_gltf, True),
+    ".fbx": Format(_import_fbx, lambda path: bpy.ops.export_scene.fbx(filepath=path)),
     ".usd": _USD,
     ".usda": _USD,
     ".usdc": _USD,
@@ -78,7 +114,10 @@ def read_file(path: Path) -> list[bpy.types.Object]:
         raise FileError(f"{path} does not exist or is not a file")
     if suffix != ".blend":
         bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
-    _call(FORMATS[suffix][0], path)
+    try:
+        _call(FORMATS[suffix].read, str(path))
+    except _OperatorError as error:
+        raise FileError(f"{path.name}: {error}") from error
     if bpy.context.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
     objects = [obj for obj in bpy.data.objects if obj.type == "MESH"]
@@ -87,20 +126,39 @@ def read_file(path: Path) -> list[bpy.types.Object]:
     return objects
 
 
-def write_file(path: Path) -> None:
-    """Write what Blender has open; makes the folder if there is none. `FileError` if it cannot be written."""
-    suffix = check_suffix(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    _call(FORMATS[suffix][1], path)
-    if not path.is_file():
-        raise FileError(f"{path} was not written")
+def write_file(path: Path, protected: Protected | None = None) -> None:
+    """Write what Blender has open; makes the folder if there is none.
 
-
-def _call(operator: Callable[[str], object], path: Path) -> None:
+    `FileError` if it cannot be written or is `protected`; what was there before is as it was then.
+    """
+    kind = FORMATS[check_suffix(path)]
     try:
-        outcome = operator(str(path))
+        write_whole(path, lambda hidden: _call(kind.write, hidden), kind.several, protected)
+    except (_OperatorError, IncompleteError, OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else error
+        raise FileError(f"{path} was not written: {reason}") from error
+
+
+def files_in_use() -> list[Path]:
+    """The files that the open one refers to: images, libraries, caches."""
+    return [Path(path) for path in bpy.utils.blend_paths(absolute=True)]
+
+
+class _OperatorError(Exception):
+    """What an operator says on a file that it cannot read or write."""
+
+
+def _call(operator: Callable[[str], object], path: str) -> None:
+    try:
+        outcome = operator(path)
     except (RuntimeError, AttributeError, OSError) as error:
-        # Blender's importers report by raising RuntimeError, "Error: …" on several lines.
-        raise FileError(f"{path.name}: {' '.join(str(error).split())}") from error
+        raise _OperatorError(_reason(error)) from error
     if isinstance(outcome, set) and "CANCELLED" in outcome:
-        raise FileError(f"{path.name}: Blender cancelled reading or writing it")
+        raise _OperatorError("Blender cancelled it")
+
+
+def _reason(error: Exception) -> str:
+    """What an operator says: "Error: ..." on several lines, or a traceback of which one line counts."""
+    lines = str(error).splitlines()
+    raised = [line for line in lines if RAISED.match(line)]
+    return raised[-1] if raised and "Traceback" in lines[0] else " ".join(" ".join(lines).split())
