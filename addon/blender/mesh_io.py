@@ -164,9 +164,14 @@ def open_coordinates(obj: bpy.types.Object) -> Coordinates:
     return _PositionCoordinates(obj)
 
 
-def _read_positions(mesh: bpy.types.Mesh) -> np.ndarray:
+def positions(mesh: bpy.types.Mesh) -> np.ndarray:
+    """The positions (n, 3) float32 of the vertices, in Edit Mode by a slower way."""
     values = np.empty(3 * len(mesh.vertices), np.float32)
-    mesh.attributes["position"].data.foreach_get("vector", values)
+    attribute = mesh.attributes.get("position")
+    if attribute is None:
+        mesh.vertices.foreach_get("co", values)
+    else:
+        attribute.data.foreach_get("vector", values)
     return values.reshape(-1, 3)
 
 
@@ -194,7 +199,7 @@ def _write_key(key: bpy.types.ShapeKey, coordinates: np.ndarray) -> None:
 class _PositionCoordinates:
     def __init__(self, obj: bpy.types.Object) -> None:
         self._object = obj
-        self.original = _read_positions(obj.data)
+        self.original = positions(obj.data)
 
     def write(self, coordinates: np.ndarray) -> None:
         _write_positions(self._object.data, coordinates)
@@ -213,7 +218,7 @@ class _KeyCoordinates:
         active = active_key_index(obj)
         self._active = active
         self._moves_mesh = keys.key_blocks[active] == keys.reference_key
-        self._mesh_original = _read_positions(obj.data)
+        self._mesh_original = positions(obj.data)
         self._dependent = {
             index: _read_key(keys.key_blocks[index]) for index in _dependent_keys(keys, active)
         }

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Surfaces drawn over the 3D views while a tool runs, without touching any mesh."""
 
+import traceback
 from collections.abc import Sequence
 
 import bpy
@@ -54,6 +55,14 @@ class Overlay:
             _redraw()
 
     def _draw(self) -> None:
+        try:
+            self._draw_batch()
+        except Exception:
+            # Once, and not for every redraw: nothing is shown from now on.
+            traceback.print_exc()
+            self._draw_batch = lambda: None
+
+    def _draw_batch(self) -> None:
         # Made here, since only while drawing is there surely a graphics context.
         shader = gpu.shader.from_builtin("FLAT_COLOR")
         if self._batch is None:

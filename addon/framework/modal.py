@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The modal run of a job: live preview, Esc restores, Enter keeps, status bar and cursor show progress."""
 
+import contextlib
+import traceback
 from collections.abc import Sequence
 from typing import Protocol
 
 import bpy
 from bpy.app.handlers import persistent
 
+from ..blender.mesh_state import ChangedError
 from .job import Job
 
 POLL_SECONDS = 0.05
@@ -49,8 +52,8 @@ class Run(Protocol):
     def preview(self) -> bool:
         """Show how far the job is; whether there was something new."""
 
-    def restore(self) -> None:
-        """Put everything back as it was."""
+    def restore(self) -> list[str]:
+        """Put everything back as it was; a sentence for each mesh that stays as it is now."""
 
     def apply(self) -> None:
         """Write the result."""
@@ -74,13 +77,21 @@ def action_of(event_type: str, value: str) -> str:
     return "ignore"
 
 
-def abort(run: Run) -> None:
-    """Stop a run, wait for its thread, and put everything back; a second call does nothing."""
+def abort(run: Run) -> list[str]:
+    """Stop a run, wait for its thread, and put everything back; a second call does nothing.
+
+    Returns a sentence for each mesh that could not be put back. Nothing is raised: what else may happen here
+    happens while Blender opens a file, closes a window or undoes a step.
+    """
     if run not in _running:
-        return
+        return []
     _running.remove(run)
     run.job.cancel()
-    run.restore()
+    try:
+        return run.restore()
+    except Exception as error:
+        traceback.print_exc()
+        return [f"not everything could be put back ({type(error).__name__}: {error})"]
 
 
 def status_line(job: Job) -> str:
@@ -96,7 +107,13 @@ def status_line(job: Job) -> str:
 
 
 class ModalRun:
-    """Mixin for operators that compute while Blender draws: call `begin_modal` from `invoke`."""
+    """Mixin for operators that compute while Blender draws: call `begin_modal` from `invoke`.
+
+    Whatever goes wrong at whatever moment comes to `_stopped`: nothing is raised to Blender.
+    """
+
+    _timer = None
+    _area: int | None = None
 
     def finished(self, _context: bpy.types.Context, run: Run) -> set[str]:
         """Write the result of a run and report what happened; returns what the operator returns."""
@@ -107,19 +124,36 @@ class ModalRun:
         self.report({"WARNING"} if run.errors else {"INFO"}, run.report())
         return {"FINISHED"}
 
+    def run_at_once(self, context: bpy.types.Context, run: Run) -> set[str]:
+        """Do the whole job here and now."""
+        _running.append(run)
+        try:
+            run.job.run()
+            outcome = self.finished(context, run)
+            _running.remove(run)
+        except Exception as error:
+            return self._stopped(context, run, error)
+        except BaseException:
+            abort(run)
+            raise
+        return outcome
+
     def begin_modal(self, context: bpy.types.Context, run: Run) -> set[str]:
         """Start the job and hand over to `modal`."""
         self._run = run
         self._keeping = False
         _running.append(run)
-        run.job.start()
-        manager = context.window_manager
-        manager.progress_begin(0, CURSOR_RANGE)
-        self._timer = manager.event_timer_add(POLL_SECONDS, window=context.window)
-        # Not the area itself: touching one that was closed meanwhile would crash Blender.
-        self._area = None if context.area is None else context.area.as_pointer()
-        manager.modal_handler_add(self)
-        self._show(context)
+        try:
+            run.job.start()
+            manager = context.window_manager
+            manager.progress_begin(0, CURSOR_RANGE)
+            self._timer = manager.event_timer_add(POLL_SECONDS, window=context.window)
+            # Not the area itself: touching one that was closed meanwhile would crash Blender.
+            self._area = None if context.area is None else context.area.as_pointer()
+            manager.modal_handler_add(self)
+            self._show(context)
+        except Exception as error:
+            return self._stopped(context, run, error)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -128,40 +162,49 @@ class ModalRun:
         if run not in _running:
             self._close(context)
             return {"CANCELLED"}
-        action = action_of(event.type, event.value)
-        if action == "navigate":
-            return {"PASS_THROUGH"}
-        if action == "cancel":
-            self._close(context)
-            abort(run)
-            self.report({"INFO"}, "Cancelled: everything is as it was")
-            return {"CANCELLED"}
-        if action == "keep":
-            self._keeping = True
-            run.job.finish()
-        if action == "poll":
-            return self._poll(context, run)
-        return {"RUNNING_MODAL"}
+        try:
+            return self._handle(context, run, action_of(event.type, event.value))
+        except Exception as error:
+            return self._stopped(context, run, error)
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender takes the operator away: the window is closed or another file is opened."""
         self._close(context)
         abort(self._run)
 
-    def _poll(self, context: bpy.types.Context, run: Run) -> set[str]:
-        try:
-            if run.job.is_running:
-                run.preview()
-                self._show(context)
-                return {"RUNNING_MODAL"}
+    def _handle(self, context: bpy.types.Context, run: Run, action: str) -> set[str]:
+        if action == "navigate":
+            return {"PASS_THROUGH"}
+        if action == "cancel":
             self._close(context)
-            _running.remove(run)
-            return self.finished(context, run)
-        except ReferenceError:
-            self._close(context)
-            abort(run)
-            self.report({"ERROR"}, "Stopped, because an object was deleted meanwhile")
+            left = abort(run)
+            self.report({"WARNING"} if left else {"INFO"}, _cancelled(left))
             return {"CANCELLED"}
+        if action == "keep":
+            self._keeping = True
+            run.job.finish()
+        if action == "poll":
+            if not run.job.is_running:
+                self._close(context)
+                outcome = self.finished(context, run)
+                _running.remove(run)
+                return outcome
+            run.preview()
+            self._show(context)
+        return {"RUNNING_MODAL"}
+
+    def _stopped(self, context: bpy.types.Context, run: Run, error: Exception) -> set[str]:
+        """End a run that cannot go on: thread, timer and preview go, the meshes stay, and why is said."""
+        self._close(context)
+        left = abort(run)
+        if isinstance(error, ChangedError):
+            reason = str(error)
+        else:
+            traceback.print_exception(error)
+            reason = f"{type(error).__name__}: {error}"
+        sentences = [reason, *(sentence for sentence in left if sentence != reason)]
+        self.report({"ERROR"}, f"Stopped: {'; '.join(sentences)}")
+        return {"CANCELLED"}
 
     def _show(self, context: bpy.types.Context) -> None:
         job = self._run.job
@@ -175,19 +218,28 @@ class ModalRun:
             row.label(text=hint, icon="EVENT_RETURN")
             row.label(text=line)
 
-        context.workspace.status_text_set(draw)
+        if context.workspace is not None:
+            context.workspace.status_text_set(draw)
         _set_header(context, self._area, f"Ridgeform  {100 * job.fraction:.0f} %   {line}")
 
     def _close(self, context: bpy.types.Context) -> None:
-        if self._timer is None:
+        timer, self._timer = self._timer, None
+        if timer is None:
             return
         manager = context.window_manager
-        manager.event_timer_remove(self._timer)
-        self._timer = None
-        manager.progress_end()
-        if context.workspace is not None:
-            context.workspace.status_text_set(None)
-        _set_header(context, self._area, None)
+        for step in (
+            lambda: manager.event_timer_remove(timer),
+            manager.progress_end,
+            lambda: context.workspace.status_text_set(None),
+            lambda: _set_header(context, self._area, None),
+        ):
+            # A window or a workspace may be gone; the other steps are due all the same.
+            with contextlib.suppress(ReferenceError, AttributeError, RuntimeError):
+                step()
+
+
+def _cancelled(left: Sequence[str]) -> str:
+    return "; ".join(["Cancelled", *left]) if left else "Cancelled: everything is as it was"
 
 
 def _set_header(context: bpy.types.Context, area_pointer: int | None, text: str | None) -> None:

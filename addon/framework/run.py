@@ -11,6 +11,7 @@ import numpy as np
 import ridgeform
 
 from ..blender import mesh_io
+from ..blender.mesh_state import ChangedError, MeshState
 from ..blender.selection import MOVES
 from ..blender.welding import Weld, weld_seams
 from .job import Job, Task, store_summary
@@ -33,10 +34,15 @@ class Part:
     task: Task
     n_vertices: int
     warnings: list[str] = field(default_factory=list)
+    state: MeshState | None = field(default=None, init=False)
+    """What the mesh was like when it was read or last written."""
 
 
 class Run(ABC):
     """Some meshes and one tool: prepare, let `job` run, then `apply` or `restore`.
+
+    The three that write (`preview`, `restore`, `apply`) look first whether the meshes are still what was
+    read: a mesh that was changed meanwhile is never written, `ChangedError` says so.
 
     `skipped` are sentences on objects that do not take part. Meshes that cannot be worked on are added to it,
     unless none is left: then `RefusedError` is raised.
@@ -57,6 +63,8 @@ class Run(ABC):
         self._prepare_all(objects)
         if not self.parts:
             raise RefusedError(self.skipped[-1] if self.skipped else "Select a mesh object")
+        for part in self.parts:
+            part.state = MeshState(part.object)
         self.job = Job([part.task for part in self.parts])
         self.summary: list[dict[str, object]] = []
 
@@ -83,12 +91,36 @@ class Run(ABC):
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """The first words of the report on the summaries of the parts that are done."""
 
-    def preview(self) -> bool:
+    def show(self) -> bool:
         """Show how far the job is; whether there was something new."""
         return False
 
-    def restore(self) -> None:  # noqa: B027
-        """Put everything back as it was; nothing to do for a tool that writes at the end only."""
+    def put_back(self, part: Part) -> None:  # noqa: B027
+        """Put a mesh back as it was; nothing to do for a tool that writes at the end only."""
+
+    def clear(self) -> None:  # noqa: B027
+        """Take away what is shown beside the meshes."""
+
+    def preview(self) -> bool:
+        """Show how far the job is; whether there was something new. `ChangedError` as said above."""
+        self._check(thorough=False)
+        return self.show()
+
+    def restore(self) -> list[str]:
+        """Put everything back as it was; a sentence for each mesh that was changed meanwhile and stays so."""
+        self.clear()
+        left = []
+        for part in self.parts:
+            try:
+                part.state.check()
+                self.put_back(part)
+            except ChangedError as change:
+                left.append(str(change))
+        return left
+
+    def _check(self, thorough: bool = True) -> None:
+        for part in self.parts:
+            part.state.check(thorough)
 
     @property
     def done(self) -> list[Part]:
@@ -105,12 +137,14 @@ class Run(ABC):
     def apply(self) -> None:
         """Write the results; parts that failed or were never begun stay as they were.
 
-        An error that is not the wheel's own is a fault of the program: all is restored, and it is raised.
+        `ChangedError` as said above. An error that is not the wheel's own is a fault of the program: all is
+        restored, and it is raised.
         """
         for part in self.parts:
             if part.task.error is not None and not isinstance(part.task.error, ridgeform.RidgeformError):
                 self.restore()
                 raise part.task.error
+        self._check()
         self.write(self.done)
         self.summary = [self._summary_of(part) for part in self.parts]
         store_summary(self.summary)

@@ -42,10 +42,7 @@ class ToolOperator(ModalRun):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Do the whole job at once."""
         run = self._prepared(context)
-        if run is None:
-            return {"CANCELLED"}
-        run.job.run()
-        return self.finished(context, run)
+        return {"CANCELLED"} if run is None else self.run_at_once(context, run)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Run while Blender goes on drawing."""

@@ -94,7 +94,7 @@ class HoleFilling(Run):
         part.task.call = partial(_filled, part, mesh, hole_options(self.settings), self.settings.material)
         return part
 
-    def preview(self) -> bool:
+    def show(self) -> bool:
         """Draw the patches as far as they are, over the untouched meshes; whether anything is new."""
         shown = []
         for part in self.parts:
@@ -104,7 +104,7 @@ class HoleFilling(Run):
             shown += [(part.object.matrix_world, *surface) for surface in part.shown]
         return self._overlay.show(shown)
 
-    def restore(self) -> None:
+    def clear(self) -> None:
         """Take the preview away: the meshes were not touched."""
         self._overlay.remove()
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Stylizing meshes piecewise flat: Rowe et al. 2024, eq. (24), from reading a mesh to writing it back."""
 
-import contextlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -56,7 +55,7 @@ class Stylization(Run):
         """Read coordinates, selection, mask and ridge paint of one mesh."""
         return _prepare(obj, self.settings)
 
-    def preview(self) -> bool:
+    def show(self) -> bool:
         """Write the vertices after the last finished step of every part; whether any has moved on."""
         moved = False
         for index, part in enumerate(self.parts):
@@ -66,17 +65,17 @@ class Stylization(Run):
                 continue
             vertices = progress.snapshot()
             if vertices is not None:
+                # In Edit Mode that takes too long for every step.
+                part.state.check(thorough=not part.object.data.is_editmode)
                 part.coordinates.write(part.merged(vertices))
+                part.state.take_coordinates()
                 self._shown[index] = mark
                 moved = True
         return moved
 
-    def restore(self) -> None:
-        """Put back every mesh that is still there, bit by bit."""
-        for part in self.parts:
-            # An object whose file was closed, or that a script deleted meanwhile, needs nothing put back.
-            with contextlib.suppress(ReferenceError):
-                part.coordinates.restore()
+    def put_back(self, part: FlowPart) -> None:
+        """Put back every bit of the coordinates."""
+        part.coordinates.restore()
 
     @property
     def steps_done(self) -> int:

@@ -1,0 +1,229 @@
+"""The mesh of a run changes by another hand: the run ends, the mesh stays as that hand left it."""
+
+import time
+
+import addon_kit as kit
+import bmesh
+import bpy
+import modal_kit
+import pytest
+from bl_ext.user_default.ridgeform.framework import modal
+from modal_kit import Session, open_box, state
+
+
+@pytest.fixture(autouse=True)
+def none_left():
+    """No run is left over."""
+    yield
+    assert modal._running == []
+
+
+def add_vertices(obj):
+    obj.data.vertices.add(7)
+
+
+def delete_faces(obj):
+    edited = bmesh.new()
+    edited.from_mesh(obj.data)
+    edited.faces.ensure_lookup_table()
+    bmesh.ops.delete(edited, geom=edited.faces[:3], context="FACES")
+    edited.to_mesh(obj.data)
+    edited.free()
+
+
+def flip_faces(obj):
+    obj.data.flip_normals()
+
+
+def move_vertices(obj):
+    obj.data.vertices[5].co.x += 1.0
+
+
+def add_layer(obj):
+    obj.data.attributes.new("new", "FLOAT", "POINT")
+
+
+def remove_layers(obj):
+    obj.data.attributes.remove(obj.data.attributes["heat"])
+    obj.data.color_attributes.remove(obj.data.color_attributes["paint"])
+
+
+def add_keys(obj):
+    obj.shape_key_add(name="Basis")
+    obj.shape_key_add(name="Later")
+
+
+def remove_group(obj):
+    obj.vertex_groups.remove(obj.vertex_groups[0])
+
+
+def unlink(obj):
+    for collection in obj.users_collection:
+        collection.objects.unlink(obj)
+
+
+def replace_mesh(obj):
+    obj.data = obj.data.copy()
+
+
+def switch_mode(obj):
+    bpy.context.view_layer.objects.active = obj
+    bpy.ops.object.mode_set(mode="EDIT")
+
+
+CHANGES = [
+    add_vertices,
+    delete_faces,
+    flip_faces,
+    move_vertices,
+    add_layer,
+    remove_layers,
+    add_keys,
+    remove_group,
+    unlink,
+    replace_mesh,
+    switch_mode,
+]
+
+
+@pytest.mark.parametrize("change", CHANGES, ids=lambda change: change.__name__)
+@pytest.mark.parametrize("tool", modal_kit.TOOLS)
+def test_a_changed_mesh_stays_as_it_is(tool, change):
+    obj = open_box()
+    session = Session(tool, [obj])
+    change(obj)
+    before = state(obj) if obj.mode == "OBJECT" else None
+    assert session.finish() == {"CANCELLED"}
+    session.check_ended()
+    level, message = session.operator.reports[-1]
+    assert level == "ERROR"
+    assert message.startswith('Stopped: "Box" was changed meanwhile, ')
+    assert message.endswith(": it stays as it is now")
+    if before is None:
+        bpy.ops.object.mode_set(mode="OBJECT")
+    else:
+        assert state(obj) == before
+    assert not obj.data.validate()
+
+
+@pytest.mark.parametrize("change", CHANGES, ids=lambda change: change.__name__)
+@pytest.mark.parametrize("key", ["ESC", "TIMER"])
+def test_after_a_preview_too(change, key):
+    obj, other = open_box(), open_box("Other")
+    start = state(other)
+    session = Session("stylize", [obj, other], steps=500)
+    wait_for_preview(session, obj)
+    change(obj)
+    before = state(obj) if obj.mode == "OBJECT" else None
+    outcome = session.finish() if key == "TIMER" else session.send(key)
+    assert outcome == {"CANCELLED"}
+    session.check_ended()
+    level, message = session.operator.reports[-1]
+    assert level == ("ERROR" if key == "TIMER" else "WARNING")
+    assert '"Box" was changed meanwhile' in message
+    if before is not None:
+        assert state(obj) == before
+        assert state(other) == start
+
+
+def wait_for_preview(session, obj):
+    before = kit.coordinates(obj)
+    end = time.monotonic() + modal_kit.PATIENCE
+    while (kit.coordinates(obj) == before).all():
+        assert time.monotonic() < end, "no preview"
+        assert session.send("TIMER") == {"RUNNING_MODAL"}
+        time.sleep(0.002)
+
+
+def hide(obj):
+    obj.hide_viewport = True
+    obj.hide_set(True)
+
+
+def rename(obj):
+    obj.name = obj.data.name = "Another"
+
+
+def deselect(obj):
+    obj.select_set(False)
+    bpy.context.view_layer.objects.active = None
+
+
+def edit_another(_obj):
+    other = kit.bumpy_box("Another", cuts=1)
+    bpy.context.view_layer.objects.active = other
+    bpy.ops.object.mode_set(mode="EDIT")
+
+
+@pytest.mark.parametrize("change", [hide, rename, deselect, edit_another], ids=lambda change: change.__name__)
+@pytest.mark.parametrize("tool", modal_kit.TOOLS)
+def test_what_does_not_concern_the_mesh_does_not_stop_the_run(tool, change):
+    obj = open_box()
+    session = Session(tool, [obj])
+    change(obj)
+    assert session.finish() == {"FINISHED"}, session.operator.reports
+    session.check_ended()
+    if change is edit_another:
+        bpy.ops.object.mode_set(mode="OBJECT")
+    assert not obj.data.validate()
+
+
+@pytest.mark.parametrize("tool", modal_kit.TOOLS)
+def test_a_deleted_object(tool):
+    obj = open_box()
+    session = Session(tool, [obj])
+    bpy.data.objects.remove(obj)
+    assert session.finish() == {"CANCELLED"}
+    session.check_ended()
+    assert session.operator.reports[-1] == (
+        "ERROR",
+        'Stopped: "Box" was changed meanwhile, it was deleted: it stays as it is now',
+    )
+
+
+@pytest.mark.parametrize("tool", modal_kit.TOOLS)
+@pytest.mark.parametrize("what", ["undo", "file"])
+def test_undo_and_another_file_end_the_run(tool, what):
+    bpy.context.preferences.edit.use_global_undo = True
+    obj = open_box()
+    bpy.ops.ed.undo_push(message="made")
+    before = state(obj)
+    bpy.ops.mesh.primitive_cube_add()
+    bpy.ops.ed.undo_push(message="cube")
+    session = Session(tool, [bpy.data.objects["Box"]])
+    if what == "undo":
+        bpy.ops.ed.undo()
+        assert state(bpy.data.objects["Box"]) == before
+    else:
+        kit.empty_scene()
+    session.check_ended_but_timer()
+    assert session.send("TIMER") == {"CANCELLED"}
+    session.check_ended()
+
+
+def test_a_fault_of_the_program_ends_the_run_and_gives_the_mesh_back(capfd):
+    obj = open_box()
+    before = state(obj)
+    session = Session("stylize", [obj], steps=500)
+    wait_for_preview(session, obj)
+    session.run.headline = None
+    session.run.show = lambda: 1 / 0
+    assert session.finish() == {"CANCELLED"}
+    session.check_ended()
+    assert session.operator.reports[-1] == ("ERROR", "Stopped: ZeroDivisionError: division by zero")
+    assert "Traceback" in capfd.readouterr().err
+    assert state(obj) == before
+
+
+def test_a_run_that_cannot_even_start():
+    obj = open_box()
+    before = state(obj)
+    session = Session("stylize", [obj])
+    session.send("ESC")
+    run = modal_kit.Stylization([obj], modal_kit.defaults_of(modal_kit.StylizeSettings))
+    session.context.window_manager.modal_handler_add = lambda _operator: 1 / 0
+    operator = modal_kit.FakeOperator()
+    assert operator.begin_modal(session.context, run) == {"CANCELLED"}
+    session.check_ended()
+    assert not run.job.is_running
+    assert state(obj) == before
