@@ -7,10 +7,12 @@ import sys
 
 import bpy
 
-from .framework.batch import main
+from . import registry
+from .framework import batch
 
 if __name__ == "__main__":
-    code = main(sys.argv[1:])
+    batch.offer(registry.TOOLS)
+    code = batch.main(sys.argv[1:])
     sys.stdout.flush()
     sys.stderr.flush()
     # bpy 4.2 crashes when Python shuts down after its glTF add-on was used, which would hide the exit code.

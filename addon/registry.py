@@ -1,58 +1,66 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The features of the add-on, and how all of it is added to Blender."""
 
+from importlib import import_module
+
 import bpy
 
-from .attributes import operator as attributes
-from .attributes import panel as attribute_panel
-from .diffusion import operator as diffusion
-from .diffusion import panel as diffusion_panel
-from .framework import batch, menus, modal, presets
-from .holes import operator as holes
-from .holes import panel as hole_panel
-from .segments import operator as segments
-from .segments import panel as segment_panel
-from .segments.tool import forget
-from .stylize import operator as stylize
-from .stylize import panel as stylize_panel
+from .framework import batch, menus, modal, presets, sidebar, tool_operator
 
-_OPERATORS = (
-    stylize.RIDGEFORM_OT_stylize,
-    segments.RIDGEFORM_OT_segment,
-    holes.RIDGEFORM_OT_fill_holes,
-    attributes.RIDGEFORM_OT_denoise_attribute,
-    attributes.RIDGEFORM_OT_interpolate_attribute,
-    attributes.RIDGEFORM_OT_vibration_modes,
-    attributes.RIDGEFORM_OT_show_attribute,
-    diffusion.RIDGEFORM_OT_diffusion_curves,
-    diffusion.RIDGEFORM_OT_redraw_diffusion_curves,
-    diffusion.RIDGEFORM_OT_export_diffusion_svg,
+NAMES = (
+    "stylize",
+    "segments",
+    "holes",
+    "attributes",
+    "diffusion",
 )
-_MODULES = (
-    modal,
-    presets,
-    stylize_panel,
-    segment_panel,
-    hole_panel,
-    attribute_panel,
-    diffusion_panel,
-    menus,
-    batch,
-)
+"""The folders of the features, in the order of their panels and menu entries."""
+
+FEATURES = [import_module(f".{name}", __package__).FEATURE for name in NAMES]
+TOOLS = [tool for feature in FEATURES for tool in feature.tools]
+
+
+def _classes() -> list[type]:
+    """All classes in the order of their registration, made once."""
+    made = [presets.RIDGEFORM_OT_shipped_preset]
+    for feature in FEATURES:
+        made += feature.operators
+        for tool in feature.tools:
+            made.append(tool_operator.operator_class(tool))
+            if tool.presets is not None:
+                made += presets.preset_classes(tool)
+            made += [GROUPS[tool.scene_property], *sidebar.panel_classes(tool)]
+    return made
+
+
+GROUPS = {tool.scene_property: sidebar.group_class(tool) for tool in TOOLS}
+CLASSES = _classes()
 
 
 def register() -> None:
     """Add the operators, the panels, the menu entries and the command to Blender."""
-    for cls in _OPERATORS:
+    modal.register()
+    presets.offer(TOOLS)
+    for cls in CLASSES:
         bpy.utils.register_class(cls)
-    for module in _MODULES:
-        module.register()
+    for name, group in GROUPS.items():
+        setattr(bpy.types.Scene, name, bpy.props.PointerProperty(type=group))
+    for feature in FEATURES:
+        if feature.register is not None:
+            feature.register()
+    menus.register(FEATURES)
+    batch.register(TOOLS)
 
 
 def unregister() -> None:
     """Take everything out of Blender again; a job that runs is cancelled first."""
-    for module in reversed(_MODULES):
-        module.unregister()
-    forget()
-    for cls in reversed(_OPERATORS):
+    modal.unregister()
+    batch.unregister()
+    menus.unregister()
+    for feature in reversed(FEATURES):
+        if feature.unregister is not None:
+            feature.unregister()
+    for name in GROUPS:
+        delattr(bpy.types.Scene, name)
+    for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

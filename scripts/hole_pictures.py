@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from picture_geometry import Lines
 
 from addon.blender import mesh_io
-from addon.framework.shared_settings import defaults_of
+from addon.framework.settings import defaults_of
 from addon.holes.extension import PATCH_NAME
 from addon.holes.settings import HoleSettings
 from addon.holes.tool import HoleFilling

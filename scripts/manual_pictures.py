@@ -127,7 +127,7 @@ def attributes() -> None:
     from addon.attributes.denoise import fidelity_for  # noqa: PLC0415
     from addon.attributes.settings import DenoiseSettings, solve_options  # noqa: PLC0415
     from addon.blender import ramp  # noqa: PLC0415
-    from addon.framework.shared_settings import defaults_of  # noqa: PLC0415
+    from addon.framework.settings import defaults_of  # noqa: PLC0415
 
     vertices, faces = source("spot")
     mesh, truth = ridgeform.Mesh(vertices, faces), creased(vertices)
@@ -155,7 +155,7 @@ def segments() -> None:
     import ridgeform  # noqa: PLC0415
     from known_shapes import shapes  # noqa: PLC0415
 
-    from addon.framework.shared_settings import defaults_of  # noqa: PLC0415
+    from addon.framework.settings import defaults_of  # noqa: PLC0415
     from addon.segments.settings import SegmentSettings, segment_options  # noqa: PLC0415
     from addon.segments.slots import color_of  # noqa: PLC0415
 

@@ -93,11 +93,6 @@ class AttributeRun(Run):
     """What the name of a new attribute ends with."""
     done_word: ClassVar[str]
 
-    def _prepare_all(self, objects: Sequence[bpy.types.Object]) -> None:
-        self._in_edit_mode = bpy.context.mode == "EDIT_MESH"
-        with mesh_io.object_mode():
-            super()._prepare_all(objects)
-
     def prepare(self, obj: bpy.types.Object) -> AttributePart:
         """Read the attribute, the selection and the ridge paint of one mesh."""
         try:

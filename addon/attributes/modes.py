@@ -39,11 +39,8 @@ class VibrationModes(Run):
     """One run of vibration modes, on whole meshes."""
 
     name = "vibration_modes"
+    counted = "modes"
     needs = Needs(coordinates=False, selection=False)
-
-    def _prepare_all(self, objects: Sequence[bpy.types.Object]) -> None:
-        with mesh_io.object_mode():
-            super()._prepare_all(objects)
 
     def prepare(self, obj: bpy.types.Object) -> ModesPart:
         """Read one mesh."""

@@ -1,41 +1,29 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The settings of the tools on attributes, and how a modeler's sliders become the paper's numbers."""
 
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
-
 from ..blender.attribute_names import search_names
-from ..framework.shared_settings import RidgeSettings, SolverSettings
-
-
-class DisplaySettings:
-    """How a result is shown."""
-
-    display: EnumProperty(
-        name="Show",
-        description="How the result is shown. Colours are always shown as they are",
-        items=(
-            ("NONE", "Nothing", "Leave the view and the materials as they are"),
-            (
-                "VIEWPORT",
-                "Viewport Colors",
-                'Show the values as colours in Solid shading, stored in the attribute "ridgeform_shown"',
-            ),
-            (
-                "MATERIAL",
-                "Material",
-                "Give the mesh a material that turns the values into colours, also for rendering",
-            ),
-        ),
-        default="VIEWPORT",
-    )
-    bands: IntProperty(
-        name="Bands",
-        description="Bands of one colour each in the material: their borders are isolines. 0 is smooth",
-        default=0,
-        min=0,
-        max=32,
-    )
-
+from ..framework.settings import (
+    Settings,
+    boolean,
+    choice,
+    data_name,
+    factor,
+    integer,
+    number,
+    vertex_group,
+)
+from ..framework.shared_settings import (
+    AVOID_RIDGES,
+    COUPLING,
+    DELAUNAY,
+    DUAL,
+    EXPERT,
+    FIDELITY,
+    MAX_ITERATIONS,
+    RIDGE_GROUP,
+    SOLVER,
+    USE_FIDELITY,
+)
 
 ENERGIES = (
     ("l1_hessian", "Sharp (L1 Hessian)", "Flat slopes that meet in sharp creases (Rowe et al. 2024)"),
@@ -48,7 +36,7 @@ ENERGIES = (
     ("l2_laplacian", "Smooth, Flat Borders (L2 Laplacian)", "Smooth, but level towards borders"),
     (
         "l1_hessian_stein2018",
-        "Sharp along Axes (L1 Hessian in space)",
+        "Sharp along Axes (L1 Hessian in Space)",
         "Sharp creases that depend on how the object is turned (Stein et al. 2018)",
     ),
     (
@@ -94,121 +82,211 @@ def denoise_fidelity_of(strength: float, spread: float, area: float, energy: str
     return 10.0 ** (start - fall * strength) / unit
 
 
-class EnergySettings:
-    """What is minimised, and how exactly."""
+def _is_ours(settings: object) -> bool:
+    return settings.energy == OURS
 
-    energy: EnumProperty(
-        name="Energy",
-        description="What kind of values is looked for",
-        items=ENERGIES,
-        default=OURS,
+
+class AttributeName(Settings):
+    """What is worked on."""
+
+    attribute: data_name(
+        "Attribute",
+        "Attribute or vertex group to work on. Empty: the active one",
+        search=search_names,
     )
-    tolerance: FloatProperty(
-        name="Tolerance",
-        description="Certified relative duality gap that the result must reach",
+
+
+class EnergyChoice(Settings):
+    """What is minimized."""
+
+    energy: choice("Energy", "How the result should vary across the surface", ENERGIES, default=OURS)
+
+
+class ResultSettings(EnergyChoice):
+    """What denoising and interpolating share: the energy, where ridges are, where the result goes."""
+
+    sharpness: factor(
+        "Sharpness",
+        "How much ridges are sharpened further: 0 is the energy of the paper, 1 prefers few and hard ridges",
+        default=0.0,
+        active=_is_ours,
+    )
+    ridge_group: RIDGE_GROUP
+    avoid_ridges: AVOID_RIDGES
+    output: choice(
+        "Result",
+        "Where to put the result",
+        (
+            ("NEW", "New Attribute", "Leave the values as they are and put the result into a new attribute"),
+            ("IN_PLACE", "In Place", "Overwrite the values"),
+        ),
+        default="NEW",
+        flag=None,
+        switches={"--in-place": "IN_PLACE"},
+    )
+
+
+class DisplaySettings(Settings):
+    """How a result is shown."""
+
+    display: choice(
+        "Show",
+        "How to show the result. Colors are always shown as they are",
+        (
+            ("NONE", "Nothing", "Leave the view and the materials as they are"),
+            (
+                "VIEWPORT",
+                "Viewport Colors",
+                'Show the values as colors in Solid shading, stored in the attribute "ridgeform_shown"',
+            ),
+            (
+                "MATERIAL",
+                "Material",
+                "Give the mesh a material that turns the values into colors, also for rendering",
+            ),
+        ),
+        default="VIEWPORT",
+        flag=None,
+        switches={"--material": "MATERIAL"},
+    )
+    bands: integer(
+        "Bands",
+        "Number of bands of one color each in the material, with isolines as their borders. 0 is smooth",
+        default=0,
+        min=0,
+        max=32,
+        active=lambda settings: settings.display == "MATERIAL",
+    )
+
+
+class ExpertSettings(Settings):
+    """The choices of the paper that rarely change, and the solver."""
+
+    dual: DUAL.but(active=_is_ours)
+    delaunay: DELAUNAY.but(active=lambda settings: settings.energy not in EXTRINSIC)
+    solver: SOLVER.but(active=lambda settings: settings.energy not in QUADRATIC)
+    tolerance: number(
+        "Tolerance",
+        "Certified relative duality gap that the result must reach",
         default=0.001,
         min=1e-8,
         max=1.0,
         precision=6,
+        section=EXPERT,
     )
+    max_iterations: MAX_ITERATIONS
 
 
-class AttributeSettings(DisplaySettings, RidgeSettings, EnergySettings, SolverSettings):
-    """The settings that denoising and interpolating share."""
+class CoupledSettings(Settings):
+    """How the components of the values share ridges."""
 
-    attribute: StringProperty(
-        name="Attribute",
-        description="Attribute or vertex group to work on. Empty: the active one",
-        search=search_names,
-    )
-    output: EnumProperty(
-        name="Result",
-        description="Where the result goes",
-        items=(
-            ("NEW", "New Attribute", "Leave the values as they are and put the result into a new attribute"),
-            ("IN_PLACE", "In Place", "Write over the values"),
-        ),
-        default="NEW",
-    )
-    sharpness: FloatProperty(
-        name="Sharpness",
-        description="How much further ridges are sharpened: 0 is the energy of the paper, 1 prefers few and "
-        "hard ridges",
-        default=0.0,
-        min=0.0,
-        max=1.0,
-        subtype="FACTOR",
-    )
+    coupling: COUPLING
 
 
-class DenoiseSettings(AttributeSettings):
-    """The settings of denoising, shared by the operator, the panel, presets and the batch command."""
+class StrengthSettings(AttributeName):
+    """What is denoised, and how strongly."""
 
-    strength: FloatProperty(
-        name="Strength",
-        description="How much is smoothed away: 0 keeps the values, 1 leaves only the broadest slopes. The "
-        "same for every size and density of the mesh and every unit of the values",
+    strength: factor(
+        "Strength",
+        "How much is smoothed away: 0 keeps the values, 1 leaves only the broadest slopes. Independent of "
+        "the size and density of the mesh and the unit of the values",
         default=0.5,
-        min=0.0,
         max=1.5,
         soft_max=1.0,
-        subtype="FACTOR",
+        active=lambda settings: not settings.use_fidelity,
     )
-    use_fidelity: BoolProperty(
-        name="Set Fidelity",
-        description="Set the fidelity weight of the paper instead of the strength",
-        default=False,
-    )
-    fidelity: FloatProperty(
-        name="Fidelity",
-        description="Fidelity weight (Rowe et al. 2024, eq. 23), in the mesh's own units: larger stays "
-        "closer to the values",
+    use_fidelity: USE_FIDELITY
+    fidelity: number(
+        "Fidelity",
+        "Fidelity weight (Rowe et al. 2024, eq. 23), in the units of the mesh: larger values stay closer to "
+        "the original values",
         default=1000.0,
         min=1e-9,
         max=1e15,
         soft_min=1e-3,
         soft_max=1e8,
         precision=3,
+        **FIDELITY,
     )
 
 
-class InterpolateSettings(AttributeSettings):
-    """The settings of interpolating, shared by the operator, the panel, presets and the batch command."""
+class DenoiseSettings(StrengthSettings, ResultSettings, DisplaySettings, CoupledSettings, ExpertSettings):
+    """The settings of denoising."""
 
-    known: EnumProperty(
-        name="Known",
-        description="Which values are kept. All others are computed",
-        items=(
+
+class KnownSettings(AttributeName):
+    """What is interpolated, and from where."""
+
+    known: choice(
+        "Known",
+        "Which values are kept. All others are computed",
+        (
             ("SELECTED", "Selected Vertices", "Spread the values of the selected vertices over the mesh"),
             ("UNSELECTED", "Fill the Selection", "Compute the selected vertices from the others"),
             ("GROUP", "Vertex Group", "Spread the values of the vertices in a group over the mesh"),
         ),
         default="SELECTED",
     )
-    known_group: StringProperty(
-        name="Known In",
-        description="Vertex group of the vertices whose values are known. Empty: the vertex group worked on",
+    known_group: vertex_group(
+        "Known In",
+        "Vertex group of the vertices whose values are known. Empty: the vertex group to work on",
+        shown=lambda settings: settings.known == "GROUP",
     )
 
 
-class ModesSettings(DisplaySettings, EnergySettings, SolverSettings):
-    """The settings of vibration modes, shared by the operator and the panel."""
+class InterpolateSettings(KnownSettings, ResultSettings, DisplaySettings, CoupledSettings, ExpertSettings):
+    """The settings of interpolating."""
 
-    count: IntProperty(
-        name="Modes",
-        description="How many modes are computed, those of least energy first",
+
+class ModesCount(Settings):
+    """How many modes."""
+
+    count: integer(
+        "Modes",
+        "Number of modes to compute, those of least energy first",
         default=8,
         min=1,
         max=1000,
         soft_max=32,
     )
-    shown: IntProperty(
-        name="Shown Mode",
-        description="The mode that is shown. On a closed surface mode 0 is the same everywhere",
+
+
+class ModesSettings(ModesCount, EnergyChoice, DisplaySettings, ExpertSettings):
+    """The settings of vibration modes."""
+
+    shown: integer(
+        "Shown Mode",
+        "Mode to show. On a closed surface, mode 0 is the same everywhere",
         default=1,
         min=0,
         max=999,
     )
+
+
+class ShowSettings(AttributeName, DisplaySettings):
+    """The settings of showing an attribute."""
+
+    signed: boolean(
+        "Zero in the Middle",
+        "Show negative values in blue, positive ones in red, and zero in white",
+    )
+
+
+DENOISE_PRESETS = {
+    "Creases": {"energy": OURS, "strength": 0.5, "sharpness": 0.0, "use_fidelity": False},
+    "Hard Creases": {"strength": 0.6, "sharpness": 1.0},
+    "Smooth": {"energy": "l2_curved_hessian"},
+}
+"""Shipped presets: noise away, creases kept; few and hard creases, against strong noise; all smooth."""
+
+INTERPOLATE_PRESETS = {
+    "Spread Sharp": {"energy": OURS, "sharpness": 0.0, "known": "SELECTED", "output": "NEW"},
+    "Spread Smooth": {"energy": "l2_curved_hessian"},
+    "Fill Sharp": {"sharpness": 0.5, "known": "UNSELECTED", "output": "IN_PLACE"},
+    "Fill Smooth": {"energy": "l2_curved_hessian", "known": "UNSELECTED", "output": "IN_PLACE"},
+}
+"""Shipped presets: flat slopes between the selected vertices, or a smooth function through them; creases
+continued into the selection, or smoothly."""
 
 
 def solve_options(settings: object) -> dict[str, object]:

@@ -1,2 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Diffusion curves in Blender: colours in, curve objects out and in again, colours and drawings out."""
+"""Diffusion curves in Blender: colors in, curve objects out and in again, colors and drawings out."""
+
+from ..framework.tool import Feature, Tool
+from . import operator
+from .settings import DiffusionSettings
+from .tool import DiffusionCurves
+
+FEATURE = Feature(
+    tools=(
+        Tool(
+            name="diffusion_curves",
+            label="Diffusion Curves",
+            description="Find the few curves, with a color on each side, that redraw the painted surface",
+            icon="CURVE_DATA",
+            run=DiffusionCurves,
+            settings=DiffusionSettings,
+            key="diffusion",
+            draw_more=operator.draw_buttons,
+        ),
+    ),
+    operators=(operator.RIDGEFORM_OT_redraw_diffusion_curves, operator.RIDGEFORM_OT_export_diffusion_svg),
+    menu=((operator.RIDGEFORM_OT_redraw_diffusion_curves.bl_idname, "FILE_REFRESH"),),
+    register=operator.register,
+    unregister=operator.unregister,
+)

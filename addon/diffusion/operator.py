@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operators of diffusion curves: find them, redraw from them, export them."""
+"""The operators on diffusion curves that were found: redraw from them, export them."""
 
 from pathlib import Path
 
@@ -10,28 +10,10 @@ from bpy_extras.io_utils import ExportHelper
 
 from ..blender import mesh_io
 from ..framework.run import RefusedError
-from ..framework.tool_operator import ToolOperator
 from ..framework.writing import write_text
 from . import curves_io, drawing, svg
 from .redraw_curves import read_on_mesh, redraw
-from .rows import draw_settings
-from .settings import DiffusionSettings
-from .tool import DiffusionCurves
-
-
-class RIDGEFORM_OT_diffusion_curves(DiffusionSettings, ToolOperator, bpy.types.Operator):  # noqa: N801
-    """Find the few curves, with a color on each side, that redraw the painted surface"""
-
-    bl_idname = "ridgeform.diffusion_curves"
-    bl_label = "Diffusion Curves"
-    bl_options = {"REGISTER", "UNDO", "PRESET"}
-    tool = DiffusionCurves
-    settings = DiffusionSettings
-    panel = "ridgeform_diffusion"
-
-    def draw(self, _context: bpy.types.Context) -> None:
-        """Draw the redo panel."""
-        draw_settings(self.layout, self)
+from .settings import SHOW
 
 
 def _pair(context: bpy.types.Context) -> tuple[bpy.types.Object, bpy.types.Object] | str:
@@ -76,11 +58,7 @@ class RIDGEFORM_OT_redraw_diffusion_curves(_OnCurves, bpy.types.Operator):  # no
     bl_label = "Redraw from Curves"
     bl_options = {"REGISTER", "UNDO"}
 
-    show: BoolProperty(
-        name="Show Result",
-        description="Make the redrawn colors the active ones and show them in Solid shading",
-        default=True,
-    )
+    show: BoolProperty(**SHOW.keywords)
 
     @classmethod
     def reason_against(cls, obj: bpy.types.Object) -> str | None:
@@ -139,3 +117,23 @@ class RIDGEFORM_OT_export_diffusion_svg(_OnCurves, bpy.types.Operator, ExportHel
             return {"CANCELLED"}
         self.report({"INFO"}, f"Wrote {len(child.data.curves)} curves to {self.filepath}")
         return {"FINISHED"}
+
+
+def draw_buttons(layout: bpy.types.UILayout, settings: object) -> None:
+    """Draw the buttons for curves that were found."""
+    layout.operator("ridgeform.redraw_diffusion_curves", icon="FILE_REFRESH").show = settings.show
+    layout.operator("ridgeform.export_diffusion_svg", text="Export SVG", icon="EXPORT")
+
+
+def _draw_export(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    self.layout.operator("ridgeform.export_diffusion_svg")
+
+
+def register() -> None:
+    """Append the entry of the Export menu."""
+    bpy.types.TOPBAR_MT_file_export.append(_draw_export)
+
+
+def unregister() -> None:
+    """Remove the entry of the Export menu."""
+    bpy.types.TOPBAR_MT_file_export.remove(_draw_export)

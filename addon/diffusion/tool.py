@@ -41,10 +41,6 @@ class DiffusionCurves(Run):
     name = "diffusion_curves"
     needs = Needs(coordinates=False, selection=False)
 
-    def _prepare_all(self, objects: Sequence[bpy.types.Object]) -> None:
-        with mesh_io.object_mode():
-            super()._prepare_all(objects)
-
     def prepare(self, obj: bpy.types.Object) -> DiffusionPart:
         """Read the colours and the regions of one mesh."""
         try:
@@ -116,16 +112,34 @@ class DiffusionCurves(Run):
             "status": "finished",
         }
 
+    @classmethod
+    def lines(cls, entry: dict[str, object]) -> list[str]:
+        """How many curves there are, how good they are, and how few numbers."""
+        quality = "exact" if entry["psnr"] is None else f"{entry['psnr']:.1f} dB"
+        return [
+            f"{entry['name']}: {entry['curves']} curves, {quality}",
+            f"{entry['numbers_after']} numbers instead of {entry['numbers_before']}",
+        ]
+
+    @classmethod
+    def phrases(cls, done: Sequence[dict[str, object]]) -> list[str]:
+        """How many curves and numbers there are."""
+        curves, before, after = _totals(done)
+        return [f"{curves} curves, {after} numbers instead of {before}"] if done else []
+
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """How many curves of which mesh, how few numbers they are, and how good they are."""
-        curves, before, after = (
-            sum(entry[key] for entry in done) for key in ("curves", "numbers_before", "numbers_after")
-        )
+        curves, before, after = _totals(done)
         quality = [entry["psnr"] for entry in done if entry["psnr"] is not None]
         error = f"PSNR {min(quality):.1f} dB" if quality else "no error"
         seconds = sum(entry["seconds"] for entry in done)
         where = meshes_phrase(done)
         return f"{curves} curves of {where}: {after} numbers instead of {before}, {error}, {seconds:.1f} s"
+
+
+def _totals(done: Sequence[dict[str, object]]) -> tuple[int, int, int]:
+    """Curves, and the numbers before and after, of all meshes."""
+    return tuple(sum(entry[key] for entry in done) for key in ("curves", "numbers_before", "numbers_after"))
 
 
 def _face_labels(obj: bpy.types.Object, settings: object) -> np.ndarray:

@@ -5,6 +5,7 @@
 wheel and the `bpy` package installed, `python -m addon stylize FILES -o OUT`.
 """
 
+import argparse
 import contextlib
 import ctypes
 import json
@@ -18,11 +19,11 @@ from pathlib import Path
 import bpy
 
 from ..blender import selection
-from . import files
-from .batch_options import TOOLS, parser, settings_from
+from . import files, flags
 from .console import ProgressBar
 from .run import NO_RESULT, RefusedError, Run
 from .targets import Ledger, Target, assign
+from .tool import Tool
 
 COMMAND = "ridgeform"
 POLL_SECONDS = 0.05
@@ -35,18 +36,44 @@ def main(arguments: Sequence[str]) -> int:
         options = parser().parse_args(arguments)
     except SystemExit as leaving:
         return int(leaving.code or 0)
-    settings = settings_from(options)
+    tool = _tools[options.tool]
+    settings = flags.settings_from(options, tool.settings)
     failed = False
     try:
         with _clean_output(options.json) as emit:
             targets, ledger = assign(options.files, options.output, options.format)
             for target in targets:
-                record = _one_file(target, TOOLS[options.tool].run, settings, ledger)
+                record = _one_file(target, tool.run, settings, ledger)
                 failed |= record["error"] is not None
-                emit(record)
+                emit(record, tool.run)
     except KeyboardInterrupt:
         return INTERRUPTED
     return 1 if failed else 0
+
+
+def parser() -> argparse.ArgumentParser:
+    """The parser of the whole command line."""
+    made = argparse.ArgumentParser(prog=COMMAND, description="Ridgeform without a window.")
+    tools = made.add_subparsers(dest="tool", required=True, metavar="TOOL")
+    for name, tool in _tools.items():
+        child = tools.add_parser(name, help=tool.description, description=tool.description)
+        _add_files(child)
+        flags.add_flags(child, tool.settings)
+    return made
+
+
+def _add_files(child: argparse.ArgumentParser) -> None:
+    add = child.add_argument
+    add("files", nargs="+", type=Path, metavar="FILE", help=f"Files to read: {' '.join(files.FORMATS)}")
+    add("-o", "--output", type=Path, required=True, metavar="OUT", help="File or folder to write to")
+    add(
+        "--format", type=_suffix, choices=list(files.FORMATS), help="Write into the folder OUT in this format"
+    )
+    add("--json", action="store_true", help="Print one JSON record per file on standard output")
+
+
+def _suffix(text: str) -> str:
+    return "." + text.lower().lstrip(".")
 
 
 def _one_file(target: Target, tool: type[Run], settings: object, ledger: Ledger) -> dict[str, object]:
@@ -123,7 +150,7 @@ def _total(entries: Sequence[dict[str, object]], key: str) -> float | None:
 def _clean_output(as_json: bool) -> Iterator[object]:
     """Give a function that prints a record; with JSON, what Blender prints goes to standard error."""
     if not as_json:
-        yield lambda record: print(_sentence(record), flush=True)
+        yield lambda record, tool: print(_sentence(record, tool), flush=True)
         return
     flush_output()
     saved = os.dup(1)
@@ -134,7 +161,7 @@ def _clean_output(as_json: bool) -> Iterator[object]:
             contextlib.redirect_stdout(sys.stderr),
             os.fdopen(os.dup(saved), "w", encoding="utf-8") as stream,
         ):
-            yield lambda record: print(json.dumps(record, ensure_ascii=False), file=stream, flush=True)
+            yield lambda record, _tool: print(json.dumps(record, ensure_ascii=False), file=stream, flush=True)
     finally:
         flush_output()
         os.dup2(saved, 1)
@@ -147,7 +174,7 @@ def flush_output() -> None:
     ctypes.CDLL("ucrtbase" if os.name == "nt" else None).fflush(None)
 
 
-def _sentence(record: dict[str, object]) -> str:
+def _sentence(record: dict[str, object], tool: type[Run]) -> str:
     if record["error"] is not None:
         return f"{record['file']}: failed: {record['error']}"
     notes = "".join(f"\n  note: {note}" for note in record["warnings"])
@@ -158,25 +185,24 @@ def _sentence(record: dict[str, object]) -> str:
         parts.append(f"energy {before}{record['energy_after']:.4g}")
     if record["gap"] is not None:
         parts.append(f"gap {record['gap']:.1g}")
-    segments = [entry["segments"] for entry in record["meshes"] if "segments" in entry]
-    if segments:
-        parts.append(f"{sum(segments)} segments")
-    holes = [entry["holes"] for entry in record["meshes"] if "holes" in entry]
-    if holes:
-        parts.append(f"{sum(holes)} holes filled")
-    drawn = [entry for entry in record["meshes"] if "numbers_after" in entry]
-    if drawn:
-        after, before = (sum(entry[key] for entry in drawn) for key in ("numbers_after", "numbers_before"))
-        parts.append(f"{sum(entry['curves'] for entry in drawn)} curves, {after} numbers instead of {before}")
+    parts += tool.phrases([entry for entry in record["meshes"] if entry["status"] not in NO_RESULT])
     return f"{where}: {', '.join(parts)}, {record['seconds']:.1f} s{notes}"
 
 
 _command = None
+_tools: dict[str, Tool] = {}
 
 
-def register() -> None:
-    """Register `blender --command ridgeform`."""
+def offer(tools: Sequence[Tool]) -> None:
+    """Take the tools that the command line has."""
+    _tools.clear()
+    _tools.update({tool.command: tool for tool in tools})
+
+
+def register(tools: Sequence[Tool]) -> None:
+    """Register `blender --command ridgeform` with these tools."""
     global _command  # noqa: PLW0603
+    offer(tools)
     _command = bpy.utils.register_cli_command(COMMAND, main)
 
 

@@ -3,14 +3,13 @@
 
 import contextlib
 import traceback
-from collections.abc import Sequence
-from typing import Protocol
 
 import bpy
 from bpy.app.handlers import persistent
 
 from ..blender.mesh_state import ChangedError
 from .job import Job
+from .run import Run
 
 POLL_SECONDS = 0.05
 CURSOR_RANGE = 1000
@@ -38,28 +37,6 @@ NAVIGATION = {
     "NUMPAD_MINUS",
 }
 """Events that stay with Blender, so that the view can be turned while a job runs."""
-
-
-class Run(Protocol):
-    """What a tool gives to be run: its job, and what to do with it on the main thread."""
-
-    job: Job
-    done: Sequence[object]
-    """What has a result."""
-    errors: Sequence[str]
-    """A sentence for each mesh that failed."""
-
-    def preview(self) -> bool:
-        """Show how far the job is; whether there was something new."""
-
-    def restore(self) -> list[str]:
-        """Put everything back as it was; a sentence for each mesh that stays as it is now."""
-
-    def apply(self) -> None:
-        """Write the result."""
-
-    def report(self) -> str:
-        """What happened, in one line."""
 
 
 def action_of(event_type: str, value: str) -> str:

@@ -1,196 +1,125 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Presets of the panels: those that come with the add-on, and the modeler's own."""
+"""Presets of the panels: those that come with the tools, as data, and the modeler's own.
 
-from pathlib import Path
+The latter are files in `presets/ridgeform/<key>` of the user's scripts, written and run by Blender.
+"""
+
+from typing import ClassVar
 
 import bpy
 from bl_operators.presets import AddPresetBase
-from bl_ui.utils import PresetPanel
+from bpy.props import StringProperty
 
-from ..attributes.settings import DenoiseSettings, InterpolateSettings
-from ..holes.settings import HoleSettings
-from ..segments.settings import SegmentSettings
-from ..stylize.settings import StylizeSettings
-from .shared_settings import setting_names
-
-# The folder that holds the folder "presets".
-_SHIPPED = str(Path(__file__).parents[1])
+from .tool import Tool
 
 
-def _preset_values(settings: type) -> list[str]:
-    """What a preset stores: all but the names of vertex groups and attributes, which belong to one mesh."""
-    names = (name for name in setting_names(settings) if not name.endswith(("_group", "attribute")))
-    return [f"settings.{name}" for name in names]
+def preset_folder(tool: Tool) -> str:
+    """Where Blender looks for presets of a tool."""
+    return f"ridgeform/{tool.key}"
 
 
-class _PresetMenu:
-    preset_operator = "script.execute_preset"
-    draw = bpy.types.Menu.draw_preset
+def stored_names(tool: Tool) -> list[str]:
+    """The settings that a preset stores: not the names of things that belong to one mesh."""
+    return [name for name, setting in tool.settings.declared.items() if setting.in_presets]
 
 
-class RIDGEFORM_MT_stylize_presets(_PresetMenu, bpy.types.Menu):  # noqa: N801
-    """The list of presets of stylize."""
+class RIDGEFORM_OT_shipped_preset(bpy.types.Operator):  # noqa: N801
+    """Set the settings of the panel to those of a preset"""
 
-    bl_label = "Stylize Presets"
-    preset_subdir = "ridgeform/stylize"
+    bl_idname = "ridgeform.shipped_preset"
+    bl_label = "Apply Preset"
+    bl_options = {"INTERNAL"}
 
+    tool: StringProperty(name="Tool", description="Name of the tool's operator", options={"HIDDEN"})
+    preset: StringProperty(name="Preset", description="Name of the preset", options={"HIDDEN"})
 
-class RIDGEFORM_MT_segment_presets(_PresetMenu, bpy.types.Menu):  # noqa: N801
-    """The list of presets of segmenting."""
+    # What typing is given it keeps: no class of ours, or Blender 4.2 as a module crashes when Python ends.
+    tools: ClassVar[dict] = {}
+    """The tools with presets, by name."""
 
-    bl_label = "Segment Presets"
-    preset_subdir = "ridgeform/segment"
-
-
-class RIDGEFORM_MT_denoise_presets(_PresetMenu, bpy.types.Menu):  # noqa: N801
-    """The list of presets of denoising."""
-
-    bl_label = "Denoise Presets"
-    preset_subdir = "ridgeform/denoise"
-
-
-class RIDGEFORM_MT_interpolate_presets(_PresetMenu, bpy.types.Menu):  # noqa: N801
-    """The list of presets of interpolating."""
-
-    bl_label = "Interpolate Presets"
-    preset_subdir = "ridgeform/interpolate"
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Set what the preset sets."""
+        tool = self.tools.get(self.tool)
+        if tool is None or self.preset not in tool.presets:
+            self.report({"ERROR"}, f'"{self.tool}" has no preset "{self.preset}"')
+            return {"CANCELLED"}
+        settings = getattr(context.scene, tool.scene_property)
+        for name, value in tool.preset_values(self.preset).items():
+            setattr(settings, name, value)
+        return {"FINISHED"}
 
 
-class RIDGEFORM_MT_fill_holes_presets(_PresetMenu, bpy.types.Menu):  # noqa: N801
-    """The list of presets of filling holes."""
+class _PresetList:
+    """Mixin for a menu or a popover with the presets of a tool."""
 
-    bl_label = "Fill Holes Presets"
-    preset_subdir = "ridgeform/fill_holes"
+    tool: ClassVar[object]
+    path_menu = bpy.types.Menu.path_menu
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draw the shipped presets, then the modeler's."""
+        layout, tool = self.layout, self.tool
+        if isinstance(self, bpy.types.Panel):
+            layout.emboss = "PULLDOWN_MENU"
+        layout.operator_context = "EXEC_DEFAULT"
+        column = layout.column(align=True)
+        for name in tool.presets:
+            entry = column.operator(RIDGEFORM_OT_shipped_preset.bl_idname, text=name)
+            entry.tool, entry.preset = tool.name, name
+        folders = bpy.utils.preset_paths(preset_folder(tool))
+        self.path_menu(
+            # Without any folder Blender would say that paths are missing.
+            folders or [bpy.app.tempdir],
+            "script.execute_preset",
+            filter_ext=lambda extension: bool(folders) and extension.lower() == ".py",
+            add_operator=None if isinstance(self, bpy.types.Menu) else _add_idname(tool),
+            display_name=lambda name: bpy.path.display_name(name, title_case=False),
+        )
 
 
-class RIDGEFORM_OT_stylize_preset_add(AddPresetBase, bpy.types.Operator):  # noqa: N801
+class _AddPreset(AddPresetBase):
     """Save the settings of the panel as a preset, or remove one"""
 
-    bl_idname = "ridgeform.stylize_preset_add"
-    bl_label = "Add Stylize Preset"
-    preset_menu = "RIDGEFORM_MT_stylize_presets"
-    preset_subdir = "ridgeform/stylize"
-    preset_defines = ["settings = bpy.context.scene.ridgeform_stylize"]
-    preset_values = _preset_values(StylizeSettings)
+    tool: ClassVar[object]
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Save or remove, but keep the names of shipped presets to these."""
+        shipped = {self.as_filename(name) for name in self.tool.presets}
+        if not (self.remove_name or self.remove_active) and self.as_filename(self.name) in shipped:
+            self.report({"WARNING"}, f'Cannot create preset "{self.name}", as the name already exists')
+            return {"CANCELLED"}
+        return super().execute(context)
 
 
-class RIDGEFORM_OT_segment_preset_add(AddPresetBase, bpy.types.Operator):  # noqa: N801
-    """Save the settings of the panel as a preset, or remove one"""
-
-    bl_idname = "ridgeform.segment_preset_add"
-    bl_label = "Add Segment Preset"
-    preset_menu = "RIDGEFORM_MT_segment_presets"
-    preset_subdir = "ridgeform/segment"
-    preset_defines = ["settings = bpy.context.scene.ridgeform_segment"]
-    preset_values = _preset_values(SegmentSettings)
-
-
-class RIDGEFORM_OT_denoise_preset_add(AddPresetBase, bpy.types.Operator):  # noqa: N801
-    """Save the settings of the panel as a preset, or remove one"""
-
-    bl_idname = "ridgeform.denoise_preset_add"
-    bl_label = "Add Denoise Preset"
-    preset_menu = "RIDGEFORM_MT_denoise_presets"
-    preset_subdir = "ridgeform/denoise"
-    preset_defines = ["settings = bpy.context.scene.ridgeform_denoise"]
-    preset_values = _preset_values(DenoiseSettings)
-
-
-class RIDGEFORM_OT_interpolate_preset_add(AddPresetBase, bpy.types.Operator):  # noqa: N801
-    """Save the settings of the panel as a preset, or remove one"""
-
-    bl_idname = "ridgeform.interpolate_preset_add"
-    bl_label = "Add Interpolate Preset"
-    preset_menu = "RIDGEFORM_MT_interpolate_presets"
-    preset_subdir = "ridgeform/interpolate"
-    preset_defines = ["settings = bpy.context.scene.ridgeform_interpolate"]
-    preset_values = _preset_values(InterpolateSettings)
+def preset_classes(tool: Tool) -> list[type]:
+    """The menu, the operator that adds and removes, and the popover of a tool's presets."""
+    label = f"{tool.panel_label} Presets"
+    menu = f"RIDGEFORM_MT_{tool.key}_presets"
+    listed = {"__module__": __name__, "bl_label": label, "tool": tool}
+    # Blender gives what it runs the class of the popover, too: it changes the label.
+    popover = listed | {"bl_space_type": "PROPERTIES", "bl_region_type": "HEADER"}
+    add = {
+        "__module__": __name__,
+        "__doc__": _AddPreset.__doc__,
+        "bl_idname": _add_idname(tool),
+        "bl_label": f"Add {tool.panel_label} Preset",
+        "tool": tool,
+        "preset_menu": menu,
+        "preset_subdir": preset_folder(tool),
+        "preset_defines": [f"settings = bpy.context.scene.{tool.scene_property}"],
+        "preset_values": [f"settings.{name}" for name in stored_names(tool)],
+    }
+    return [
+        type(menu, (_PresetList, bpy.types.Menu), listed),
+        type(f"RIDGEFORM_OT_{tool.key}_preset_add", (_AddPreset, bpy.types.Operator), add),
+        type(f"RIDGEFORM_PT_{tool.key}_presets", (_PresetList, bpy.types.Panel), popover),
+    ]
 
 
-class RIDGEFORM_OT_fill_holes_preset_add(AddPresetBase, bpy.types.Operator):  # noqa: N801
-    """Save the settings of the panel as a preset, or remove one"""
-
-    bl_idname = "ridgeform.fill_holes_preset_add"
-    bl_label = "Add Fill Holes Preset"
-    preset_menu = "RIDGEFORM_MT_fill_holes_presets"
-    preset_subdir = "ridgeform/fill_holes"
-    preset_defines = ["settings = bpy.context.scene.ridgeform_holes"]
-    preset_values = _preset_values(HoleSettings)
+def _add_idname(tool: Tool) -> str:
+    return f"ridgeform.{tool.key}_preset_add"
 
 
-class RIDGEFORM_PT_stylize_presets(PresetPanel, bpy.types.Panel):  # noqa: N801
-    """The popover behind the presets button of stylize."""
-
-    bl_label = "Stylize Presets"
-    preset_subdir = "ridgeform/stylize"
-    preset_operator = "script.execute_preset"
-    preset_add_operator = "ridgeform.stylize_preset_add"
-
-
-class RIDGEFORM_PT_segment_presets(PresetPanel, bpy.types.Panel):  # noqa: N801
-    """The popover behind the presets button of segmenting."""
-
-    bl_label = "Segment Presets"
-    preset_subdir = "ridgeform/segment"
-    preset_operator = "script.execute_preset"
-    preset_add_operator = "ridgeform.segment_preset_add"
-
-
-class RIDGEFORM_PT_denoise_presets(PresetPanel, bpy.types.Panel):  # noqa: N801
-    """The popover behind the presets button of denoising."""
-
-    bl_label = "Denoise Presets"
-    preset_subdir = "ridgeform/denoise"
-    preset_operator = "script.execute_preset"
-    preset_add_operator = "ridgeform.denoise_preset_add"
-
-
-class RIDGEFORM_PT_interpolate_presets(PresetPanel, bpy.types.Panel):  # noqa: N801
-    """The popover behind the presets button of interpolating."""
-
-    bl_label = "Interpolate Presets"
-    preset_subdir = "ridgeform/interpolate"
-    preset_operator = "script.execute_preset"
-    preset_add_operator = "ridgeform.interpolate_preset_add"
-
-
-class RIDGEFORM_PT_fill_holes_presets(PresetPanel, bpy.types.Panel):  # noqa: N801
-    """The popover behind the presets button of filling holes."""
-
-    bl_label = "Fill Holes Presets"
-    preset_subdir = "ridgeform/fill_holes"
-    preset_operator = "script.execute_preset"
-    preset_add_operator = "ridgeform.fill_holes_preset_add"
-
-
-_CLASSES = (
-    RIDGEFORM_MT_stylize_presets,
-    RIDGEFORM_MT_segment_presets,
-    RIDGEFORM_MT_denoise_presets,
-    RIDGEFORM_MT_interpolate_presets,
-    RIDGEFORM_MT_fill_holes_presets,
-    RIDGEFORM_OT_stylize_preset_add,
-    RIDGEFORM_OT_segment_preset_add,
-    RIDGEFORM_OT_denoise_preset_add,
-    RIDGEFORM_OT_interpolate_preset_add,
-    RIDGEFORM_OT_fill_holes_preset_add,
-    RIDGEFORM_PT_stylize_presets,
-    RIDGEFORM_PT_segment_presets,
-    RIDGEFORM_PT_denoise_presets,
-    RIDGEFORM_PT_interpolate_presets,
-    RIDGEFORM_PT_fill_holes_presets,
-)
-
-
-def register() -> None:
-    """Register the presets and where the shipped ones are."""
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
-    bpy.utils.register_preset_path(_SHIPPED)
-
-
-def unregister() -> None:
-    """Unregister the presets."""
-    bpy.utils.unregister_preset_path(_SHIPPED)
-    for cls in reversed(_CLASSES):
-        bpy.utils.unregister_class(cls)
+def offer(tools: list[Tool]) -> None:
+    """Take the tools whose shipped presets can be applied."""
+    RIDGEFORM_OT_shipped_preset.tools.clear()
+    RIDGEFORM_OT_shipped_preset.tools.update({tool.name: tool for tool in tools if tool.presets is not None})

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One run of a tool over some meshes: what all tools share from reading a mesh to reporting on it."""
 
+import contextlib
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -50,8 +51,12 @@ class Run(ABC):
 
     name: ClassVar[str]
     """The tool's name in the summary."""
+    counted: ClassVar[str] = "iterations"
+    """What the panel calls the steps of the summary."""
     needs = MOVES
     """What it needs of a mesh."""
+    in_object_mode: ClassVar[bool] = True
+    """Whether meshes in Edit Mode leave it while they are read; a tool with a live preview stays in it."""
 
     def __init__(
         self, objects: Sequence[bpy.types.Object], settings: object, skipped: Sequence[str] = ()
@@ -60,7 +65,9 @@ class Run(ABC):
         self.settings = settings
         self.skipped = list(skipped)
         self.parts: list[Part] = []
-        self._prepare_all(objects)
+        self._in_edit_mode = bpy.context.mode == "EDIT_MESH"
+        with mesh_io.object_mode() if self.in_object_mode else contextlib.nullcontext():
+            self._prepare_all(objects)
         if not self.parts:
             raise RefusedError(self.skipped[-1] if self.skipped else "Select a mesh object")
         for part in self.parts:
@@ -90,6 +97,24 @@ class Run(ABC):
     @abstractmethod
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """The first words of the report on the summaries of the parts that are done."""
+
+    @classmethod
+    def lines(cls, entry: dict[str, object]) -> list[str]:
+        """What the panel says of a mesh that is done, given its summary."""
+        before = "" if entry["energy_before"] is None else f"{entry['energy_before']:.3g} → "
+        return [
+            f"{entry['name']}: energy {before}{entry['energy_after']:.3g}",
+            f"{entry['steps']} {cls.counted}, {entry['seconds']:.1f} s",
+        ]
+
+    @classmethod
+    def phrases(cls, done: Sequence[dict[str, object]]) -> list[str]:
+        """What the batch command says of a file beside vertices, energies and gap, given the summaries."""
+        return []
+
+    def kept_settings(self) -> dict[str, object]:
+        """Settings that a redo repeats with other values than those asked for."""
+        return {}
 
     def show(self) -> bool:
         """Show how far the job is; whether there was something new."""
@@ -173,6 +198,11 @@ class Run(ABC):
             "error": None if error is None else str(error),
         }
         return entry if part.task.result is None else entry | self.figures(part)
+
+
+def counted(number: int, word: str) -> str:
+    """A number of things, the word in the plural where there is not one."""
+    return f"{number} {word}" if number == 1 else f"{number} {word}s"
 
 
 def meshes_phrase(done: Sequence[dict[str, object]]) -> str:

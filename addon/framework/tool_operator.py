@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the operators of all tools share: when they can start, whence their settings, how they run."""
+"""The operators of all tools: when they can start, where their settings come from, how they run."""
 
 from typing import ClassVar
 
@@ -7,9 +7,11 @@ import bpy
 from bpy.props import BoolProperty
 
 from ..blender import selection
+from . import rows
 from .modal import ModalRun
 from .run import RefusedError, Run
-from .shared_settings import setting_names
+from .settings import setting_names
+from .tool import Tool
 
 
 class ToolOperator(ModalRun):
@@ -17,16 +19,12 @@ class ToolOperator(ModalRun):
 
     # Not more exactly: what typing is given it keeps, with all that hangs on it, and Blender 4.2 as a module
     # then crashes when Python ends.
-    tool: ClassVar[type]
-    """The tool: a kind of `Run`."""
-    settings: ClassVar[type]
-    """The class of the tool's settings."""
-    panel: ClassVar[str]
-    """The name of the scene's property with the settings of the sidebar panel."""
+    tool: ClassVar[object]
+    """The `Tool`."""
 
     from_panel: BoolProperty(
         name="From Panel",
-        description="Take the settings of the sidebar panel",
+        description="Use the settings of the sidebar panel",
         default=False,
         options={"HIDDEN", "SKIP_SAVE"},
     )
@@ -34,7 +32,7 @@ class ToolOperator(ModalRun):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether there is a mesh to work on; the tooltip says why not."""
-        reason = selection.reason_disabled(context, cls.tool.needs)
+        reason = selection.reason_disabled(context, cls.tool.run.needs)
         if reason is not None:
             cls.poll_message_set(reason)
         return reason is None
@@ -49,15 +47,42 @@ class ToolOperator(ModalRun):
         run = self._prepared(context)
         return {"CANCELLED"} if run is None else self.begin_modal(context, run)
 
+    def finished(self, context: bpy.types.Context, run: Run) -> set[str]:
+        """Write the result and report what happened."""
+        outcome = super().finished(context, run)
+        if outcome == {"FINISHED"}:
+            for name, value in run.kept_settings().items():
+                setattr(self, name, value)
+        return outcome
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the redo panel."""
+        rows.draw_all(self.layout, self, self.tool.settings, context.object)
+
     def _prepared(self, context: bpy.types.Context) -> Run | None:
         if self.from_panel:
-            for name in setting_names(self.settings):
-                setattr(self, name, getattr(getattr(context.scene, self.panel), name))
+            panel = getattr(context.scene, self.tool.scene_property)
+            for name in setting_names(self.tool.settings):
+                setattr(self, name, getattr(panel, name))
             # From now on these are the operator's own, for the redo panel to change.
             self.from_panel = False
-        chosen = selection.usable(selection.mesh_objects(context), self.tool.needs)
+        chosen = selection.usable(selection.mesh_objects(context), self.tool.run.needs)
         try:
-            return self.tool(chosen.objects, self, chosen.skipped)
+            return self.tool.run(chosen.objects, self, chosen.skipped)
         except RefusedError as refusal:
             self.report({"ERROR"}, str(refusal))
             return None
+
+
+def operator_class(tool: Tool) -> type:
+    """The operator of a tool, `RIDGEFORM_OT_<name>`."""
+    own = {
+        "bl_idname": tool.idname,
+        "bl_label": tool.label,
+        "bl_description": tool.description,
+        "bl_options": {"REGISTER", "UNDO", "PRESET"},
+        "tool": tool,
+        "__module__": __name__,
+        "__doc__": tool.description,
+    }
+    return type(f"RIDGEFORM_OT_{tool.name}", (tool.settings, ToolOperator, bpy.types.Operator), own)

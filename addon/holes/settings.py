@@ -2,109 +2,114 @@
 """The settings of Fill Holes."""
 
 import numpy as np
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
+
+from ..framework.settings import Settings, boolean, choice, factor, integer, number
+from ..framework.shared_settings import COUPLING, EXPERT, MARKS
 
 
-class HoleSettings:
-    """The settings of Fill Holes: for the operator, the sidebar panel, presets and the batch command."""
+class HoleSettings(Settings):
+    """The settings of Fill Holes."""
 
-    max_edges: IntProperty(
-        name="Largest Hole",
-        description="Fill holes with at most this many edges around them. 0 fills holes of any size",
+    max_edges: integer(
+        "Largest Hole",
+        "Maximum number of edges around a hole for it to be filled. 0 fills holes of any size",
         default=0,
         min=0,
     )
-    outer: BoolProperty(
-        name="Outer Border",
-        description="Fill the outer border of an open sheet as well. In Edit Mode one that alone is selected "
-        "is filled in any case",
-        default=False,
+    outer: boolean(
+        "Outer Border",
+        "Fill the outer border of an open sheet as well. In Edit Mode, a border selected alone is always "
+        "filled",
     )
-    shape: EnumProperty(
-        name="Shape",
-        description="What the patch looks like",
-        items=(
+    shape: choice(
+        "Shape",
+        "What the patch looks like",
+        (
             (
                 "AUTO",
                 "Automatic",
-                "Ridges where they end at the hole, smooth where the mesh around is smooth",
+                "Ridges where some end at the hole, smooth where the mesh around is smooth",
             ),
             ("SHARP", "Sharp", "Flat planes that meet in ridges"),
             ("SMOOTH", "Smooth", "No ridges"),
         ),
         default="AUTO",
     )
-    sharpness: FloatProperty(
-        name="Sharpness",
-        description="How angular a sharp patch is: 0 is the flow of the paper, without ridges drawn through "
-        "the mesh, 1 gives the hardest ridges",
+    sharpness: factor(
+        "Sharpness",
+        "How angular a sharp patch is: 0 is the flow of the paper, without ridges drawn through the mesh, 1 "
+        "gives the hardest ridges",
         default=0.5,
-        min=0.0,
-        max=1.0,
-        subtype="FACTOR",
+        active=lambda settings: settings.shape == "SHARP",
     )
-    edge_length: FloatProperty(
-        name="Edge Length",
-        description="Length of the edges in the patch, in the object's own units. 0 takes that of the edges "
-        "around the hole",
+    edge_length: number(
+        "Edge Length",
+        "Length of the edges in the patch, in the units of the object. 0 uses the length of the edges around "
+        "the hole",
         default=0.0,
         min=0.0,
         subtype="DISTANCE",
         precision=4,
+        metavar="LENGTH",
     )
-    material: EnumProperty(
-        name="Material",
-        description="The material of the patch",
-        items=(
+    material: choice(
+        "Material",
+        "Material of the patch",
+        (
             (
                 "CONTINUE",
                 "Continue",
-                "The materials around the hole go on: where two of them meet, the border runs along a "
-                "ridge of the patch if it can",
+                "Continue the materials around the hole. Where two of them meet, the border runs along a "
+                "ridge of the patch if possible",
             ),
-            ("MAJORITY", "One", "The material that most of the hole's border has"),
+            ("MAJORITY", "One", "Use the material that most of the border of the hole has"),
         ),
         default="CONTINUE",
+        flag=None,
+        switches={"--one-material": "MAJORITY"},
     )
-    marks: EnumProperty(
-        name="Mark Ridges",
-        description="Mark the ridges of the patch. Marks that end at the hole go on along its ridges in any "
-        "case",
-        items=(
-            ("SHARP", "Sharp", "Mark ridges as sharp edges"),
-            ("CREASE", "Crease", "Give ridges a full subdivision crease"),
-            ("BEVEL", "Bevel", "Give ridges a full bevel weight"),
-        ),
-        options={"ENUM_FLAG"},
-        default=set(),
+    marks: MARKS.but(
+        description="Mark the ridges of the patch. Marks that end at the hole always continue along them"
     )
-    iterations: IntProperty(
-        name="Steps",
-        description="The most flow steps",
+    iterations: integer(
+        "Steps",
+        "Maximum number of flow steps",
         default=50,
         min=1,
         soft_max=200,
+        section=EXPERT,
+        metavar="STEPS",
     )
-    fidelity: FloatProperty(
-        name="Fidelity",
-        description="Fidelity weight η of the flow (Rowe et al. 2024, eq. 24): larger stays closer to the "
-        "smooth patch that it starts from",
+    fidelity: number(
+        "Fidelity",
+        "Fidelity weight η of the flow (Rowe et al. 2024, eq. 24): larger values stay closer to the smooth "
+        "patch that it starts from",
         default=50.0,
         min=1e-6,
         max=1e12,
         soft_min=1.0,
         soft_max=1e6,
         precision=1,
+        section=EXPERT,
     )
-    coupling: EnumProperty(
-        name="Coupling",
-        description="How the coordinates share ridges",
-        items=(
-            ("joint", "Joint", "One norm over all coordinates: the result does not depend on the axes"),
-            ("separate", "Separate", "Each coordinate by itself, as in the paper"),
-        ),
-        default="joint",
-    )
+    coupling: COUPLING.but(description="How the coordinates share ridges")
+
+
+PRESETS = {
+    "Automatic": {
+        "shape": "AUTO",
+        "sharpness": 0.5,
+        "edge_length": 0.0,
+        "material": "CONTINUE",
+        "marks": set(),
+        "iterations": 50,
+        "fidelity": 50.0,
+        "coupling": "joint",
+    },
+    "Hard Ridges": {"shape": "SHARP", "sharpness": 1.0, "marks": {"SHARP"}},
+    "Smooth": {"shape": "SMOOTH"},
+}
+"""Shipped presets: the defaults; planes and the hardest ridges, marked sharp; no ridges."""
 
 
 def hole_options(settings: object) -> dict[str, object]:

@@ -13,7 +13,7 @@ import ridgeform
 from ..blender import mesh_io
 from ..blender.overlay import Overlay
 from ..framework.job import Task
-from ..framework.run import Part, RefusedError, Run, meshes_phrase, welded
+from ..framework.run import Part, RefusedError, Run, counted, meshes_phrase, welded
 from .append import append
 from .extension import Extension, Source, extend
 from .reading import picked_edges, read_source, reference_coordinates
@@ -60,13 +60,8 @@ class HoleFilling(Run):
         self, objects: Sequence[bpy.types.Object], settings: object, skipped: Sequence[str] = ()
     ) -> None:
         """Find the holes of the objects and prepare one task each."""
-        self._in_edit_mode = bpy.context.mode == "EDIT_MESH"
         self._overlay = Overlay()
         super().__init__(objects, settings, skipped)
-
-    def _prepare_all(self, objects: Sequence[bpy.types.Object]) -> None:
-        with mesh_io.object_mode():
-            super()._prepare_all(objects)
 
     def prepare(self, obj: bpy.types.Object) -> HolePart:
         """Read one mesh, and choose which of its holes are filled."""
@@ -137,13 +132,27 @@ class HoleFilling(Run):
             "status": str(filled.status),
         }
 
+    @classmethod
+    def lines(cls, entry: dict[str, object]) -> list[str]:
+        """How many holes, faces and ridge edges there are, and what was left out."""
+        return [
+            f"{entry['name']}: {entry['holes']} filled, {counted(entry['faces_added'], 'face')}",
+            f"{counted(entry['ridge_edges'], 'ridge edge')}, {entry['seconds']:.1f} s",
+            *entry["warnings"],
+        ]
+
+    @classmethod
+    def phrases(cls, done: Sequence[dict[str, object]]) -> list[str]:
+        """How many holes were filled."""
+        return [f"{counted(sum(entry['holes'] for entry in done), 'hole')} filled"] if done else []
+
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """Holes, faces, ridges, time."""
         holes, faces, ridges = (sum(e[key] for e in done) for key in ("holes", "faces_added", "ridge_edges"))
         seconds = sum(entry["seconds"] for entry in done)
-        ridge_phrase = f", ridges along {_counted(ridges, 'edge')}" if ridges else ""
+        ridge_phrase = f", ridges along {counted(ridges, 'edge')}" if ridges else ""
         return (
-            f"Filled {_counted(holes, 'hole')} of {meshes_phrase(done)}: {_counted(faces, 'face')} added"
+            f"Filled {counted(holes, 'hole')} of {meshes_phrase(done)}: {counted(faces, 'face')} added"
             f"{ridge_phrase}, {seconds:.1f} s"
         )
 
@@ -182,7 +191,7 @@ def _chosen(
 
 
 def _skipped(reasons: Counter[str]) -> list[str]:
-    return [f"{_counted(count, 'hole')} skipped ({reason})" for reason, count in reasons.items()]
+    return [f"{counted(count, 'hole')} skipped ({reason})" for reason, count in reasons.items()]
 
 
 def _filled(
@@ -234,7 +243,3 @@ def _unwelded(new: np.ndarray, source: Source) -> np.ndarray:
             if edge in wanted and edge in own:
                 result[row, (i + 1) % 3], result[row, i] = own[edge]
     return result
-
-
-def _counted(number: int, word: str) -> str:
-    return f"{number} {word}" if number == 1 else f"{number} {word}s"

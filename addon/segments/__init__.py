@@ -4,3 +4,24 @@
 `labels` (f,) int32 are the segments of the faces, -1 for none; `taking` (f,) bool says which faces took part,
 all others keep what they have.
 """
+
+from ..framework.tool import Feature, Tool
+from .settings import PRESETS, SegmentSettings
+from .tool import Segmenting, forget
+
+FEATURE = Feature(
+    tools=(
+        Tool(
+            name="segment",
+            label="Segment",
+            description="Divide meshes, or the selected faces, into the parts that a person would name, "
+            "along their ridges",
+            icon="MATERIAL",
+            run=Segmenting,
+            settings=SegmentSettings,
+            key="segment",
+            presets=PRESETS,
+        ),
+    ),
+    unregister=forget,
+)

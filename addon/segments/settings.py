@@ -1,64 +1,48 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The settings of segmenting, shared by the operator, the panel, presets and the batch command."""
-
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+"""The settings of segmenting: what is segmented, how finely, and what is made of the segments."""
 
 from ..blender.attribute_names import search_names
-from ..framework.shared_settings import RidgeSettings, SolverChoice
-
-OUTPUTS = (
-    (
-        "MATERIALS",
-        "Material Slots",
-        "A slot with a colour of its own for each segment. Slots and materials that exist stay, those of an "
-        "earlier run are used again",
-    ),
-    ("SEAMS", "Seams", "Mark the borders as seams for unwrapping. Seams that exist are kept"),
-    ("SHARP", "Sharp Edges", "Mark the borders as sharp edges. Marks that exist are kept"),
-    ("FACE_SETS", "Face Sets", "Make each segment a face set of Sculpt Mode"),
-    ("VERTEX_GROUPS", "Vertex Groups", "Make a vertex group of each segment; those of an earlier run go"),
-    (
-        "INDICATOR",
-        "Indicator",
-        'Store where borders are, 0 on them and 1 inside segments, in the attribute "ridgeform_indicator"',
-    ),
-    (
-        "SHARPENED",
-        "Sharpened Surface",
-        "Keep what the borders were found on, flattened between them: the shape as a new shape key, an "
-        "attribute as a new one",
-    ),
-    ("OBJECTS", "Separate Objects", "Make each segment an object of its own. For Object Mode"),
+from ..framework.settings import Settings, boolean, choice, choices, data_name, factor, integer, number
+from ..framework.shared_settings import (
+    AVOID_RIDGES,
+    EXPERT,
+    FIDELITY,
+    MAX_ITERATIONS,
+    RIDGE_GROUP,
+    SOLVER,
+    USE_FIDELITY,
 )
-"""What can be made of segments, besides the face attribute."""
 
 
-class SegmentSettings(RidgeSettings, SolverChoice):
-    """What is segmented, how finely, and what is made of it."""
+class SegmentSettings(Settings):
+    """The settings of segmenting."""
 
-    source: EnumProperty(
-        name="By",
-        description="What the segments are found on",
-        items=(
+    source: choice(
+        "By",
+        "What the segments are found on",
+        (
             ("SHAPE", "Shape", "Parts that are nearly flat or evenly curved, with borders along the ridges"),
             (
                 "ATTRIBUTE",
                 "Attribute",
-                "Parts on which an attribute, a colour or a vertex group is even or rises evenly",
+                "Parts on which an attribute, color, or vertex group is even or rises evenly",
             ),
         ),
         default="SHAPE",
+        flag=None,
     )
-    attribute: StringProperty(
-        name="Attribute",
-        description="Attribute or vertex group that the segments are found on. Empty: the active one",
+    attribute: data_name(
+        "Attribute",
+        "Attribute or vertex group on which the segments are found. Empty: the active one",
         search=search_names,
+        active=lambda settings: settings.source == "ATTRIBUTE",
+        implies={"source": "ATTRIBUTE"},
     )
-    length_weight: FloatProperty(
-        name="Border Cost",
-        description="What a border costs for its length (λ of the paper). Two parts of a shape become one "
-        "segment if they meet at an edge that bends by less than an angle of about 0.8 of this (0.5: 23°). "
-        "Larger gives fewer segments, smaller more",
+    length_weight: number(
+        "Border Cost",
+        "What a border costs for its length (λ of the paper). Two parts of a shape become one segment if "
+        "they meet at an edge bent by less than about 0.8 times this value, in radians (0.5: 23°). Larger "
+        "values give fewer segments",
         default=0.5,
         min=1e-4,
         max=1e4,
@@ -66,103 +50,162 @@ class SegmentSettings(RidgeSettings, SolverChoice):
         soft_max=3.0,
         precision=2,
     )
-    use_count: BoolProperty(
-        name="Set Number",
-        description="Ask for a number of segments",
-        default=False,
-    )
-    count: IntProperty(
-        name="Segments",
-        description="How many segments there shall be. The weakest borders go first, so that fewer segments "
-        "are unions of more. The same mesh is computed once only",
+    use_count: boolean("Set Number", "Choose the number of segments", flag=None)
+    count: integer(
+        "Segments",
+        "Number of segments. The weakest borders are removed first, so that fewer segments are unions of "
+        "more. A mesh is computed only once",
         default=6,
         min=1,
         max=100_000,
         soft_max=100,
+        active=lambda settings: settings.use_count,
+        flag="--segments",
+        implies={"use_count": True},
     )
-    outputs: EnumProperty(
-        name="Make",
-        description='What is made of the segments, besides the face attribute "ridgeform_segment"',
-        items=OUTPUTS,
-        options={"ENUM_FLAG"},
+    outputs: choices(
+        "Make",
+        'What to make of the segments, besides the face attribute "ridgeform_segment"',
+        (
+            (
+                "MATERIALS",
+                "Material Slots",
+                "A slot with a color of its own for each segment. Existing slots and materials stay, those "
+                "of an earlier run are used again",
+            ),
+            ("SEAMS", "Seams", "Mark the borders as seams for unwrapping. Existing seams are kept"),
+            ("SHARP", "Sharp Edges", "Mark the borders as sharp edges. Existing marks are kept"),
+            ("FACE_SETS", "Face Sets", "Make each segment a face set of Sculpt Mode"),
+            (
+                "VERTEX_GROUPS",
+                "Vertex Groups",
+                "Make a vertex group of each segment, replacing those of an earlier run",
+            ),
+            (
+                "INDICATOR",
+                "Indicator",
+                "Store where the borders are, 0 on them and 1 inside segments, in the attribute "
+                '"ridgeform_indicator"',
+            ),
+            (
+                "SHARPENED",
+                "Sharpened Surface",
+                "Keep what the borders were found on, flattened between them: a shape as a new shape key, an "
+                "attribute as a new one",
+            ),
+            ("OBJECTS", "Separate Objects", "Make each segment an object of its own. Only in Object Mode"),
+        ),
         default={"MATERIALS"},
+        flag="--make",
     )
-    min_faces: IntProperty(
-        name="Least Faces",
-        description="Segments of fewer triangles are joined to a neighbour. 0: as many as the noise of the "
-        "mesh asks for",
+    ridge_group: RIDGE_GROUP.but(
+        name="Borders",
+        description="Vertex group painted where borders should run. Unpainted areas are neutral",
+    )
+    avoid_ridges: AVOID_RIDGES.but(
+        name="Avoid Borders",
+        description="Keep borders away from the painted vertices instead of drawing them there",
+    )
+    min_faces: integer(
+        "Minimum Faces",
+        "Segments with fewer triangles are merged with a neighbor. 0 uses as many as the noise of the mesh "
+        "calls for",
         default=0,
         min=0,
         soft_max=200,
+        section=EXPERT,
     )
-    method: EnumProperty(
-        name="Method",
-        description="How segments come from the indicator of borders",
-        items=(
+    method: choice(
+        "Method",
+        "How segments are made from the indicator of borders",
+        (
             (
                 "fitted",
                 "Fitted",
-                "Flooded between the borders, joined where little bends, faces at a border given to the side "
+                "Flooded between the borders, merged where little bends, faces at a border given to the side "
                 "that they fit best",
             ),
             ("paper", "Paper", "Cut where the indicator is below the threshold (Rowe et al. 2024)"),
         ),
         default="fitted",
+        section=EXPERT,
     )
-    cut_threshold: FloatProperty(
-        name="Threshold",
-        description="For the method Paper: the indicator is 1 inside a segment and falls to 0 on a border. "
-        "Faces are cut apart where it is below this: higher cuts along weaker borders as well",
+    cut_threshold: factor(
+        "Threshold",
+        "For the method Paper: the indicator is 1 inside a segment and falls to 0 on a border. Faces are cut "
+        "apart where it is below this value: higher values cut along weaker borders as well",
         default=0.6,
-        min=0.0,
-        max=1.0,
-        subtype="FACTOR",
+        section=EXPERT,
+        active=lambda settings: settings.method == "paper",
     )
-    use_fidelity: BoolProperty(
-        name="Set Fidelity",
-        description="Set the fidelity weight of the paper, instead of finding it from the noise of the mesh",
-        default=False,
+    use_fidelity: USE_FIDELITY.but(
+        description="Set the fidelity weight of the paper instead of finding it from the noise of the mesh"
     )
-    fidelity: FloatProperty(
-        name="Fidelity",
-        description="Fidelity weight of the paper (Rowe et al. 2024, eq. 41): larger stays closer to "
-        "the surface, noise included",
+    fidelity: number(
+        "Fidelity",
+        "Fidelity weight of the paper (Rowe et al. 2024, eq. 41): larger values stay closer to the surface, "
+        "noise included",
         default=1000.0,
         min=1e-6,
         max=1e12,
         soft_min=1.0,
         soft_max=1e6,
         precision=1,
+        **FIDELITY,
     )
-    epsilon_start: FloatProperty(
-        name="First Width",
-        description="Width of the bands around borders at first (ε of the paper), in the unit below; halved "
-        "until the last width",
+    epsilon_start: number(
+        "First Width",
+        "Initial width of the bands around borders (ε of the paper), in the unit below. Halved until the "
+        "last width",
         default=0.1,
         min=1e-5,
         max=10.0,
         precision=4,
+        section=EXPERT,
     )
-    epsilon_end: FloatProperty(
-        name="Last Width",
-        description="Width of the bands around borders at the end. The method Fitted goes no lower than the "
-        "mesh is fine",
+    epsilon_end: number(
+        "Last Width",
+        "Final width of the bands around borders. The method Fitted stops at the resolution of the mesh",
         default=0.001,
         min=1e-5,
         max=10.0,
         precision=4,
+        section=EXPERT,
     )
-    scale: EnumProperty(
-        name="Unit",
-        description="The length that counts as 1",
-        items=(
+    scale: choice(
+        "Unit",
+        "Length that counts as 1",
+        (
             ("extent", "Extent", "The size of the shape, however it is turned: for a cube its side"),
             ("bounding_box", "Bounding Box", "The longest side of the bounding box"),
-            ("area", "Area", "The square root of the surface's area"),
+            ("area", "Area", "The square root of the surface area"),
             ("max_edge", "Longest Edge", "The longest edge"),
         ),
         default="extent",
+        section=EXPERT,
     )
+    solver: SOLVER
+    max_iterations: MAX_ITERATIONS
+
+
+PRESETS = {
+    "Faces": {"length_weight": 0.5},
+    "Large Parts": {"length_weight": 1.2},
+    "Details": {"length_weight": 0.2},
+    "Paper 2024": {
+        "method": "paper",
+        "use_count": False,
+        "min_faces": 20,
+        "use_fidelity": True,
+        "fidelity": 1000.0,
+        "cut_threshold": 0.6,
+        "epsilon_start": 0.1,
+        "epsilon_end": 0.001,
+        "scale": "bounding_box",
+    },
+}
+"""Shipped presets: the faces that a person would name; few and large ones; borders along weak ridges as
+well; the method as published."""
 
 
 def segment_options(settings: object) -> dict[str, object]:

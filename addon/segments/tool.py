@@ -25,7 +25,7 @@ from ..blender.attribute_names import AttributeRefusedError
 from ..blender.selection import Needs
 from ..blender.welding import Weld
 from ..framework.job import Task
-from ..framework.run import Part, RefusedError, Run, group_weights, meshes_phrase
+from ..framework.run import Part, RefusedError, Run, counted, group_weights, meshes_phrase
 from ..framework.shared_settings import ridge_weights_of
 from . import layers, slots
 from .parts import separate
@@ -86,11 +86,6 @@ class Segmenting(Run):
 
     name = "segment"
     needs = Needs(coordinates=False)
-
-    def _prepare_all(self, objects: Sequence[bpy.types.Object]) -> None:
-        self._in_edit_mode = bpy.context.mode == "EDIT_MESH"
-        with mesh_io.object_mode():
-            super()._prepare_all(objects)
 
     def prepare(self, obj: bpy.types.Object) -> SegmentPart:
         """Read shape or attribute, selection and paint of one mesh."""
@@ -204,14 +199,28 @@ class Segmenting(Run):
             "status": str(found.status),
         }
 
+    @classmethod
+    def lines(cls, entry: dict[str, object]) -> list[str]:
+        """How many segments there are, how many there might be, and what was left out."""
+        fewest, most = entry["possible"]
+        return [
+            f"{entry['name']}: {counted(entry['segments'], 'segment')}",
+            f"{fewest} to {most} are possible, {entry['seconds']:.1f} s",
+            *entry["warnings"],
+        ]
+
+    @classmethod
+    def phrases(cls, done: Sequence[dict[str, object]]) -> list[str]:
+        """How many segments there are."""
+        return [counted(sum(entry["segments"] for entry in done), "segment")] if done else []
+
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """How many segments of which mesh, how many there might be, time."""
         count = sum(entry["segments"] for entry in done)
-        word = "segment" if count == 1 else "segments"
         fewest, most = (sum(ends) for ends in zip(*(entry["possible"] for entry in done), strict=True))
         seconds = sum(entry["seconds"] for entry in done)
         where = meshes_phrase(done)
-        return f"{count} {word} on {where} ({fewest} to {most} are possible), {seconds:.1f} s"
+        return f"{counted(count, 'segment')} on {where} ({fewest} to {most} are possible), {seconds:.1f} s"
 
 
 _known: OrderedDict[bytes, ridgeform.Segmentation] = OrderedDict()

@@ -1,2 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Stylize: the flow on each mesh, then what is made of the result."""
+
+from ..framework.tool import Feature, Tool
+from .settings import PRESETS, WHERE, StylizeSettings
+from .tool import Stylization
+
+FEATURE = Feature(
+    tools=(
+        Tool(
+            name="stylize",
+            label="Stylize Flat",
+            description="Make the selected meshes piecewise flat, with crisp ridges",
+            icon="MOD_DECIM",
+            run=Stylization,
+            settings=StylizeSettings,
+            key="stylize",
+            title="Stylize",
+            prominent=True,
+            open_sections=(WHERE,),
+            presets=PRESETS,
+        ),
+    )
+)

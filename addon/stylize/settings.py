@@ -4,146 +4,183 @@
 from types import SimpleNamespace
 
 import numpy as np
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from ..framework.shared_settings import RidgeSettings, SolverSettings, defaults_of
+from ..framework.settings import (
+    Settings,
+    boolean,
+    choice,
+    defaults_of,
+    factor,
+    integer,
+    number,
+    vertex_group,
+)
+from ..framework.shared_settings import (
+    AVOID_RIDGES,
+    COUPLING,
+    DELAUNAY,
+    DUAL,
+    EXPERT,
+    FIDELITY,
+    MARKS,
+    MAX_ITERATIONS,
+    RIDGE_GROUP,
+    SOLVER,
+    USE_FIDELITY,
+)
+
+WHERE = "Where"
+LAST_STEPS = "Last Steps"
 
 
 def fidelity_of(strength: float) -> float:
     """The fidelity weight η of eq. (24), on a surface of unit area, that a strength from 0 to 1 stands for.
 
     Chosen from a sheet of pictures of thirteen meshes: at 0.35 a bust keeps eyes and lips, at 0.5 nose, brows
-    and chin, and figures their fingers and ears; from 0.65 on such features go.
+    and chin, and figures their fingers and ears; from 0.65 on such features disappear.
     """
     return 10.0 ** (9.25 - 4.0 * strength)
 
 
-class StylizeSettings(RidgeSettings, SolverSettings):
-    """The settings of stylize, shared by the operator, the sidebar panel, presets and the batch command."""
+class StylizeSettings(Settings):
+    """The settings of stylize."""
 
-    steps: IntProperty(
-        name="Steps",
-        description="How often the flattening step is repeated. More steps give larger and flatter facets",
+    steps: integer(
+        "Steps",
+        "Number of times the flattening step is repeated. More steps give larger and flatter facets",
         default=20,
         min=1,
         max=1000,
         soft_max=60,
     )
-    strength: FloatProperty(
-        name="Strength",
-        description="How far each step may move the surface: 0 keeps every detail, 1 leaves only the main "
-        "planes",
+    strength: factor(
+        "Strength",
+        "How far each step may move the surface: 0 keeps every detail, 1 leaves only the main planes",
         default=0.5,
-        min=0.0,
         max=1.5,
         soft_max=1.0,
-        subtype="FACTOR",
+        active=lambda settings: not settings.use_fidelity,
     )
-    sharpness: FloatProperty(
-        name="Sharpness",
-        description="How angular the result is: 0 gives soft, rounded transitions, 1 the hardest ridges",
+    sharpness: factor(
+        "Sharpness",
+        "How angular the result is: 0 gives soft, rounded transitions, 1 the hardest ridges",
         default=0.75,
-        min=0.0,
-        max=1.0,
-        subtype="FACTOR",
     )
-    strength_group: StringProperty(
-        name="Mask",
-        description="Vertex group that says where and how strongly to stylize. Vertices that are not in it "
-        "stay where they are",
+    strength_group: vertex_group(
+        "Mask",
+        "Vertex group that determines where to stylize, and how strongly. Vertices outside of it do not move",
+        section=WHERE,
     )
-    output: EnumProperty(
-        name="Result",
-        description="Where the result goes",
-        items=(
+    ridge_group: RIDGE_GROUP.but(section=WHERE)
+    avoid_ridges: AVOID_RIDGES.but(section=WHERE)
+    output: choice(
+        "Result",
+        "Where to put the result",
+        (
             ("POSITIONS", "Mesh", "Move the vertices, or the active shape key if there is one"),
             ("SHAPE_KEY", "New Shape Key", "Leave the mesh as it is and put the result into a new shape key"),
         ),
         default="POSITIONS",
+        section=WHERE,
+        flag=None,
+        switches={"--shape-key": "SHAPE_KEY"},
     )
-    keep_volume: BoolProperty(
-        name="Keep Volume",
-        description="Scale the result so that it encloses as much as before. For closed meshes in Object "
-        "Mode",
-        default=False,
+    keep_volume: boolean(
+        "Keep Volume",
+        "Scale the result so that it encloses the same volume as before. For closed meshes in Object Mode",
+        section=LAST_STEPS,
     )
-    marks: EnumProperty(
-        name="Mark Ridges",
-        description="Mark the edges along the ridges. Marks that exist are kept",
-        items=(
-            ("SHARP", "Sharp", "Mark ridges as sharp edges"),
-            ("CREASE", "Crease", "Give ridges a full subdivision crease"),
-            ("BEVEL", "Bevel", "Give ridges a full bevel weight"),
-        ),
-        options={"ENUM_FLAG"},
-        default=set(),
-    )
-    mark_angle: FloatProperty(
-        name="Ridge Angle",
-        description="Edges with at least this angle between their two faces are marked as ridges",
+    marks: MARKS.but(section=LAST_STEPS)
+    mark_angle: number(
+        "Ridge Angle",
+        "Minimum angle between the two faces of an edge for it to be marked as a ridge",
         default=np.radians(20.0),
         min=0.0,
         max=np.pi,
         subtype="ANGLE",
+        section=LAST_STEPS,
+        active=lambda settings: bool(settings.marks),
     )
-    reduce: BoolProperty(
-        name="Reduce Triangles",
-        description="Simplify the result: flat facets need few triangles. Quads and n-gons become triangles",
-        default=False,
+    reduce: boolean(
+        "Reduce Triangles",
+        "Simplify the result: flat facets need few triangles. Quads and n-gons become triangles",
+        section=LAST_STEPS,
+        flag=None,
     )
-    reduce_ratio: FloatProperty(
-        name="Ratio",
-        description="The share of the triangles that is left",
+    reduce_ratio: factor(
+        "Ratio",
+        "Ratio of triangles to keep",
         default=0.25,
         min=0.001,
-        max=1.0,
         soft_min=0.02,
-        subtype="FACTOR",
+        section=LAST_STEPS,
+        active=lambda settings: settings.reduce,
+        flag="--reduce",
+        metavar="RATIO",
+        implies={"reduce": True},
     )
-    use_fidelity: BoolProperty(
-        name="Set Fidelity",
-        description="Set the fidelity weight of the paper instead of the strength",
-        default=False,
-    )
-    fidelity: FloatProperty(
-        name="Fidelity",
-        description="Fidelity weight η of the flow (Rowe et al. 2024, eq. 24): larger stays closer to the "
-        "surface",
+    use_fidelity: USE_FIDELITY
+    fidelity: number(
+        "Fidelity",
+        "Fidelity weight η of the flow (Rowe et al. 2024, eq. 24): larger values stay closer to the surface",
         default=500.0,
         min=1e-6,
         max=1e12,
         soft_min=1.0,
         soft_max=1e8,
         precision=1,
+        **FIDELITY,
     )
-    scale: EnumProperty(
-        name="Unit",
-        description="The length that the fidelity weight is measured in",
-        items=(
+    scale: choice(
+        "Unit",
+        "Length in which the fidelity weight is measured",
+        (
             ("max_edge", "Longest Edge", "The unit of the paper"),
             (
                 "bounding_box",
                 "Bounding Box",
-                "The longest side of the bounding box: independent of the mesh's density",
+                "The longest side of the bounding box: independent of the density of the mesh",
             ),
             (
                 "area",
                 "Area",
-                "The square root of the surface's area: independent of the mesh's density and of how it is "
-                "turned",
+                "The square root of the surface area: independent of the density of the mesh and of how the "
+                "object is turned",
             ),
         ),
         default="max_edge",
+        section=EXPERT,
+        active=lambda settings: settings.use_fidelity,
     )
-    tolerance: FloatProperty(
-        name="Tolerance",
-        description="Certified relative duality gap that each step must reach. 0 stops as soon as nothing "
-        "visible changes",
+    coupling: COUPLING
+    dual: DUAL
+    delaunay: DELAUNAY
+    solver: SOLVER
+    tolerance: number(
+        "Tolerance",
+        "Certified relative duality gap that each step must reach. 0 stops when nothing visible changes",
         default=0.0,
         min=0.0,
         max=1.0,
         precision=6,
+        section=EXPERT,
     )
+    max_iterations: MAX_ITERATIONS
+
+
+PRESETS = {
+    "Facets": {"steps": 20, "strength": 0.5, "sharpness": 0.75},
+    "Gemstone": {"steps": 30, "strength": 0.7, "sharpness": 1.0},
+    "Soft Planes": {"steps": 12, "strength": 0.4, "sharpness": 0.25},
+    "Paper 2024": {
+        "sharpness": 0.0,
+        "use_fidelity": True,
+        "fidelity": 500.0,
+        "scale": "max_edge",
+        "coupling": "separate",
+    },
+}
+"""Shipped presets: clear facets; few and hard ones; broad and soft planes; the flow as published."""
 
 
 def default_settings(**changes: object) -> SimpleNamespace:

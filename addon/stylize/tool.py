@@ -43,6 +43,8 @@ class Stylization(Run):
     """One run of stylize: the flow on each mesh, its steps shown as they are done, then the last steps."""
 
     name = "stylize"
+    counted = "steps"
+    in_object_mode = False
 
     def __init__(
         self, objects: Sequence[bpy.types.Object], settings: object, skipped: Sequence[str] = ()
@@ -77,10 +79,9 @@ class Stylization(Run):
         """Put back every bit of the coordinates."""
         part.coordinates.restore()
 
-    @property
-    def steps_done(self) -> int:
-        """The most flow steps that any part has made."""
-        return max((part.task.result.iterations for part in self.done), default=0)
+    def kept_settings(self) -> dict[str, object]:
+        """The most flow steps that any part has made: redo repeats what was kept, not what was asked for."""
+        return {"steps": max((part.task.result.iterations for part in self.done), default=1) or 1}
 
     def write(self, parts: Sequence[FlowPart]) -> None:
         """Write the results and do the last steps; parts without a result are restored."""

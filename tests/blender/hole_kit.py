@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import ridgeform
 from bl_ext.user_default.ridgeform.blender import mesh_io
-from bl_ext.user_default.ridgeform.framework.shared_settings import defaults_of
+from bl_ext.user_default.ridgeform.framework.settings import defaults_of
 from bl_ext.user_default.ridgeform.holes.settings import HoleSettings, hole_options
 
 SIZES = {"FLOAT2": 2, "FLOAT_VECTOR": 3, "FLOAT_COLOR": 4, "BYTE_COLOR": 4}

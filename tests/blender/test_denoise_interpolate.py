@@ -14,7 +14,8 @@ from bl_ext.user_default.ridgeform.attributes.settings import (
 )
 from bl_ext.user_default.ridgeform.blender import attribute_io, mesh_io
 from bl_ext.user_default.ridgeform.framework import job
-from bl_ext.user_default.ridgeform.framework.shared_settings import defaults_of, ridge_weights_of
+from bl_ext.user_default.ridgeform.framework.settings import defaults_of
+from bl_ext.user_default.ridgeform.framework.shared_settings import ridge_weights_of
 
 KINDS = [
     ("FLOAT", "POINT"),

@@ -8,7 +8,7 @@ import pytest
 from bl_ext.user_default.ridgeform.blender import mesh_io
 from bl_ext.user_default.ridgeform.framework import job
 from bl_ext.user_default.ridgeform.framework.run import RefusedError
-from bl_ext.user_default.ridgeform.framework.shared_settings import defaults_of
+from bl_ext.user_default.ridgeform.framework.settings import defaults_of
 from bl_ext.user_default.ridgeform.holes.settings import HoleSettings
 from bl_ext.user_default.ridgeform.holes.tool import HoleFilling
 

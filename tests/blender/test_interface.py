@@ -1,7 +1,5 @@
 """Panel, menus, presets, command: all there when registered, all gone when unregistered."""
 
-from pathlib import Path
-
 import addon_kit as kit
 import bpy
 import hole_kit
@@ -14,7 +12,7 @@ from bl_ext.user_default.ridgeform.attributes.settings import (
 )
 from bl_ext.user_default.ridgeform.diffusion.settings import DiffusionSettings
 from bl_ext.user_default.ridgeform.framework import job
-from bl_ext.user_default.ridgeform.framework.shared_settings import defaults_of, setting_names
+from bl_ext.user_default.ridgeform.framework.settings import defaults_of, setting_names
 from bl_ext.user_default.ridgeform.holes.settings import HoleSettings
 from bl_ext.user_default.ridgeform.segments.settings import SegmentSettings
 from bl_ext.user_default.ridgeform.stylize.settings import StylizeSettings, default_settings, fidelity_of
@@ -36,6 +34,7 @@ CLASSES = (
     "RIDGEFORM_OT_export_diffusion_svg",
     "RIDGEFORM_PT_diffusion",
     "RIDGEFORM_PT_diffusion_expert",
+    "RIDGEFORM_OT_shipped_preset",
     "RIDGEFORM_OT_stylize_preset_add",
     "RIDGEFORM_OT_denoise_preset_add",
     "RIDGEFORM_OT_interpolate_preset_add",
@@ -71,6 +70,7 @@ TOOLS = {
     "fill_holes": ("ridgeform_holes", HoleSettings),
     "diffusion_curves": ("ridgeform_diffusion", DiffusionSettings),
 }
+PRESETS = {tool.name: list(tool.presets or ()) for tool in addon.registry.TOOLS}
 MENUS = ("VIEW3D_MT_object", "VIEW3D_MT_edit_mesh", "TOPBAR_MT_file_export")
 HANDLERS = ("load_pre", "undo_pre", "redo_pre")
 
@@ -82,7 +82,6 @@ def trace():
         "menus": [len(getattr(bpy.types, menu)._dyn_ui_initialize()) for menu in MENUS],
         "handlers": [len(getattr(bpy.app.handlers, name)) for name in HANDLERS],
         "scene": [hasattr(bpy.types.Scene, name) for name, _ in TOOLS.values()],
-        "presets": bool(bpy.utils.preset_paths("ridgeform/stylize")),
     }
 
 
@@ -90,7 +89,6 @@ def test_registering_and_unregistering_leave_nothing():
     there = trace()
     assert there["classes"] == set(CLASSES)
     assert all(there["scene"])
-    assert there["presets"]
     addon.unregister()
     gone = trace()
     assert gone == {
@@ -98,7 +96,6 @@ def test_registering_and_unregistering_leave_nothing():
         "menus": [count - 1 for count in there["menus"]],
         "handlers": [count - 1 for count in there["handlers"]],
         "scene": [False] * len(TOOLS),
-        "presets": False,
     }
     addon.register()
     assert trace() == there
@@ -115,61 +112,65 @@ def test_panel_and_operator_have_the_same_settings(tool):
         assert getattr(panel, name) == (pytest.approx(value) if isinstance(value, float) else value)
 
 
-@pytest.mark.parametrize("name", ["Soft_Planes", "Facets", "Gemstone", "Paper_2024"])
+def apply(tool, preset):
+    assert bpy.ops.ridgeform.shipped_preset(tool=tool, preset=preset) == {"FINISHED"}
+
+
+@pytest.mark.parametrize("name", ["Soft Planes", "Facets", "Gemstone", "Paper 2024"])
 def test_shipped_presets_set_the_panel(name):
-    (folder,) = bpy.utils.preset_paths("ridgeform/stylize")
     settings = bpy.context.scene.ridgeform_stylize
     settings.steps = 999
-    path = Path(folder, f"{name}.py")
-    bpy.ops.script.execute_preset(filepath=str(path), menu_idname="RIDGEFORM_MT_stylize_presets")
+    apply("stylize", name)
     assert settings.steps != 999
-    assert settings.coupling == ("separate" if name == "Paper_2024" else "joint")
+    assert settings.coupling == ("separate" if name == "Paper 2024" else "joint")
 
 
 @pytest.mark.parametrize("tool", ["denoise", "interpolate"])
 def test_shipped_presets_of_the_attribute_panels(tool):
-    (folder,) = bpy.utils.preset_paths(f"ridgeform/{tool}")
     settings = getattr(bpy.context.scene, f"ridgeform_{tool}")
     seen = set()
-    for path in sorted(Path(folder).glob("*.py")):
+    names = PRESETS[f"{tool}_attribute"]
+    for name in names:
         settings.energy, settings.sharpness, settings.attribute = "l1_edge_laplacian", 0.125, "mine"
-        menu = f"RIDGEFORM_MT_{tool}_presets"
-        assert bpy.ops.script.execute_preset(filepath=str(path), menu_idname=menu) == {"FINISHED"}
+        apply(f"{tool}_attribute", name)
         assert settings.attribute == "mine"
         kinds = ("energy", "sharpness", "strength", "known")
         seen.add(tuple(getattr(settings, name) for name in kinds if hasattr(settings, name)))
-    assert len(seen) == len(list(Path(folder).glob("*.py"))) >= 3
+    assert len(seen) == len(names) >= 3
     assert {entry[0] for entry in seen} == {"l1_hessian", "l2_curved_hessian"}
 
 
 def test_shipped_presets_of_segmenting():
-    (folder,) = bpy.utils.preset_paths("ridgeform/segment")
     settings = bpy.context.scene.ridgeform_segment
     seen = set()
-    for path in sorted(Path(folder).glob("*.py")):
+    for name in PRESETS["segment"]:
         settings.length_weight, settings.method, settings.attribute = 9.0, "paper", "mine"
-        menu = "RIDGEFORM_MT_segment_presets"
-        assert bpy.ops.script.execute_preset(filepath=str(path), menu_idname=menu) == {"FINISHED"}
+        apply("segment", name)
         assert settings.attribute == "mine"
-        assert settings.use_fidelity == (settings.method == "paper") == (path.stem == "Paper_2024")
+        assert settings.use_fidelity == (settings.method == "paper") == (name == "Paper 2024")
         seen.add((settings.method, round(settings.length_weight, 6)))
     assert len(seen) == 4
 
 
 def test_shipped_presets_of_fill_holes():
-    (folder,) = bpy.utils.preset_paths("ridgeform/fill_holes")
     settings = bpy.context.scene.ridgeform_holes
     seen = {}
-    for path in sorted(Path(folder).glob("*.py")):
+    for name in PRESETS["fill_holes"]:
         settings.max_edges = 7
-        bpy.ops.script.execute_preset(filepath=str(path), menu_idname="RIDGEFORM_MT_fill_holes_presets")
-        seen[path.stem] = (settings.shape, frozenset(settings.marks))
+        apply("fill_holes", name)
+        seen[name] = (settings.shape, frozenset(settings.marks))
         assert settings.max_edges == 7
     assert seen == {
         "Automatic": ("AUTO", frozenset()),
-        "Hard_Ridges": ("SHARP", frozenset({"SHARP"})),
+        "Hard Ridges": ("SHARP", frozenset({"SHARP"})),
         "Smooth": ("SMOOTH", frozenset()),
     }
+
+
+@pytest.mark.parametrize(("tool", "preset"), [("stylize", "Melted"), ("vibration_modes", "Facets")])
+def test_a_preset_that_is_not_there_is_refused(tool, preset):
+    with pytest.raises(RuntimeError, match=f'"{tool}" has no preset "{preset}"'):
+        bpy.ops.ridgeform.shipped_preset(tool=tool, preset=preset)
 
 
 def test_button_of_fill_holes_takes_the_settings_of_the_panel():

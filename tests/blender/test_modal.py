@@ -143,7 +143,7 @@ def test_enter_keeps_what_is_there():
     (entry,) = job.last_summary()
     assert entry["status"] == "stopped"
     assert 0 < entry["steps"] < 2000
-    assert run.steps_done == entry["steps"]
+    assert run.kept_settings()["steps"] == entry["steps"]
     after = kit.coordinates(obj)
     assert not np.array_equal(after, before)
     kit.set_coordinates(obj, before)

@@ -17,7 +17,7 @@ from bl_ext.user_default.ridgeform.attributes.settings import (
 )
 from bl_ext.user_default.ridgeform.blender.attribute_names import SHOWN
 from bl_ext.user_default.ridgeform.framework import modal
-from bl_ext.user_default.ridgeform.framework.shared_settings import defaults_of
+from bl_ext.user_default.ridgeform.framework.settings import defaults_of
 from test_modal import FakeContext, event, poll_to_the_end
 
 TOOLS = {

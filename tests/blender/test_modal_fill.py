@@ -8,7 +8,7 @@ import hole_kit
 import numpy as np
 import pytest
 from bl_ext.user_default.ridgeform.framework import job, modal
-from bl_ext.user_default.ridgeform.framework.shared_settings import defaults_of
+from bl_ext.user_default.ridgeform.framework.settings import defaults_of
 from bl_ext.user_default.ridgeform.holes.settings import HoleSettings
 from bl_ext.user_default.ridgeform.holes.tool import HoleFilling
 from test_modal import PATIENCE, FakeContext, FakeOperator, event, poll_to_the_end

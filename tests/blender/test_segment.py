@@ -7,7 +7,7 @@ import pytest
 import ridgeform
 from bl_ext.user_default.ridgeform.blender import attribute_io, mesh_io
 from bl_ext.user_default.ridgeform.framework import job
-from bl_ext.user_default.ridgeform.framework.shared_settings import defaults_of
+from bl_ext.user_default.ridgeform.framework.settings import defaults_of
 from bl_ext.user_default.ridgeform.segments import layers, slots, tool
 from bl_ext.user_default.ridgeform.segments.settings import SegmentSettings, segment_options
 from known_shapes import shapes

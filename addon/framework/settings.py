@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How a setting is declared, once: its property, its row, whether presets keep it, and its flag.
+
+A class of settings derives from `Settings` and annotates each name with what one of the functions here
+returns. It is then a mixin for operators and property groups, and `declared` knows the rest: `rows` draws
+panels from it, `flags` makes the command line, `presets` what is stored.
+"""
+
+import dataclasses
+import inspect
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+
+import bpy.props
+
+Condition = Callable[[object], bool]
+"""What a row depends on: a function of the object with the settings."""
+Item = tuple[str, str, str]
+"""A choice: identifier, label, description."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setting:
+    """One setting: what Blender makes of it, and what rows, presets and the command line do with it."""
+
+    make: Callable[..., object]
+    """The function of `bpy.props`."""
+    keywords: Mapping[str, object]
+    """Its arguments."""
+    section: str = ""
+    """The part of the panel that it is in: the panel itself, or a subpanel of this name."""
+    active: Condition | None = None
+    """When its row is not grayed out; `None` for always."""
+    shown: Condition | None = None
+    """When it has a row at all; `None` for always."""
+    expand: bool = False
+    """Whether its choices stand side by side."""
+    in_presets: bool = True
+    """Whether presets store it; not what belongs to one mesh."""
+    flag: str | None = ""
+    """Its flag on the command line: made from its name if empty, none with `None`."""
+    metavar: str | None = None
+    """What `--help` calls its value."""
+    switches: Mapping[str, str] = field(default_factory=dict)
+    """Flags without a value, for a choice: which identifier each stands for."""
+    implies: Mapping[str, object] = field(default_factory=dict)
+    """The other settings that its flag also sets."""
+
+    @property
+    def label(self) -> str:
+        """What the row is called."""
+        return self.keywords["name"]
+
+    @property
+    def default(self) -> object:
+        """The default; a set of its own for flags, since two objects must not share one."""
+        value = self.keywords.get("default", "")
+        return set(value) if isinstance(value, set) else value
+
+    @property
+    def items(self) -> Sequence[Item]:
+        """The choices."""
+        return self.keywords.get("items", ())
+
+    def but(self, **changes: object) -> "Setting":
+        """The same setting with some fields, or arguments of the property, changed."""
+        own = {name: changes.pop(name) for name in list(changes) if name in _FIELDS}
+        return dataclasses.replace(self, keywords={**self.keywords, **changes}, **own)
+
+
+_FIELDS = {part.name for part in dataclasses.fields(Setting)}
+
+
+def _setting(make: Callable[..., object], name: str, description: str, more: dict[str, object]) -> Setting:
+    return Setting(make=make, keywords={"name": name, "description": description}).but(**more)
+
+
+def boolean(name: str, description: str, *, default: bool = False, **more: object) -> Setting:
+    """A check box."""
+    return _setting(bpy.props.BoolProperty, name, description, {"default": default, **more})
+
+
+def integer(name: str, description: str, *, default: int, **more: object) -> Setting:
+    """A whole number."""
+    return _setting(bpy.props.IntProperty, name, description, {"default": default, **more})
+
+
+def number(name: str, description: str, *, default: float, **more: object) -> Setting:
+    """A decimal number; with the subtype `ANGLE` in radians, and in degrees on the command line."""
+    return _setting(bpy.props.FloatProperty, name, description, {"default": default, **more})
+
+
+def factor(name: str, description: str, *, default: float, **more: object) -> Setting:
+    """A slider from 0 to 1."""
+    given = {"default": default, "min": 0.0, "max": 1.0, "subtype": "FACTOR", **more}
+    return _setting(bpy.props.FloatProperty, name, description, given)
+
+
+def choice(name: str, description: str, items: Sequence[Item], *, default: str, **more: object) -> Setting:
+    """One of some items."""
+    given = {"items": tuple(items), "default": default, **more}
+    return _setting(bpy.props.EnumProperty, name, description, given)
+
+
+def choices(name: str, description: str, items: Sequence[Item], **more: object) -> Setting:
+    """Any number of some items."""
+    given = {"items": tuple(items), "options": {"ENUM_FLAG"}, "default": set(), **more}
+    return _setting(bpy.props.EnumProperty, name, description, given)
+
+
+def data_name(name: str, description: str, **more: object) -> Setting:
+    """The name of something on a mesh: `search` offers names. No preset stores it."""
+    return _setting(bpy.props.StringProperty, name, description, {"in_presets": False, **more})
+
+
+VERTEX_GROUP = "vertex group"
+"""The metavar of names of vertex groups, by which rows know to offer those of the object."""
+
+
+def vertex_group(name: str, description: str, **more: object) -> Setting:
+    """The name of a vertex group."""
+    return data_name(name, description, metavar=VERTEX_GROUP, **more)
+
+
+class Settings:
+    """Base of the classes of settings, which collects what they declare."""
+
+    declared: Mapping[str, Setting] = {}
+    """All settings by name: those of the bases first, in their order."""
+
+    def __init_subclass__(cls, **arguments: object) -> None:
+        """Collect what is declared, and leave Blender's properties in its place for Blender to find."""
+        super().__init_subclass__(**arguments)
+        annotations = inspect.get_annotations(cls)
+        own = {name: made for name, made in annotations.items() if isinstance(made, Setting)}
+        inherited: dict[str, Setting] = {}
+        for base in cls.__bases__:
+            inherited |= getattr(base, "declared", {})
+        cls.declared = {name: made for name, made in inherited.items() if name not in own} | own
+        properties = {name: made.make(**made.keywords) for name, made in own.items()}
+        cls.__annotations__ = annotations | properties
+
+
+def setting_names(settings: type[Settings]) -> tuple[str, ...]:
+    """The names of all settings of a class of settings."""
+    return tuple(settings.declared)
+
+
+def defaults_of(settings: type[Settings], **changes: object) -> SimpleNamespace:
+    """The settings of a class as a plain object with Blender's defaults, for use without an operator.
+
+    Raises `TypeError` for a name that is not a setting.
+    """
+    unknown = sorted(set(changes) - set(settings.declared))
+    if unknown:
+        raise TypeError(f"There is no setting {', '.join(unknown)}.")
+    return SimpleNamespace(**({name: made.default for name, made in settings.declared.items()} | changes))

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a feature declares: its tools, and what else it adds to Blender."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+from .run import Run
+from .settings import Settings
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tool:
+    """One thing that a modeler asks for: an operator with a panel, presets and a command, made from this."""
+
+    name: str
+    """The operator's: `bpy.ops.ridgeform.<name>`, and with dashes the word on the command line."""
+    label: str
+    """What the operator is called."""
+    description: str
+    """What it does, for tooltips and `--help`."""
+    icon: str
+    run: type[Run]
+    settings: type[Settings]
+    key: str
+    """What its panels and presets are named by."""
+    scene: str = ""
+    """The property of the scene with the panel's settings, if not `ridgeform_<key>`."""
+    title: str = ""
+    """What the panel is called, if not as the operator."""
+    prominent: bool = False
+    """Whether the panel is open at first and its button large."""
+    open_sections: Sequence[str] = ()
+    """The subpanels that are open at first."""
+    presets: Mapping[str, Mapping[str, object]] | None = None
+    """The shipped presets: what each sets; `None` for a tool without any. All set what any of them names, to
+    the default where it is not said."""
+    draw_more: Callable[[object, object], None] | None = None
+    """Draws what else is below the button, from a layout and the settings."""
+
+    @property
+    def idname(self) -> str:
+        """The operator's identifier."""
+        return f"ridgeform.{self.name}"
+
+    @property
+    def command(self) -> str:
+        """The word on the command line."""
+        return self.name.replace("_", "-")
+
+    @property
+    def scene_property(self) -> str:
+        """The name of the scene's property with the settings of the panel."""
+        return self.scene or f"ridgeform_{self.key}"
+
+    @property
+    def panel_label(self) -> str:
+        """What the panel is called."""
+        return self.title or self.label
+
+    def preset_values(self, name: str) -> dict[str, object]:
+        """All that a shipped preset sets."""
+        named = dict.fromkeys(key for values in self.presets.values() for key in values)
+        return {key: self.settings.declared[key].default for key in named} | dict(self.presets[name])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Feature:
+    """A folder of the add-on: tools, and operators that are none."""
+
+    tools: Sequence[Tool]
+    operators: Sequence[type] = ()
+    """Other operators; the registry registers them."""
+    menu: Sequence[tuple[str, str]] = ()
+    """Identifier and icon of those of them that have an entry in the menus."""
+    register: Callable[[], None] | None = None
+    """What else is added to Blender."""
+    unregister: Callable[[], None] | None = None
+    """What takes it away again."""
