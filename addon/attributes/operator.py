@@ -5,16 +5,18 @@ import bpy
 
 from ..blender import attribute_io, attribute_names, display, mesh_io, selection
 from ..framework import rows
+from ..framework.settings import properties_of
 from .denoise import Denoising
 from .settings import ShowSettings
 
 
-class RIDGEFORM_OT_show_attribute(ShowSettings, bpy.types.Operator):  # noqa: N801
+class RIDGEFORM_OT_show_attribute(bpy.types.Operator):  # noqa: N801
     """Show an attribute or a vertex group as colors"""
 
     bl_idname = "ridgeform.show_attribute"
     bl_label = "Show Attribute"
     bl_options = {"REGISTER", "UNDO"}
+    __annotations__ = properties_of(ShowSettings)
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

@@ -2,8 +2,8 @@
 """How a setting is declared, once: its property, its row, whether presets keep it, and its flag.
 
 A class of settings derives from `Settings` and annotates each name with what one of the functions here
-returns. It is then a mixin for operators and property groups, and `declared` knows the rest: `rows` draws
-panels from it, `flags` makes the command line, `presets` what is stored.
+returns. From what it has `declared`, operators and property groups get their properties, `rows` draws panels,
+`flags` makes the command line, and `presets` knows what is stored.
 """
 
 import dataclasses
@@ -130,16 +130,23 @@ class Settings:
     """All settings by name: those of the bases first, in their order."""
 
     def __init_subclass__(cls, **arguments: object) -> None:
-        """Collect what is declared, and leave Blender's properties in its place for Blender to find."""
+        """Collect what is declared."""
         super().__init_subclass__(**arguments)
-        annotations = inspect.get_annotations(cls)
-        own = {name: made for name, made in annotations.items() if isinstance(made, Setting)}
+        own = inspect.get_annotations(cls)
         inherited: dict[str, Setting] = {}
         for base in cls.__bases__:
             inherited |= getattr(base, "declared", {})
         cls.declared = {name: made for name, made in inherited.items() if name not in own} | own
-        properties = {name: made.make(**made.keywords) for name, made in own.items()}
-        cls.__annotations__ = annotations | properties
+
+
+def properties_of(settings: type[Settings]) -> dict[str, object]:
+    """The annotations that make Blender's properties of the settings in an operator or a property group.
+
+    The class of settings itself must not be among their bases: Blender 4.2 keeps what it registered until the
+    end, and if `bpy` hangs on that, as it does on the functions in a setting, Python cannot end without a
+    crash.
+    """
+    return {name: made.make(**made.keywords) for name, made in settings.declared.items()}
 
 
 def setting_names(settings: type[Settings]) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ import bpy
 
 from . import job, rows
 from .run import NO_RESULT
+from .settings import properties_of
 from .tool import Tool
 
 LAST_RUN_LINES = 4
@@ -57,8 +58,12 @@ def draw_last_run(layout: bpy.types.UILayout, tool: Tool) -> None:
 def group_class(tool: Tool) -> type:
     """The property group of a tool's settings, which the scene has and saves."""
     words = "".join(word.capitalize() for word in tool.key.split("_"))
-    doc = "Settings of a panel, saved with the scene"
-    return _made(f"Ridgeform{words}Settings", (tool.settings, bpy.types.PropertyGroup), doc)
+    return _made(
+        f"Ridgeform{words}Settings",
+        (bpy.types.PropertyGroup,),
+        "Settings of a panel, saved with the scene",
+        __annotations__=properties_of(tool.settings),
+    )
 
 
 def panel_classes(tool: Tool) -> list[type]:

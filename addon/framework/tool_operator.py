@@ -10,12 +10,12 @@ from ..blender import selection
 from . import rows
 from .modal import ModalRun
 from .run import RefusedError, Run
-from .settings import setting_names
+from .settings import properties_of, setting_names
 from .tool import Tool
 
 
 class ToolOperator(ModalRun):
-    """Mixin for an operator over one tool; the class itself also has the tool's settings among its bases."""
+    """Mixin for an operator over one tool, which has the tool's settings as its properties."""
 
     # Not more exactly: what typing is given it keeps, with all that hangs on it, and Blender 4.2 as a module
     # then crashes when Python ends.
@@ -82,7 +82,8 @@ def operator_class(tool: Tool) -> type:
         "bl_description": tool.description,
         "bl_options": {"REGISTER", "UNDO", "PRESET"},
         "tool": tool,
+        "__annotations__": properties_of(tool.settings),
         "__module__": __name__,
         "__doc__": tool.description,
     }
-    return type(f"RIDGEFORM_OT_{tool.name}", (tool.settings, ToolOperator, bpy.types.Operator), own)
+    return type(f"RIDGEFORM_OT_{tool.name}", (ToolOperator, bpy.types.Operator), own)
