@@ -3,6 +3,7 @@
 
 import contextlib
 import traceback
+from collections.abc import Sequence
 
 import bpy
 from bpy.app.handlers import persistent

@@ -18,7 +18,7 @@ from bl_ext.user_default.ridgeform.attributes.settings import (
 from bl_ext.user_default.ridgeform.diffusion.settings import DiffusionSettings
 from bl_ext.user_default.ridgeform.diffusion.tool import DiffusionCurves
 from bl_ext.user_default.ridgeform.framework import modal
-from bl_ext.user_default.ridgeform.framework.shared_settings import defaults_of
+from bl_ext.user_default.ridgeform.framework.settings import defaults_of
 from bl_ext.user_default.ridgeform.holes.settings import HoleSettings
 from bl_ext.user_default.ridgeform.holes.tool import HoleFilling
 from bl_ext.user_default.ridgeform.segments.settings import SegmentSettings
