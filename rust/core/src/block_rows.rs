@@ -1,5 +1,7 @@
 //! A sparse matrix made of blocks of [`BLOCK`] rows that share their columns: one block a face, one cone a block.
 
+use crate::{Error, Result};
+
 /// Rows of one block: `xx`, `yy`, `√2·xy` of a face's Hessian (same Frobenius norm as the four entries).
 pub const BLOCK: usize = 3;
 
@@ -78,5 +80,26 @@ impl BlockRows {
             }
         }
         sum
+    }
+
+    /// `‖(H u)_b‖²` of every block, jointly over the columns of `values` (column-major).
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if `values` are not whole columns.
+    pub fn block_squares(&self, values: &[f64]) -> Result<Vec<f64>> {
+        let n = self.n_columns;
+        if !values.len().is_multiple_of(n) {
+            let problem =
+                format!("{} numbers are not whole columns of {n} vertex values; pass one per vertex", values.len());
+            return Err(Error::argument("values", problem));
+        }
+        let square = |b: usize| values.chunks_exact(n.max(1)).map(|column| self.block_square(b, column)).sum();
+        Ok((0..self.n_blocks()).map(square).collect())
+    }
+
+    /// `‖(H u)_b‖²` of block `b` for one column.
+    #[must_use]
+    pub fn block_square(&self, b: usize, u: &[f64]) -> f64 {
+        self.block_times(b, u).iter().map(|x| x * x).sum()
     }
 }

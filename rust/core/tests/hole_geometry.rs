@@ -5,7 +5,7 @@ mod hole_checks;
 
 use hole_checks::{patch_corners, patched, shapeliness};
 use ridgeform_core::error::{Error, MeshError, Refusal};
-use ridgeform_core::hole_filling::{fill_loop, fill_loops, fillable_loops, find_holes, FillOptions, Patch};
+use ridgeform_core::hole_filling::{fill_loop, fill_loops, find_holes, FillOptions, Patch};
 use ridgeform_core::mesh::vector::{area_vector, distance, dot, norm, quality};
 use ridgeform_core::mesh::{report, Mesh};
 use ridgeform_core::shapes::{self, Shape};
@@ -13,6 +13,12 @@ use ridgeform_core::Progress;
 
 fn flat() -> FillOptions {
     FillOptions { refine: false, ..FillOptions::default() }
+}
+
+/// The loops that are neither an outer border nor refused.
+fn fillable_loops(mesh: &Mesh) -> Result<Vec<Vec<u32>>, Error> {
+    let fillable = find_holes(mesh)?.into_iter().filter(|hole| !hole.is_outer_border && hole.refusal.is_none());
+    Ok(fillable.map(|hole| hole.vertices).collect())
 }
 
 fn fill_all(shape: &Shape, options: &FillOptions) -> (Mesh, Vec<Patch>) {

@@ -10,6 +10,7 @@ use crate::arrays::{self, finite_floats, shape_text};
 use crate::columns::{self, Values};
 use crate::errors::{self, argument};
 use crate::mesh::Mesh;
+use crate::numbers::at_least;
 use crate::progress::{handle, Progress};
 use crate::{doorway, options};
 
@@ -129,9 +130,9 @@ pub fn diffusion_curves(
     let labels = labels.map(|given| read_labels(given, mesh.n_faces())).transpose()?;
     let groups = face_groups.map(|given| read_groups(given, mesh.n_faces())).transpose()?;
     let regions = tools::SegmentOptions {
-        n_segments: n_regions.map(|count| options::at_least(py, "n_regions", count, 1)).transpose()?,
+        n_segments: n_regions.map(|count| at_least(py, "n_regions", count, 1)).transpose()?,
         length_weight,
-        min_faces: Some(options::at_least(py, "min_faces", min_faces, 0)?),
+        min_faces: Some(at_least(py, "min_faces", min_faces, 0)?),
         ..tools::SegmentOptions::default()
     };
     let options = tools::DiffusionCurvesOptions { fidelity, rims, refine, color_error };

@@ -7,6 +7,7 @@ use ridgeform_core::tools::{self, HoleStatus, LoopChoice, Sharpness};
 
 use crate::errors::argument;
 use crate::mesh::Mesh;
+use crate::numbers::at_least;
 use crate::progress::{handle, Progress};
 use crate::{arrays, doorway, options};
 
@@ -184,10 +185,10 @@ pub fn fill_holes(
 ) -> PyResult<Filled> {
     let options = tools::FillHolesOptions {
         loops: loops.map(|given| read_loops(given, mesh.get().n_vertices())).transpose()?,
-        max_edges: max_edges.map(|count| options::at_least(py, "max_edges", count, 3)).transpose()?,
+        max_edges: max_edges.map(|count| at_least(py, "max_edges", count, 3)).transpose()?,
         outer,
         edge_length,
-        iterations: options::at_least(py, "iterations", iterations, 0)?,
+        iterations: at_least(py, "iterations", iterations, 0)?,
         fidelity,
         sharpness: read_sharpness(py, sharpness)?,
         coupling: options::coupling(py, coupling)?,
@@ -252,7 +253,7 @@ fn read_loops(given: &Bound<'_, PyAny>, n_vertices: usize) -> PyResult<Vec<LoopC
         }
         let index = arrays::integers("loops", &item)?;
         match index.data.as_slice() {
-            [index] => Ok(LoopChoice::Index(options::at_least(py, "loops", *index, 0)?)),
+            [index] => Ok(LoopChoice::Index(at_least(py, "loops", *index, 0)?)),
             _ => Err(refuse()),
         }
     };

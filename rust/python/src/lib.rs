@@ -15,6 +15,7 @@ mod interpolate;
 mod matrix;
 mod mesh;
 mod modes;
+mod numbers;
 mod operators;
 mod options;
 mod progress;

@@ -8,7 +8,8 @@ use ridgeform_core::error::MeshError;
 use ridgeform_core::{mesh as core, Error};
 
 use crate::arrays::{float_rows, floats, index_array, index_rows, integers, plain_rows};
-use crate::{doorway, errors, options};
+use crate::numbers::at_least;
+use crate::{doorway, errors};
 
 /// An immutable triangle mesh from vertices (n,3), any length unit, and faces (m,3), counter-clockwise vertex indices.
 ///
@@ -69,7 +70,7 @@ impl Mesh {
         lengths: &Bound<'_, PyAny>,
         n_vertices: Option<i64>,
     ) -> PyResult<Self> {
-        let n_vertices = n_vertices.map(|n| options::at_least(py, "n_vertices", n, 0)).transpose()?;
+        let n_vertices = n_vertices.map(|n| at_least(py, "n_vertices", n, 0)).transpose()?;
         let faces = read_faces(faces, n_vertices)?;
         let lengths = floats("lengths", lengths)?.rows(py, "lengths")?;
         doorway::call_briefly(py, || Ok(core::Mesh::from_edge_lengths(faces, lengths, n_vertices)?)).map(Self::new)

@@ -7,6 +7,7 @@ use ridgeform_core::tools;
 
 use crate::columns::{self, Values};
 use crate::mesh::Mesh;
+use crate::numbers::at_least;
 use crate::progress::{handle, Progress};
 use crate::{doorway, options};
 
@@ -59,7 +60,7 @@ pub fn vibration_modes<'py>(
     threads: Option<i64>,
     progress: Option<&Bound<'py, Progress>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let count = options::at_least(py, "count", count, 1)?;
+    let count = at_least(py, "count", count, 1)?;
     let options = tools::ModeOptions {
         energy: options::EnergyWords { energy, face_weights, dual, delaunay }.read(py, mesh)?,
         solve: options::solve(py, solver, tolerance, max_iterations, memory_limit, threads)?,

@@ -8,6 +8,7 @@ use ridgeform_core::tools::{EnergyOptions, Scale, SolveOptions};
 use crate::arrays::finite_floats;
 use crate::errors::argument;
 use crate::mesh::Mesh;
+use crate::numbers::at_least;
 
 /// The value that goes with the word `given`.
 ///
@@ -89,15 +90,6 @@ pub fn solve(
         memory_limit: memory_limit.map(|bytes| at_least(py, "memory_limit", bytes, 1)).transpose()?,
         threads: threads.map(|count| at_least(py, "threads", count, 1)).transpose()?,
     })
-}
-
-/// A whole number that must not be less than `least`.
-///
-/// # Errors
-/// `ArgumentError` below that.
-pub fn at_least(py: Python<'_>, name: &'static str, given: i64, least: usize) -> PyResult<usize> {
-    let refuse = || argument(py, name, format!("got {given}; pass a whole number of at least {least}"));
-    usize::try_from(given).ok().filter(|&count| count >= least).ok_or_else(refuse)
 }
 
 /// One finite number for each of `length` things, or None.

@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 use ridgeform_core::remesh as core;
 
 use crate::mesh::Mesh;
+use crate::numbers::at_least;
 use crate::progress::{handle, Progress};
 use crate::{arrays, doorway, options};
 
@@ -75,7 +76,7 @@ pub fn remesh(
 ) -> PyResult<Remeshed> {
     let options = core::RemeshOptions {
         edge_length,
-        iterations: options::at_least(py, "iterations", iterations, 0)?,
+        iterations: at_least(py, "iterations", iterations, 0)?,
         fixed: fixed.map(|given| arrays::mask("fixed", given, mesh.n_vertices(), "vertex")).transpose()?,
         feature_angle: feature_angle.map(f64::to_radians),
     };

@@ -6,6 +6,7 @@ use ridgeform_core::tools::{self, Hierarchy, SegmentMethod};
 
 use crate::columns::{self, Values};
 use crate::mesh::Mesh;
+use crate::numbers::at_least;
 use crate::progress::{handle, Progress};
 use crate::{arrays, doorway, errors, options};
 
@@ -61,7 +62,7 @@ impl Segmentation {
     /// ------
     /// ArgumentError
     fn labels_at<'py>(&self, py: Python<'py>, n_segments: i64) -> PyResult<Bound<'py, PyArray1<i32>>> {
-        let n = options::at_least(py, "n_segments", n_segments, 1)?;
+        let n = at_least(py, "n_segments", n_segments, 1)?;
         let labels = self.hierarchy.labels_at(n).map_err(|error| errors::exception(py, &error))?;
         Ok(labels.into_pyarray(py))
     }
@@ -171,8 +172,8 @@ pub fn segment(
         epsilon_end,
         inner_tolerance,
         cut_threshold,
-        min_faces: min_faces.map(|count| options::at_least(py, "min_faces", count, 0)).transpose()?,
-        n_segments: n_segments.map(|count| options::at_least(py, "n_segments", count, 1)).transpose()?,
+        min_faces: min_faces.map(|count| at_least(py, "min_faces", count, 0)).transpose()?,
+        n_segments: n_segments.map(|count| at_least(py, "n_segments", count, 1)).transpose()?,
         scale: options::scale(py, scale)?,
         face_weights: options::weights("face_weights", face_weights, m, "face")?,
         edge_weights: edge_weights.map(rows).transpose()?,

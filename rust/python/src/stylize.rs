@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 use ridgeform_core::tools;
 
 use crate::mesh::Mesh;
+use crate::numbers::at_least;
 use crate::progress::{handle, Progress};
 use crate::{arrays, doorway, options};
 
@@ -100,7 +101,7 @@ pub fn stylize(
 ) -> PyResult<Stylized> {
     let (n, m) = (mesh.n_vertices(), mesh.n_faces());
     let options = tools::StylizeOptions {
-        iterations: options::at_least(py, "iterations", iterations, 0)?,
+        iterations: at_least(py, "iterations", iterations, 0)?,
         fidelity,
         sharpness,
         coupling: options::coupling(py, coupling)?,

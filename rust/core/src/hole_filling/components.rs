@@ -1,8 +1,7 @@
 //! The edge-connected components at the loops, and which are open sheets.
 
-use super::loops::loop_area_vector;
 use crate::mesh::vector::{add, area_vector, norm, scale, Point};
-use crate::mesh::{Connectivity, EdgeKind};
+use crate::mesh::{loop_area_vector, Connectivity, EdgeKind};
 
 /// A component counts as an open sheet if its mean normal is longer than this (1 on a flat sheet, 0 on a closed surface or
 /// a tube). Between a hemisphere at 0.5, which is closed with a lid, and a sheet bent to half a tube at 0.64, which is not.

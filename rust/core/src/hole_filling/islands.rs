@@ -1,9 +1,9 @@
 //! Pieces of surface that lie inside a hole of another.
 
-use super::loops::{cycle, loop_area_vector};
 use super::Hole;
 use crate::error::Refusal;
 use crate::mesh::vector::{add, cross, dot, norm, scale, sub, unit, Point};
+use crate::mesh::{cycle, loop_area_vector};
 
 /// Pieces of less than this part of a hole's area are specks: they do not keep it from being filled, and stay where they are.
 const SPECK: f64 = 0.01;

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, HashMap};
 use super::components::Components;
 use super::islands::refuse_holes_with_islands;
 use crate::error::{MeshError, Refusal};
-use crate::mesh::vector::{add, cross, dot, scale, sub, Point};
-use crate::mesh::{boundary_loops, Connectivity, Mesh};
+use crate::mesh::vector::{dot, Point};
+use crate::mesh::{boundary_loops, cycle, loop_area_vector, Connectivity, Mesh};
 use crate::Result;
 
 /// A boundary loop and what it is.
@@ -64,20 +64,6 @@ pub fn find_holes(mesh: &Mesh) -> Result<Vec<Hole>> {
     Ok(holes)
 }
 
-/// The loops of [`find_holes`] that are neither an outer border nor refused.
-///
-/// # Errors
-/// [`MeshError::NoPositions`].
-pub fn fillable_loops(mesh: &Mesh) -> Result<Vec<Vec<u32>>> {
-    let fillable = |hole: &Hole| !hole.is_outer_border && hole.refusal.is_none();
-    Ok(find_holes(mesh)?.into_iter().filter(fillable).map(|hole| hole.vertices).collect())
-}
-
-/// The edges of a closed loop.
-pub(super) fn cycle(vertices: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
-    vertices.iter().zip(vertices.iter().cycle().skip(1)).map(|(&a, &b)| [a, b])
-}
-
 /// What can be said against a loop at sight.
 fn refusal(
     vertices: &[u32],
@@ -104,11 +90,4 @@ fn is_slit(vertices: &[u32], positions: &[Point]) -> bool {
     places.sort_unstable();
     let alone = places.chunk_by(|a, b| a == b).filter(|same| same.len() == 1).count();
     alone <= 2 && vertices.len() > 3
-}
-
-/// Half the sum of the cross products of successive positions: the area vector of any surface that the loop bounds.
-pub(super) fn loop_area_vector(vertices: &[u32], positions: &[Point]) -> Point {
-    let Some(&first) = vertices.first() else { return [0.0; 3] };
-    let at = |v: u32| sub(positions[v as usize], positions[first as usize]);
-    cycle(vertices).fold([0.0; 3], |sum, [a, b]| add(sum, scale(cross(at(a), at(b)), 0.5)))
 }

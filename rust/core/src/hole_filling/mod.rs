@@ -1,13 +1,12 @@
 //! Filling holes: which boundary loops are holes, and a triangulated patch for each, at the resolution of its rim.
 //!
 //! 1. [`find_holes`] lists the boundary loops, says which is the outer border of an open sheet and which cannot be filled
-//!    and why ([`Refusal`]); [`fillable_loops`] are the rest.
+//!    and why ([`Refusal`]).
 //! 2. [`fill_loops`] (or [`fill_loop`] for one) makes the patches: a triangulation of minimum weight [Liepa 2003], his
 //!    refinement, and isotropic remeshing of the patch alone [Botsch and Kobbelt 2004].
 //!
 //! ```text
 //! find_holes(mesh: &Mesh) -> Result<Vec<Hole>>
-//! fillable_loops(mesh: &Mesh) -> Result<Vec<Vec<u32>>>
 //! fill_loop(mesh: &Mesh, boundary_loop: &[u32], options: &FillOptions, progress: &Progress) -> Result<Patch>
 //! fill_loops(mesh: &Mesh, loops: &[Vec<u32>], options: &FillOptions, progress: &Progress) -> Result<Vec<Patch>>
 //! faces_at(mesh: &Mesh, loops: &[Vec<u32>]) -> Result<Vec<u32>>
@@ -26,7 +25,7 @@ mod refinement;
 mod rims;
 mod triangulation;
 
-pub use loops::{fillable_loops, find_holes, Hole};
+pub use loops::{find_holes, Hole};
 pub use rims::faces_at;
 
 use crate::error::{MeshError, Refusal};

@@ -1,8 +1,8 @@
 //! The rim of a hole as a polygon in space.
 
-use super::loops::cycle;
 use super::rims::Rims;
 use crate::error::Refusal;
+use crate::mesh::cycle;
 use crate::mesh::vector::Point;
 
 /// A closed polygon in the direction of the patch's halfedges: counterclockwise seen from outside.

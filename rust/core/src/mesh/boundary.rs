@@ -1,6 +1,7 @@
 //! Boundary loops: the rims of holes.
 
 use crate::mesh::connectivity::{next, previous};
+use crate::mesh::vector::{add, cross, scale, sub, Point};
 use crate::mesh::{Connectivity, EdgeKind};
 
 /// The boundary loops, each a cycle of vertices without repeats.
@@ -79,4 +80,16 @@ impl Splitter {
         }
         self.loops.push(vertices);
     }
+}
+
+/// The edges of a closed loop.
+pub(crate) fn cycle(vertices: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
+    vertices.iter().zip(vertices.iter().cycle().skip(1)).map(|(&a, &b)| [a, b])
+}
+
+/// Half the sum of the cross products of successive positions: the area vector of any surface that the loop bounds.
+pub(crate) fn loop_area_vector(vertices: &[u32], positions: &[Point]) -> Point {
+    let Some(&first) = vertices.first() else { return [0.0; 3] };
+    let at = |v: u32| sub(positions[v as usize], positions[first as usize]);
+    cycle(vertices).fold([0.0; 3], |sum, [a, b]| add(sum, scale(cross(at(a), at(b)), 0.5)))
 }

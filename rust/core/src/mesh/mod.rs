@@ -12,6 +12,7 @@ pub mod triangle;
 pub mod vector;
 
 pub use boundary::boundary_loops;
+pub(crate) use boundary::{cycle, loop_area_vector};
 pub use connectivity::{Connectivity, EdgeKind};
 pub use cut::CutMesh;
 pub use edge_table::EdgeTable;

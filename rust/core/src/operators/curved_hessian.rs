@@ -7,7 +7,7 @@
 
 use crate::block_rows::{BlockRows, BLOCK};
 use crate::mesh::{triangle, Mesh};
-use crate::operators::hessian::{directions, usable_areas, Hinge};
+use crate::operators::hinge::{directions, usable_areas, Hinge};
 use crate::operators::vertex_weights::is_boundary;
 
 /// A linear function of the values at the face's corners 0, 1, 2 and the vertices opposite its halfedges 0, 1, 2.

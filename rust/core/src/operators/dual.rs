@@ -1,6 +1,6 @@
 //! Dual edges: from the centre of a face to the centre of its neighbour, unfolded into the face's plane.
 
-use crate::operators::hessian::Hinge;
+use crate::operators::hinge::Hinge;
 use crate::operators::Dual;
 
 /// Two circumcentres coincide when the cotangents of the angles opposite their edge cancel to this part of their size;

@@ -2,7 +2,7 @@
 
 use crate::block_rows::BlockRows;
 use crate::mesh::Mesh;
-use crate::operators::hessian::{usable_areas, Hinge};
+use crate::operators::hinge::{usable_areas, Hinge};
 
 /// The area-based edge operator (He and Schaefer 2013) on every edge between two faces, and those two faces.
 ///

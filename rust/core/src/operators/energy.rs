@@ -2,7 +2,8 @@
 
 use crate::block_rows::BlockRows;
 use crate::mesh::Mesh;
-use crate::operators::hessian::{assembled, usable_areas};
+use crate::operators::hessian::assembled;
+use crate::operators::hinge::usable_areas;
 use crate::operators::vertex_weights::of_vertices;
 use crate::operators::{
     curved_hessian_squares, edge_laplacian_rows, laplacian_squares, mixed_hessian_rows, mixed_hessian_squares, Dual,
@@ -117,7 +118,7 @@ impl EnergyForm {
     /// # Errors
     /// [`Error::Argument`] if `values` are not whole columns.
     pub fn evaluate(&self, values: &[f64]) -> Result<f64> {
-        let squares = block_squares(&self.operator, values)?;
+        let squares = self.operator.block_squares(values)?;
         let terms = squares.iter().zip(&self.weights);
         if self.energy.is_quadratic() {
             Ok(terms.map(|(square, weight)| 0.5 * weight * square).sum())
@@ -125,19 +126,4 @@ impl EnergyForm {
             Ok(terms.map(|(square, weight)| weight * square.sqrt()).sum())
         }
     }
-}
-
-/// `‖(H u)_b‖²` of every block, jointly over the columns of `values` (column-major).
-///
-/// # Errors
-/// [`Error::Argument`] if `values` are not whole columns.
-pub(super) fn block_squares(rows: &BlockRows, values: &[f64]) -> Result<Vec<f64>> {
-    let n = rows.n_columns;
-    if !values.len().is_multiple_of(n) {
-        let problem =
-            format!("{} numbers are not whole columns of {n} vertex values; pass one per vertex", values.len());
-        return Err(Error::argument("values", problem));
-    }
-    let squared = |column: &[f64], b: usize| rows.block_times(b, column).iter().map(|x| x * x).sum::<f64>();
-    Ok((0..rows.n_blocks()).map(|b| values.chunks_exact(n.max(1)).map(|column| squared(column, b)).sum()).collect())
 }

@@ -6,7 +6,7 @@ use sprs::{CsMat, TriMat};
 use crate::error::MeshError;
 use crate::mesh::{triangle, Mesh};
 use crate::operators::dual::DualEdge;
-use crate::operators::hessian::{directions, usable_areas, Hinge};
+use crate::operators::hinge::{directions, usable_areas, Hinge};
 use crate::operators::Dual;
 
 /// The gradient `G` (Rowe et al. 2024, eq. (28)): `2m × n`, rows `x, y` of every face's gradient in the frame of

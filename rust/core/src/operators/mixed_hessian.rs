@@ -6,7 +6,7 @@
 use crate::block_rows::{BlockRows, BLOCK};
 use crate::error::MeshError;
 use crate::mesh::Mesh;
-use crate::operators::hessian::usable_areas;
+use crate::operators::hinge::usable_areas;
 use crate::operators::vertex_weights::is_boundary;
 use crate::operators::voronoi_mass;
 

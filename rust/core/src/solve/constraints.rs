@@ -6,7 +6,7 @@ use crate::error::SolveError;
 use crate::linear::cholesky::Cholesky;
 use crate::linear::small::DenseCholesky;
 use crate::linear::Columns;
-use crate::solve::reduced::FreeOperator;
+use crate::solve::free_operator::FreeOperator;
 
 /// Constraints on the free rows, and the Schur complement that belongs to the last factorisation.
 #[derive(Debug)]

@@ -10,6 +10,7 @@ pub mod cones;
 mod constraints;
 pub mod eigen;
 pub mod fast;
+mod free_operator;
 pub mod normal_matrix;
 mod outcome;
 mod primal_dual;
@@ -18,8 +19,9 @@ pub mod quadratic;
 mod reduced;
 mod session;
 
+pub use free_operator::FreeOperator;
 pub use problem::{Coupling, Problem, Settings, Solution, Solver, Status};
-pub use reduced::{FreeOperator, Reduced};
+pub use reduced::Reduced;
 pub use session::{Session, MAX_JOINT_COLUMNS};
 
 use crate::{Error, Progress, Result};

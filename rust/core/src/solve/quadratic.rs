@@ -9,9 +9,9 @@ use crate::error::SolveError;
 use crate::linear::cholesky::Cholesky;
 use crate::progress::Progress;
 use crate::solve::constraints::LinearConstraints;
+use crate::solve::free_operator::FreeOperator;
 use crate::solve::normal_matrix::NormalMatrix;
 use crate::solve::problem::{Problem, Settings, Solution, Solver, Status};
-use crate::solve::reduced::FreeOperator;
 use crate::{Error, Result};
 
 /// The shift as a part of the diagonal: above rounding in the factorisation, below the smallest eigenvalue of well posed

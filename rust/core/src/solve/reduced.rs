@@ -2,10 +2,11 @@
 
 use std::borrow::Cow;
 
-use crate::block_rows::{BlockRows, BLOCK};
+use crate::block_rows::BLOCK;
 use crate::error::SolveError;
 use crate::solve::cones::{norm, Block};
 use crate::solve::constraints::LinearConstraints;
+use crate::solve::free_operator::FreeOperator;
 use crate::solve::problem::Problem;
 use rayon::prelude::*;
 
@@ -36,59 +37,6 @@ impl Parts {
     /// The blocks of a part.
     fn range(self, part: usize, m: usize) -> std::ops::Range<usize> {
         part * self.size..((part + 1) * self.size).min(m)
-    }
-}
-
-/// The free rows of the operator, shared by all columns of a problem, and the blocks that see one of them.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FreeOperator {
-    /// `H` on the free rows of `u`, without blocks that see fixed rows only.
-    pub operator: BlockRows,
-    /// Which blocks are left; `None` where all are.
-    blocks: Option<Vec<u32>>,
-    /// Per row of the whole `u`, its place among the free ones.
-    pub place: Vec<Option<u32>>,
-    /// The free rows.
-    pub free: Vec<u32>,
-}
-
-impl FreeOperator {
-    /// Drops the columns of `operator` whose rows of `u` are fixed, and the blocks that have no other.
-    #[must_use]
-    pub fn new(operator: &BlockRows, fixed: &[bool]) -> Self {
-        let free: Vec<u32> = (0..operator.n_columns as u32).filter(|&i| !fixed[i as usize]).collect();
-        let mut place = vec![None; operator.n_columns];
-        for (k, &i) in free.iter().enumerate() {
-            place[i as usize] = Some(k as u32);
-        }
-        if free.len() == operator.n_columns {
-            return Self { operator: operator.clone(), blocks: None, place, free };
-        }
-        let mut kept = BlockRows::empty(free.len());
-        let mut blocks = Vec::new();
-        for b in 0..operator.n_blocks() {
-            let (columns, values) = operator.block(b);
-            for (&column, value) in columns.iter().zip(values) {
-                if let Some(k) = place[column as usize] {
-                    kept.columns.push(k);
-                    kept.values.push(*value);
-                }
-            }
-            if kept.columns.len() > kept.starts[kept.n_blocks()] {
-                kept.starts.push(kept.columns.len());
-                blocks.push(b as u32);
-            }
-        }
-        Self { operator: kept, blocks: Some(blocks), place, free }
-    }
-
-    /// What belongs to the blocks that are left, of something per block.
-    #[must_use]
-    pub fn of_blocks<'v>(&self, values: &'v [f64]) -> Cow<'v, [f64]> {
-        match &self.blocks {
-            None => Cow::Borrowed(values),
-            Some(blocks) => blocks.iter().map(|&b| values[b as usize]).collect(),
-        }
     }
 }
 

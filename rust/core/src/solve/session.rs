@@ -6,9 +6,10 @@ use crate::progress::Progress;
 use crate::solve::clarabel;
 use crate::solve::fast;
 use crate::solve::fast::system::System;
+use crate::solve::free_operator::FreeOperator;
 use crate::solve::outcome::{Outcome, Warm};
 use crate::solve::problem::{Coupling, Problem, Settings, Solution, Solver, Status};
-use crate::solve::reduced::{FreeOperator, Reduced};
+use crate::solve::reduced::Reduced;
 use crate::{Error, Result};
 
 /// At most this many columns in one joint norm.

@@ -20,10 +20,7 @@ pub fn block_norms(operator: &BlockRows, u: &Columns, coupling: Coupling) -> Vec
         .into_par_iter()
         .with_min_len(2048)
         .map(|b| {
-            let squares = (0..u.n_columns).map(|c| {
-                let h = operator.block_times(b, u.column(c));
-                h.iter().map(|x| x * x).sum::<f64>()
-            });
+            let squares = (0..u.n_columns).map(|c| operator.block_square(b, u.column(c)));
             match coupling {
                 Coupling::Joint => squares.sum::<f64>().sqrt(),
                 Coupling::Separate => squares.map(f64::sqrt).sum(),

@@ -2,9 +2,10 @@
 
 use crate::error::SolveError;
 use crate::linear::cholesky::Cholesky;
+use crate::solve::free_operator::FreeOperator;
 use crate::solve::normal_matrix::NormalMatrix;
 use crate::solve::primal_dual::Stiffness;
-use crate::solve::reduced::{FreeOperator, Reduced};
+use crate::solve::reduced::Reduced;
 
 /// Rows whose fidelity is below this share of the mean diagonal are raised to it by a proximal term: it makes the matrix
 /// definite where the operator alone does not, and vanishes from the iteration as it converges.

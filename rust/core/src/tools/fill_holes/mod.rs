@@ -16,6 +16,7 @@ mod fair;
 mod flips;
 mod flow;
 mod guard;
+mod meeting;
 mod model;
 mod neighbourhoods;
 mod parts;

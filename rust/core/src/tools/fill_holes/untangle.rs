@@ -1,6 +1,6 @@
 //! Folds of a patch that already lies on its surfaces: faces that look backwards, in a plane with their neighbours.
 
-use super::extend::{meeting_point, turned};
+use super::meeting::{meeting_point, turned};
 use super::parts::Parts;
 use super::region::Region;
 use crate::mesh::vector::{add, scale, Point};

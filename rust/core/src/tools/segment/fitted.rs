@@ -1,6 +1,5 @@
 //! From the indicator to segments and their hierarchy.
 
-use super::crease::Signal;
 use super::divide::Divide;
 use super::exact::Planes;
 use super::explain::Explain;
@@ -9,6 +8,7 @@ use super::hierarchy::Hierarchy;
 use super::merge::{rename, Merge, Merging};
 use super::options::{SegmentMethod, SegmentOptions};
 use super::refit::{Refit, PLANE_EDGE, PLANE_NOISE};
+use super::slopes::Slopes;
 use super::straighten::Straighten;
 use super::surface::{contiguous, Surface};
 use super::threshold::cut_and_merge;
@@ -59,12 +59,12 @@ impl Fitted<'_> {
     /// [`crate::Error::Cancelled`].
     pub fn segments(&self) -> Result<Finished> {
         self.report(0.9, "segments");
-        let signal = match self.planes {
-            Some(planes) => Signal::of_planes(self.surface, &planes.normals),
-            None if self.is_shape => Signal::of_shape(self.surface, self.noise),
-            None => Signal::of_values(self.surface, self.start, self.noise),
+        let slopes = match self.planes {
+            Some(planes) => Slopes::of_planes(self.surface, &planes.normals),
+            None if self.is_shape => Slopes::of_shape(self.surface, self.noise),
+            None => Slopes::of_values(self.surface, self.start, self.noise),
         };
-        let merging = Merging { surface: self.surface, signal: &signal, groups: None, progress: self.progress };
+        let merging = Merging { surface: self.surface, slopes: &slopes, groups: None, progress: self.progress };
         let mut leaves = match (self.planes, self.options.method) {
             (Some(planes), _) => planes.labels.clone(),
             (None, SegmentMethod::Paper) => {

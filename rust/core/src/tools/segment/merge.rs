@@ -3,7 +3,8 @@
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BinaryHeap};
 
-use super::crease::{Border, Signal};
+use super::crease::Border;
+use super::slopes::Slopes;
 use super::surface::Surface;
 use crate::progress::Progress;
 use crate::Result;
@@ -24,7 +25,7 @@ const ROUNDS: [f64; 6] = [0.2, 0.4, 0.6, 0.8, 1.0, 1.0];
 /// Which segments may merge, and how far.
 pub(super) struct Merging<'a> {
     pub surface: &'a Surface<'a>,
-    pub signal: &'a Signal,
+    pub slopes: &'a Slopes,
     /// Only segments of the same group merge, where given: a group for each face.
     pub groups: Option<&'a [u32]>,
     pub progress: &'a Progress,
@@ -72,7 +73,7 @@ impl Merging<'_> {
 
     fn borders(&self, labels: &[u32]) -> Result<Vec<Border>> {
         self.progress.check()?;
-        let mut borders = self.signal.borders(self.surface, labels);
+        let mut borders = self.slopes.borders(self.surface, labels);
         if let Some(groups) = self.groups {
             let mut group = BTreeMap::new();
             for (label, g) in labels.iter().zip(groups) {

@@ -21,6 +21,7 @@ mod noise;
 mod options;
 mod part;
 mod refit;
+mod slopes;
 mod straighten;
 mod surface;
 mod threshold;
@@ -114,7 +115,7 @@ fn whole(
     if surface.areas.iter().all(|area| *area <= 0.0) {
         return Err(MeshError::NoFaces.into());
     }
-    let signal = values.map(Signal::of);
+    let signal = values.map(Normalized::of);
     let start = signal.as_ref().map_or_else(|| Columns::from_points(&surface.positions), |s| s.normalised.clone());
     let plain = values.is_none() && options.fidelity.is_none() && options.method == SegmentMethod::Fitted;
     let planes = if plain { coarse_planes(&surface, BEND * options.length_weight) } else { None };
@@ -182,13 +183,13 @@ fn boundary_edges(mesh: &Mesh, labels: &[i32]) -> Vec<[u32; 2]> {
 }
 
 /// A signal shifted and scaled so that its widest column has a range of 1: weights then mean the same for every signal.
-struct Signal {
+struct Normalized {
     normalised: Columns,
     low: Vec<f64>,
     range: f64,
 }
 
-impl Signal {
+impl Normalized {
     fn of(values: &Columns) -> Self {
         let ends = |c: usize| {
             let column = values.column(c).iter();

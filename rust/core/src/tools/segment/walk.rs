@@ -1,6 +1,6 @@
 //! Averages on both sides of a border edge: walking away from it over the faces of a segment, unfolded into the plane.
 
-use super::crease::{Bend, Signal};
+use super::slopes::Slopes;
 use super::surface::Surface;
 use crate::mesh::vector::distance;
 use crate::solve::MAX_JOINT_COLUMNS;
@@ -31,6 +31,14 @@ impl Motion {
         let q = times(self.rotation, p);
         [q[0] + self.shift[0], q[1] + self.shift[1]]
     }
+}
+
+/// A border edge between two segments, given by a halfedge, and the bend across it.
+pub(super) struct Bend {
+    pub labels: [u32; 2],
+    pub length: f64,
+    pub cost: f64,
+    pub bend: f64,
 }
 
 /// Which faces a walk has seen: those with its stamp.
@@ -79,7 +87,7 @@ impl Side {
 
 /// What a walk away from a border edge needs to know.
 pub(super) struct Walk<'a> {
-    pub signal: &'a Signal,
+    pub slopes: &'a Slopes,
     pub surface: &'a Surface<'a>,
     pub labels: &'a [u32],
     /// Which faces have a neighbour of another label.
@@ -91,7 +99,7 @@ impl Walk<'_> {
     pub fn bend(&self, h: usize, marks: &mut Marks) -> Bend {
         let (f, surface) = (h / 3, self.surface);
         let g = surface.neighbours[f][h % 3] as usize;
-        let p = self.signal.layouts[f];
+        let p = self.slopes.layouts[f];
         let (tail, head) = (p[(h + 1) % 3], p[(h + 2) % 3]);
         let length = surface.lengths[f][h % 3].max(f64::MIN_POSITIVE);
         // The frame of the edge: its middle at the origin, y along it, x out of the face f, to the right of the halfedge.
@@ -112,13 +120,13 @@ impl Walk<'_> {
     /// The motion of the face across halfedge `h`, unfolded into the plane of the face that has `motion`.
     /// Shapes need none.
     fn across(&self, h: usize, motion: Motion) -> Motion {
-        if self.signal.is_shape {
+        if self.slopes.is_shape {
             return motion;
         }
         let (f, i) = (h / 3, h % 3);
         let Some(twin) = self.surface.connectivity.twin(h) else { return motion };
         let (g, j) = (twin / 3, twin % 3);
-        let (p, q) = (&self.signal.layouts[f], &self.signal.layouts[g]);
+        let (p, q) = (&self.slopes.layouts[f], &self.slopes.layouts[g]);
         let (tail, head) = (p[(i + 1) % 3], p[(i + 2) % 3]);
         let (twin_tail, twin_head) = (q[(j + 1) % 3], q[(j + 2) % 3]);
         let length = self.surface.lengths[f][i].max(f64::MIN_POSITIVE).powi(2);
@@ -133,7 +141,7 @@ impl Walk<'_> {
     /// of it: they count only where there is nothing else.
     fn side(&self, start: usize, motion: Motion, place: [f64; 3], marks: &mut Marks) -> Side {
         let mut side = Side::EMPTY;
-        let reach = self.signal.reach;
+        let reach = self.slopes.reach;
         let label = self.labels[start];
         let mut skip_border = true;
         loop {
@@ -146,7 +154,7 @@ impl Walk<'_> {
                 let (f, motion) = marks.queue[next];
                 next += 1;
                 let center = self.center(f, motion, place);
-                let away = if self.signal.is_shape { center[0] } else { center[0].hypot(center[1]) };
+                let away = if self.slopes.is_shape { center[0] } else { center[0].hypot(center[1]) };
                 if f != start && away > 2.0 * reach {
                     continue;
                 }
@@ -172,32 +180,32 @@ impl Walk<'_> {
     /// What makes a mean of the sum over a side: its area, or for shapes the length of the vector area, so that rough sides, where
     /// normals cancel, have unit normals too.
     fn weight(&self, side: &Side) -> f64 {
-        if !self.signal.is_shape {
+        if !self.slopes.is_shape {
             return side.area;
         }
-        let squared: f64 = side.gradient[..self.signal.n_columns].iter().flatten().map(|x| x * x).sum();
+        let squared: f64 = side.gradient[..self.slopes.n_columns].iter().flatten().map(|x| x * x).sum();
         squared.sqrt().max(0.1 * side.area)
     }
 
     /// How large a step noise may feign: the means of the sides are those of as many values as they have faces.
     fn doubt(&self, inner: &Side, outer: &Side) -> f64 {
         let face = self.surface.mean_edge * self.surface.mean_edge;
-        let columns = (self.signal.n_columns as f64).sqrt();
-        DOUBT * columns * self.signal.noise * (face / inner.area + face / outer.area).sqrt()
+        let columns = (self.slopes.n_columns as f64).sqrt();
+        DOUBT * columns * self.slopes.noise * (face / inner.area + face / outer.area).sqrt()
     }
 
     /// Where the centroid of face `f` is in the frame of the edge; for shapes its distance in space from the middle of the edge,
     /// `place`, since unfolded noise makes ways longer.
     fn center(&self, f: usize, motion: Motion, place: [f64; 3]) -> [f64; 2] {
-        if self.signal.is_shape {
+        if self.slopes.is_shape {
             return [distance(self.surface.centroids[f], place), 0.0];
         }
-        let q = self.signal.layouts[f];
+        let q = self.slopes.layouts[f];
         motion.apply([0, 1].map(|c| (q[0][c] + q[1][c] + q[2][c]) / 3.0))
     }
 
     fn add(&self, side: &mut Side, f: usize, motion: Motion, center: [f64; 2], near: bool) {
-        let (area, k) = (self.surface.areas[f], self.signal.n_columns);
+        let (area, k) = (self.surface.areas[f], self.slopes.n_columns);
         side.far_count += 1.0;
         side.far_area += area;
         side.far_x += area * center[0];
@@ -208,8 +216,8 @@ impl Walk<'_> {
             side.center[1] += area * center[1];
         }
         for c in 0..k {
-            let gradient = self.signal.gradients[k * f + c];
-            let gradient = if self.signal.is_shape { gradient } else { times(motion.rotation, gradient) };
+            let gradient = self.slopes.gradients[k * f + c];
+            let gradient = if self.slopes.is_shape { gradient } else { times(motion.rotation, gradient) };
             for (d, slope) in gradient.into_iter().enumerate() {
                 side.far_gradient[c][d] += area * slope;
                 side.far_x_gradient[c][d] += area * center[0] * slope;
@@ -218,7 +226,7 @@ impl Walk<'_> {
                 }
             }
             if near {
-                side.mean[c] += area * self.signal.means[k * f + c];
+                side.mean[c] += area * self.slopes.means[k * f + c];
             }
         }
     }
@@ -230,9 +238,9 @@ impl Walk<'_> {
             return 0.0;
         }
         let (mut jump, mut explained, mut step) = (0.0, 0.0, 0.0);
-        let stray = STRAY_OF_NOISE * self.signal.noise / self.surface.mean_edge;
+        let stray = STRAY_OF_NOISE * self.slopes.noise / self.surface.mean_edge;
         let [inner_weight, outer_weight] = [inner, outer].map(|side| self.weight(side));
-        for c in 0..self.signal.n_columns {
+        for c in 0..self.slopes.n_columns {
             let (a, b) = (inner.at_border(c, inner_weight, stray), outer.at_border(c, outer_weight, stray));
             for d in 0..2 {
                 let difference = outer.gradient[c][d] / outer_weight - inner.gradient[c][d] / inner_weight;
@@ -243,7 +251,7 @@ impl Walk<'_> {
         }
         let length = jump.sqrt();
         let explained = if length > 0.0 { (explained / length).clamp(0.0, length) } else { 0.0 };
-        length - explained + self.signal.step * (step.sqrt() - self.doubt(inner, outer)).max(0.0)
+        length - explained + self.slopes.step * (step.sqrt() - self.doubt(inner, outer)).max(0.0)
     }
 }
 

@@ -1,0 +1,58 @@
+//! The rows of the operator that no fixed value stands for.
+
+use std::borrow::Cow;
+
+use crate::block_rows::BlockRows;
+
+/// The free rows of the operator, shared by all columns of a problem, and the blocks that see one of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FreeOperator {
+    /// `H` on the free rows of `u`, without blocks that see fixed rows only.
+    pub operator: BlockRows,
+    /// Which blocks are left; `None` where all are.
+    pub(super) blocks: Option<Vec<u32>>,
+    /// Per row of the whole `u`, its place among the free ones.
+    pub place: Vec<Option<u32>>,
+    /// The free rows.
+    pub free: Vec<u32>,
+}
+
+impl FreeOperator {
+    /// Drops the columns of `operator` whose rows of `u` are fixed, and the blocks that have no other.
+    #[must_use]
+    pub fn new(operator: &BlockRows, fixed: &[bool]) -> Self {
+        let free: Vec<u32> = (0..operator.n_columns as u32).filter(|&i| !fixed[i as usize]).collect();
+        let mut place = vec![None; operator.n_columns];
+        for (k, &i) in free.iter().enumerate() {
+            place[i as usize] = Some(k as u32);
+        }
+        if free.len() == operator.n_columns {
+            return Self { operator: operator.clone(), blocks: None, place, free };
+        }
+        let mut kept = BlockRows::empty(free.len());
+        let mut blocks = Vec::new();
+        for b in 0..operator.n_blocks() {
+            let (columns, values) = operator.block(b);
+            for (&column, value) in columns.iter().zip(values) {
+                if let Some(k) = place[column as usize] {
+                    kept.columns.push(k);
+                    kept.values.push(*value);
+                }
+            }
+            if kept.columns.len() > kept.starts[kept.n_blocks()] {
+                kept.starts.push(kept.columns.len());
+                blocks.push(b as u32);
+            }
+        }
+        Self { operator: kept, blocks: Some(blocks), place, free }
+    }
+
+    /// What belongs to the blocks that are left, of something per block.
+    #[must_use]
+    pub fn of_blocks<'v>(&self, values: &'v [f64]) -> Cow<'v, [f64]> {
+        match &self.blocks {
+            None => Cow::Borrowed(values),
+            Some(blocks) => blocks.iter().map(|&b| values[b as usize]).collect(),
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! Where the parts around a hole meet in its patch, and whether its faces lie there in order.
+
+use super::assign::parts_at;
+use super::parts::Parts;
+use super::region::Region;
+use super::snap::eigen;
+use crate::mesh::vector::{add, area_vector, centroid, dot, norm, quality, scale, unit, Point};
+
+/// A face is turned away from its part if it looks along it by less than this (60 degrees), and in order from this quality on.
+const TURNED: f64 = 0.5;
+pub(super) const IN_ORDER: f64 = 0.2;
+
+/// Newton steps onto the surfaces: for planes one is enough.
+const STEPS: usize = 5;
+
+/// Eigenvalues under this part of the largest are dropped: surfaces that meet at less than some twelve degrees have no line.
+const DROP: f64 = 0.01;
+
+/// A patch has reached its surfaces if its vertices lie on them, no face is turned from its own by more than 45 degrees, and none is
+/// thinner than this.
+const THIN: f64 = 0.02;
+const LEAST_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// How good the worst face at `v` is: its quality, or how much it looks along its part, less what is allowed, if that is not enough.
+pub(super) fn order(region: &Region, parts: &Parts, labels: &[u32], v: u32) -> f64 {
+    let faces = region.mesh.faces_of(v).iter();
+    let order = |&f: &u32| {
+        let corners = region.mesh.face(f).map(|face| region.mesh.corners(face))?;
+        let model = parts.models.get(*labels.get((f as usize).checked_sub(region.n_outer)?)? as usize)?;
+        let cosine = dot(unit(area_vector(corners)), model.at(centroid(corners)).1);
+        Some(if cosine < TURNED { cosine - TURNED } else { quality(corners) })
+    };
+    faces.filter_map(order).fold(1.0, f64::min)
+}
+
+/// The faces of the patch that are turned away from their part.
+pub(super) fn turned(region: &Region, parts: &Parts, labels: &[u32]) -> Vec<u32> {
+    let is_turned = |(f, face): (u32, [u32; 3])| {
+        let model = parts.models.get(*labels.get((f as usize).checked_sub(region.n_outer)?)? as usize)?;
+        let corners = region.mesh.corners(face);
+        let normal = model.at(centroid(corners)).1;
+        (dot(unit(area_vector(corners)), normal) < TURNED).then_some(f)
+    };
+    region.patch_faces().filter_map(is_turned).collect()
+}
+
+/// Where the surfaces of the parts that meet at free vertex `v` meet.
+pub(super) fn meeting_point(region: &Region, parts: &Parts, labels: &[u32], v: u32) -> Point {
+    let own = parts_at(region, parts, labels, v);
+    (0..STEPS).fold(region.mesh.position(v), |p, _| add(p, step(parts, &own, p)))
+}
+
+/// The shortest step from `p` onto the tangent planes of some parts.
+fn step(parts: &Parts, own: &[u32], p: Point) -> Point {
+    let (mut quadric, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
+    for &part in own {
+        let (off, normal) = parts.models[part as usize].at(p);
+        for i in 0..3 {
+            right[i] -= off * normal[i];
+            (0..3).for_each(|j| quadric[i][j] += normal[i] * normal[j]);
+        }
+    }
+    let (values, vectors) = eigen(quadric);
+    let largest = values.iter().fold(0.0, |a: f64, &x| a.max(x));
+    let kept = values.into_iter().zip(vectors).filter(|(value, _)| *value > DROP * largest);
+    kept.fold([0.0; 3], |sum, (value, vector)| add(sum, scale(vector, dot(vector, right) / value)))
+}
+
+/// Whether all faces lie on their part, and are in order.
+pub(super) fn has_arrived(region: &Region, parts: &Parts, labels: &[u32], edge: f64) -> bool {
+    region.patch_faces().zip(labels).all(|((_, face), &part)| {
+        let Some(model) = parts.models.get(part as usize) else { return false };
+        let corners = region.mesh.corners(face);
+        let area = area_vector(corners);
+        let normal = model.at(centroid(corners)).1;
+        corners.into_iter().all(|p| parts.has(part, p, edge))
+            && dot(area, normal) > LEAST_COSINE * norm(area)
+            && quality(corners) > THIN
+    })
+}
