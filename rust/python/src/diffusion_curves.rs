@@ -8,11 +8,11 @@ use ridgeform_core::Error;
 
 use crate::arrays::{self, finite_floats, shape_text};
 use crate::columns::{self, Values};
+use crate::doorway;
 use crate::errors::{self, argument};
 use crate::mesh::Mesh;
 use crate::numbers::at_least;
 use crate::progress::{handle, Progress};
-use crate::{doorway, options};
 
 /// What `diffusion_curves` returns: curves with a colour on each side, and the colours that they rebuild.
 #[pyclass(frozen, get_all, module = "ridgeform")]

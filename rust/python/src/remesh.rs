@@ -7,7 +7,7 @@ use ridgeform_core::remesh as core;
 use crate::mesh::Mesh;
 use crate::numbers::at_least;
 use crate::progress::{handle, Progress};
-use crate::{arrays, doorway, options};
+use crate::{arrays, doorway};
 
 /// What `remesh` returns: the new mesh, and which of its vertices are the input's.
 #[pyclass(frozen, get_all, module = "ridgeform")]

@@ -1,19 +1,13 @@
 //! The colours of a surface along its curves: the screened Poisson fit of the paper, then least squares.
 
+use super::constants::{FIT_LIMITS, MOST_FITS};
 use super::membrane::{Harmonic, Membrane};
-use crate::linear::bounded::{self, Limits};
+use crate::linear::bounded;
 use crate::linear::Columns;
 use crate::mesh::partition::Partition;
 use crate::mesh::CutMesh;
 use crate::progress::Progress;
 use crate::Result;
-
-/// On painted meshes the error of the rebuilt colours stays within 0.01 dB after some 20 products.
-const LIMITS: Limits = Limits { products: 60, fall: 1e-4 };
-
-/// Fits at most after the one without the vertices on curves. Where a region is so narrow that all its vertices are on curves, the
-/// first owners come from a blend of its sides, and the second from its own colours; more never changed anything.
-const MOST_FITS: usize = 3;
 
 /// What is fitted to.
 pub(super) struct Task<'a> {
@@ -83,7 +77,7 @@ impl Task<'_> {
         let mut descent = reading.given_back(Columns { data, ..taken });
         harmonic.transposed(&mut descent, progress)?;
         let bounds: Vec<[f64; 2]> = (0..taken.n_columns).map(|c| range(self.colors.column(c))).collect();
-        bounded::minimise(&mut fit.values, &descent, &bounds, LIMITS, |columns| {
+        bounded::minimise(&mut fit.values, &descent, &bounds, FIT_LIMITS, |columns| {
             harmonic.extend(columns, progress)?;
             *columns = reading.given_back(reading.taken(columns));
             harmonic.transposed(columns, progress)

@@ -2,12 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use super::constants::LEAST_ISLAND;
 use crate::mesh::partition::Partition;
 use crate::mesh::Connectivity;
 use crate::{Error, Result};
-
-/// Smaller islands are what moving borders leaves over, not paint.
-const LEAST_ISLAND: usize = 5;
 
 /// Faces that stay together.
 pub(super) struct Groups {

@@ -2,6 +2,7 @@
 
 use sprs::CsMat;
 
+use super::constants::LEAST_WEIGHT;
 use crate::intrinsic::delaunay_flips;
 use crate::linear::cholesky::Cholesky;
 use crate::linear::pattern::LowerPattern;
@@ -10,10 +11,6 @@ use crate::mesh::{Connectivity, CutMesh};
 use crate::operators::{cotangent_laplacian, mollify, voronoi_mass};
 use crate::progress::Progress;
 use crate::Result;
-
-/// The least weight of an edge. Delaunay edges inside have weights from 0 up; only edges with one face opposite an obtuse
-/// angle fall below, and those of flat right-angled cells are 0. A positive floor keeps connected what is connected.
-const LEAST_WEIGHT: f64 = 1e-9;
 
 /// Right sides solved at once.
 const LANES: usize = 4;

@@ -7,6 +7,7 @@
 
 mod borders;
 mod chains;
+mod constants;
 mod fit;
 mod groups;
 mod membrane;

@@ -1,15 +1,9 @@
 //! Painted patches that segmentation has left in a region of another colour.
 
+use super::constants::{PAINT_NOISE, SHADING};
 use super::groups::Groups;
 use super::sorting::{Paint, Sorted};
 use crate::mesh::partition::Partition;
-
-/// What differs by less than this part of the range of the colours may be shading; a patch differs by more from its region
-/// everywhere, and across its border.
-const SHADING: f64 = 0.1;
-
-/// And by this many times what colours change over half of the edges, which is noise where it is much.
-const NOISE: f64 = 4.0;
 
 /// Vertices joined by edges over which colours hardly change.
 pub(super) struct Parts {
@@ -24,7 +18,7 @@ impl Parts {
         let connectivity = paint.mesh.connectivity();
         let jump = |h: usize| paint.distance(connectivity.tail(h) as usize, connectivity.head(h) as usize);
         let jumps: Vec<f64> = (0..connectivity.n_halfedges()).map(jump).collect();
-        let tolerance = (SHADING * paint.scale()).max(NOISE * median(&mut jumps.clone()));
+        let tolerance = (SHADING * paint.scale()).max(PAINT_NOISE * median(&mut jumps.clone()));
         let mut parts = Partition::new(connectivity.n_vertices());
         for (h, _) in jumps.iter().enumerate().filter(|(_, jump)| **jump < tolerance) {
             parts.unite(connectivity.tail(h), connectivity.head(h));

@@ -1,5 +1,6 @@
 //! The regions of a painted surface: segments of its colours, whose borders then follow the paint vertex by vertex.
 
+use super::constants::{REGION_ROUNDS, SURE};
 use super::groups::Groups;
 use super::patches::add_patches;
 use super::settle::Faces;
@@ -12,13 +13,6 @@ use crate::mesh::Mesh;
 use crate::progress::{Progress, Report};
 use crate::tools::{segment, SegmentOptions};
 use crate::Result;
-
-/// Rounds of moving borders at most: each moves them by a row of faces, and segments are rarely off by more than two.
-const MOST_ROUNDS: usize = 16;
-
-/// A vertex whose colour is farther from that of its region, in parts of the range of the colours, is a blend or noise, and gets no
-/// face for itself.
-const SURE: f64 = 0.1;
 
 /// The region of each face by the colours at the vertices (n × c): what [`segment`] finds, its borders moved by [`follow_colors`].
 ///
@@ -101,7 +95,7 @@ pub fn follow_colors(
 fn follow(paint: &Paint<'_>, groups: &Groups, cover: bool, labels: &mut [i32]) -> Result<Sorted> {
     let most = SURE * paint.scale();
     let mut sorted = paint.sort(labels)?;
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..REGION_ROUNDS {
         paint.progress.check()?;
         let mut faces = Faces::new(paint.mesh, groups, &sorted.regions, labels);
         let moved = faces.follow() | (cover && faces.cover(|v| sorted.off[v] <= most));

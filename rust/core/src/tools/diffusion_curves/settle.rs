@@ -1,13 +1,8 @@
 //! Faces for vertices: every vertex has a face of its region, and the borders between are short.
 
+use super::constants::{SETTLE_SWEEPS, SHORTER_BY};
 use super::groups::{majority, Groups};
 use crate::mesh::{Connectivity, Mesh};
-
-/// Sweeps over all faces at most; few need more than three.
-const MOST_SWEEPS: usize = 16;
-
-/// A border must become shorter by this part of the edges that change, or two equal ones would change for ever.
-const SHORTER: f64 = 1e-9;
 
 /// Labels of faces that are changed, and which region each vertex has the colour of.
 pub(super) struct Faces<'a> {
@@ -69,7 +64,7 @@ impl<'a> Faces<'a> {
     /// Shortens the borders by giving groups of faces to other regions that their vertices belong to. An edge of a border more than
     /// two at a vertex counts as much as all edges around the group, so that regions are not pinched off where it can be helped.
     pub fn shorten(&mut self) {
-        for _ in 0..MOST_SWEEPS {
+        for _ in 0..SETTLE_SWEEPS {
             let mut changed = false;
             for group in 0..self.groups.members.len() {
                 let old = self.label(group);
@@ -81,7 +76,7 @@ impl<'a> Faces<'a> {
                     continue;
                 }
                 let before = self.pinches(group);
-                let mut best = (-SHORTER, old);
+                let mut best = (-SHORTER_BY, old);
                 for region in others {
                     let [around, change] = self.change(group, region);
                     self.set(group, region);

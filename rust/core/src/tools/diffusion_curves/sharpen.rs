@@ -3,12 +3,10 @@
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
+use super::constants::MIXING_STEPS;
 use super::patches::Parts;
 use super::sorting::{neighbours, Paint};
 use crate::linear::Columns;
-
-/// Steps towards the nearest mixture of colours. Two colours need one, three at most some ten until the rest is below what is tolerated.
-const MIXING_STEPS: usize = 32;
 
 /// The colours, with every blend replaced by the one of the colours that it is a blend of to which it is nearest.
 ///

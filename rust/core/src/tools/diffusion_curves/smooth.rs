@@ -1,19 +1,12 @@
 //! Curves without saw teeth, to be looked at: their colours stay at vertices.
 
 use super::chains::border_edges;
+use super::constants::{FARTHEST, SMOOTH_STEPS};
 use crate::error::MeshError;
 use crate::mesh::vector::{add, distance, scale, sub, Point};
 use crate::mesh::{EdgeTable, Mesh};
 use crate::remesh::closest::ClosestPoint;
 use crate::{Error, Result};
-
-/// Steps towards the mean of the neighbours, half of the way each. Teeth of one edge are gone after five, steps of lines that cross
-/// a lattice at a slant after twenty.
-const STEPS: usize = 20;
-
-/// How far a point leaves its vertex, in mean edges of the curves there: a border between vertices lies up to half an edge away, and
-/// farther off, corners of the paint would be cut.
-const FARTHEST: f64 = 0.6;
 
 /// A place for each end of each edge of curves on a mesh: near the vertex, on the surface, and on smooth lines.
 ///
@@ -50,7 +43,7 @@ pub fn smooth_curves(mesh: &Mesh, edges: &[[u32; 2]]) -> Result<Vec<[Point; 2]>>
         FARTHEST * lengths.sum::<f64>() / around[v as usize].len() as f64
     };
     let mut places = positions.to_vec();
-    for _ in 0..STEPS {
+    for _ in 0..SMOOTH_STEPS {
         let next: Vec<Point> = moving
             .iter()
             .map(|&v| {

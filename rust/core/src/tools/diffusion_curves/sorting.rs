@@ -1,22 +1,13 @@
 //! Which region the colour of each vertex belongs to.
 
 use super::chains::border_edges;
+use super::constants::{BROAD, LEAST_GAIN, NEARER};
 use super::fit::Task;
 use super::membrane::Membrane;
 use crate::linear::Columns;
 use crate::mesh::{triangle, CutMesh, EdgeTable, Mesh};
 use crate::progress::Progress;
 use crate::Result;
-
-/// A region must explain a vertex better than any other by this factor: a gentle change of colour is no reason to move a border.
-const NEARER: f64 = 2.0;
-
-/// And by this part of the range of the colours, which is less than can be seen.
-const LEAST_GAIN: f64 = 0.01;
-
-/// The largest fidelity of the fit that tells where vertices belong: broad, so that vertices on the wrong side cannot hide behind
-/// each other. It smooths over a fifth of a surface.
-const BROAD: f64 = 30.0;
 
 /// A painted surface whose regions are looked for.
 #[derive(Clone, Copy)]

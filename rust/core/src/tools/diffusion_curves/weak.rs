@@ -2,19 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::constants::{FAINT, UNSEEN, WORSE};
 use super::sorting::Paint;
 use super::{diffusion_curves, DiffusionCurves, DiffusionCurvesOptions};
 use crate::operators::voronoi_mass;
 use crate::Result;
-
-/// Borders over which colours jump by more than this part of their range are kept untried.
-const FAINT: f64 = 0.1;
-
-/// How much the squared error of two regions may grow when they become one, …
-const WORSE: f64 = 1.25;
-
-/// … if it is larger than this part of the range of the colours: what is smaller is hard to tell side by side (40 dB).
-const UNSEEN: f64 = 0.01;
 
 /// Regions, and how well each comes back.
 struct Trial<'a> {

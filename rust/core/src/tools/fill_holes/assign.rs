@@ -3,27 +3,12 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use super::constants::{ASSIGN_SWEEPS, DIRECTION_COST, FIXED_WEIGHT, MISFIT_COST, RIM_BORDER_COST};
 use super::parts::{Parts, NONE};
 use super::region::Region;
 
 use crate::mesh::vector::{area_vector, centroid, distance, dot, norm};
 use crate::remesh::sizing::Ordered;
-
-/// How much more the distance of a vertex on the rim counts, which will stay where it is.
-const FIXED: f64 = 10.0;
-
-/// How much the direction of a face counts: 1 is one edge of distance for a face at a right angle.
-const DIRECTION: f64 = 1.0;
-
-/// How much a face's misfit counts beside the length of the borders around it.
-const DATA: f64 = 1.0;
-
-/// What a border counts along edges of the rim where the two parts meet: without favour, faces between it and a border beside it
-/// would have no area.
-const RIM_RIDGE: f64 = 0.5;
-
-/// Sweeps over the faces that shorten the borders at most.
-const SWEEPS: usize = 10;
 
 /// The part of every face of the patch.
 ///
@@ -45,13 +30,13 @@ fn misfit(region: &Region, parts: &Parts, edge: f64, f: u32, part: u32) -> f64 {
     let corners = region.mesh.corners(face);
     let (mut squares, mut total) = (0.0, 0.0);
     for (v, p) in face.into_iter().zip(corners) {
-        let weight = if region.is_anchor(v) { FIXED } else { 1.0 };
+        let weight = if region.is_anchor(v) { FIXED_WEIGHT } else { 1.0 };
         squares += weight * (model.at(p).0 / edge).powi(2);
         total += weight;
     }
     let area = area_vector(corners);
     let cosine = if norm(area) > 0.0 { dot(area, model.at(centroid(corners)).1) / norm(area) } else { 1.0 };
-    squares / total + DIRECTION * (1.0 - cosine)
+    squares / total + DIRECTION_COST * (1.0 - cosine)
 }
 
 /// For each edge of a face of the patch: its ends and the face beyond.
@@ -103,7 +88,7 @@ fn flood(region: &Region, parts: &Parts, edge: f64, labels: &mut [u32]) {
 
 fn shorten(region: &Region, parts: &Parts, edge: f64, labels: &mut [u32]) {
     let first = region.n_outer as u32;
-    for _ in 0..SWEEPS {
+    for _ in 0..ASSIGN_SWEEPS {
         let mut changed = false;
         for f in first..region.mesh.n_faces() as u32 {
             let here = labels[(f - first) as usize];
@@ -114,12 +99,12 @@ fn shorten(region: &Region, parts: &Parts, edge: f64, labels: &mut [u32]) {
                 let points = ends.map(|v| region.mesh.position(v));
                 let is_on = |part: u32| part != NONE && points.iter().all(|&p| parts.has(part, p, edge));
                 let fixed = ends.iter().all(|&v| region.is_anchor(v)) && is_on(here) && is_on(there);
-                distance(points[0], points[1]) * if fixed { RIM_RIDGE } else { 1.0 }
+                distance(points[0], points[1]) * if fixed { RIM_BORDER_COST } else { 1.0 }
             };
             let cost = |part: u32| {
                 let others = around.iter().filter(|(_, other)| *other != part);
                 let length: f64 = others.map(|&(ends, other)| border(ends, part, other)).sum();
-                length + DATA * area * misfit(region, parts, edge, f, part)
+                length + MISFIT_COST * area * misfit(region, parts, edge, f, part)
             };
             let mut best = (cost(here), here);
             for &(_, part) in around.iter().filter(|(_, part)| *part != NONE && *part != here) {

@@ -1,14 +1,9 @@
 //! Smooth or sharp: whether the curvature around a hole is spread or concentrated in ridges.
 
+use super::constants::{CONTRAST, LEAST_RIDGE_ANGLE};
 use super::region::Region;
 use super::surface::Surface;
 use crate::mesh::vector::distance;
-
-/// Edges bent by more than this (radians) can be ridges: 25 degrees. Irregular meshes of a cylinder of 36 edges around reach 20.
-const LEAST_ANGLE: f64 = 0.44;
-
-/// A ridge is bent by so many times the root mean square of what remains without the ridges.
-const CONTRAST: f64 = 3.0;
 
 /// The ridges that reach a hole.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,7 +38,7 @@ pub(super) fn ridges_around(region: &Region) -> Option<Ridges> {
     let (mut squares, mut length) = (0.0, 0.0);
     for (i, &(angle, l, _)) in edges.iter().enumerate() {
         let common = f64::sqrt(squares / length);
-        if length > 0.0 && angle > LEAST_ANGLE && angle > CONTRAST * common {
+        if length > 0.0 && angle > LEAST_RIDGE_ANGLE && angle > CONTRAST * common {
             let mut bends = edges[i..].iter().filter(|(_, _, at_rim)| *at_rim).map(|(angle, ..)| *angle);
             let least = bends.next()?;
             return Some(Ridges { least, most: bends.next_back().unwrap_or(least) });

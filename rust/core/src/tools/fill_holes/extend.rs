@@ -1,41 +1,20 @@
 //! Patches in which the parts around a hole go on until they meet: planes and gently bent surfaces, joined in their ridges.
 
 use super::assign::{assign, borders, parts_at};
+use super::constants::{
+    CLOSE_CORNERS, COARSE_FACES, CUTS, EXTEND_ROUNDS, FLIP_SWEEPS, LONG_BORDER, RESAMPLE_ROUNDS, SETTLE_PASSES,
+    STILL_ROUND, UNTANGLE_FROM,
+};
 use super::flips::flip_along_ridges;
 use super::guard::move_guarded;
 use super::meeting::{has_arrived, meeting_point, order, IN_ORDER};
 use super::parts::Parts;
 use super::region::Region;
 use super::resample::{resample, typical_edge, Kept};
-use super::restore::{COARSE_FACES, RESAMPLE_ROUNDS};
 use super::untangle::untangle;
 use crate::mesh::vector::{between, centroid, distance, Point};
 use crate::progress::Progress;
 use crate::Result;
-
-/// Rounds of assigning faces to parts, moving vertices onto them and remeshing.
-const ROUNDS: usize = 12;
-
-/// The round from which on folds are opened that did not open by themselves; most patches rest before.
-const UNTANGLE_FROM: usize = 6;
-
-/// Sweeps of flips after every round.
-const SWEEPS: usize = 10;
-
-/// A patch whose vertices all moved by less than this part of an edge rests.
-const STILL: f64 = 1e-6;
-
-/// Passes over the vertices in a round: a vertex finds room once its neighbours have moved.
-const PASSES: usize = 3;
-
-/// A corner this near to another one, in edges, is the same.
-const CLOSE: f64 = 0.4;
-
-/// Borders between two vertices on the rim are cut from this length on, in edges: as remeshing splits others.
-const LONG: f64 = 4.0 / 3.0;
-
-/// How often triangles are cut before the faces are assigned anew.
-const CUTS: usize = 3;
 
 /// Lets the parts around the patch go on in it. Returns whether it ended where they meet, and if so, whether all are planes.
 pub(super) fn extend(
@@ -47,7 +26,7 @@ pub(super) fn extend(
     let edge = typical_edge(&region.mesh);
     let Some(parts) = Parts::around(region, ridge, edge) else { return Ok(None) };
     let mut labels = Vec::new();
-    for round in 0..ROUNDS {
+    for round in 0..EXTEND_ROUNDS {
         progress.check()?;
         if round > 0 {
             let borders = borders(region, &parts, &labels);
@@ -63,14 +42,14 @@ pub(super) fn extend(
             labels = assign(region, &parts, edge);
         }
         let mut moved = settle(region, &parts, &labels);
-        if flip_along_ridges(region, SWEEPS) > 0 {
+        if flip_along_ridges(region, FLIP_SWEEPS) > 0 {
             labels = assign(region, &parts, edge);
             moved = moved.max(settle(region, &parts, &labels));
         }
         if round >= UNTANGLE_FROM {
             untangle(region, &parts, &labels);
         }
-        if moved < STILL * edge && has_arrived(region, &parts, &labels, edge) {
+        if moved < STILL_ROUND * edge && has_arrived(region, &parts, &labels, edge) {
             break;
         }
     }
@@ -122,7 +101,7 @@ fn cut(region: &mut Region, parts: &Parts, labels: &mut Vec<u32>, edge: f64) -> 
         let ends = [a, b].map(|v| parts_at(region, parts, labels, v));
         let is_chord = own == other && ends[0].iter().any(|part| *part != own && ends[1].contains(part));
         let is_stiff =
-            own != other && [a, b].iter().all(|&v| region.is_anchor(v)) && length(region, a, b) > LONG * edge;
+            own != other && [a, b].iter().all(|&v| region.is_anchor(v)) && length(region, a, b) > LONG_BORDER * edge;
         if is_chord || is_stiff {
             split(region, labels, a, b);
         }
@@ -135,7 +114,7 @@ fn merges(region: &Region, parts: &Parts, labels: &[u32], edge: f64) -> Vec<[u32
     let found = |v: u32| {
         let own = parts_at(region, parts, labels, v);
         let joins = |w: u32| {
-            length(region, v, w) < CLOSE * edge
+            length(region, v, w) < CLOSE_CORNERS * edge
                 && if region.is_anchor(w) {
                     own.len() > 1 && own.iter().all(|&part| parts.has(part, region.mesh.position(w), edge))
                 } else {
@@ -160,7 +139,7 @@ fn settle(region: &mut Region, parts: &Parts, labels: &[u32]) -> f64 {
         .map(|v| if region.is_anchor(v) { region.mesh.position(v) } else { meeting_point(region, parts, labels, v) })
         .collect();
     let mut longest = move_guarded(region, &goals);
-    for _ in 0..PASSES {
+    for _ in 0..SETTLE_PASSES {
         let mut moves: Vec<(f64, u32, Point)> = region
             .free()
             .map(|v| {

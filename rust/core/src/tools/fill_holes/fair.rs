@@ -1,5 +1,6 @@
 //! Smooth parts between sharp ridges: the patch is cut along its ridges, and each part is as smooth as what it continues.
 
+use super::constants::RIDGE_STIFFNESS;
 use super::guard::move_guarded;
 use super::region::Region;
 use super::ridge_curves::third_derivatives;
@@ -12,10 +13,6 @@ use crate::operators::{Dual, Energy, EnergyForm};
 use crate::progress::Progress;
 use crate::solve::{quadratic, Coupling, Problem, Settings};
 use crate::Result;
-
-/// How much the third derivative along ridges counts beside the second ones of the surfaces, in units of the patch's size: a
-/// ridge that bends is then shaped by its own ends, not by the surfaces, which would rather be flat.
-const STIFFNESS: f64 = 100.0;
 
 /// Moves the patch to the minimiser of the L2 Hessian energy of its coordinates on both sides of its ridges, everything around it
 /// fixed; edges bent by more than `ridge` radians are ridges. Returns the longest move.
@@ -36,7 +33,7 @@ pub(super) fn fair(region: &mut Region, ridge: f64, progress: &Progress) -> Resu
     let area: f64 = region.patch_faces().map(|(f, _)| norm(region.mesh.area_vector(f))).sum();
     for (vertices, coefficients, length) in third_derivatives(region, ridge) {
         joined.push_block(vertices.into_iter().zip(coefficients).map(|(v, c)| (v, [c, 0.0, 0.0])));
-        weights.push(STIFFNESS * area.powf(1.5) * length);
+        weights.push(RIDGE_STIFFNESS * area.powf(1.5) * length);
     }
     let problem = Problem {
         operator: &joined,

@@ -1,19 +1,14 @@
 //! Data-dependent flips: edges of the patch turn until they run along the ridge (Dyn, Levin and Rippa 1990).
 
+use super::constants::{EVEN_ANGLE, FLIP_GAIN};
 use super::region::Region;
 use super::surface::angle;
 use crate::mesh::vector::{area_vector, distance, quality, Point};
 use crate::remesh::editable::key;
 use crate::remesh::EditableMesh;
 
-/// A flip must lower the cost by more than this part of it.
-const ENOUGH: f64 = 1e-6;
-
 /// No triangle of less quality is made: its height would be a twentieth of its longest edge.
 const LEAST_QUALITY: f64 = 0.1;
-
-/// Costs that differ by less than this angle (radians) along an edge are equal.
-const EVEN: f64 = 0.01;
 
 /// Flips edges of the patch while that lowers `Σ length · |dihedral angle|` over the edge and its four neighbours, and
 /// makes no triangle of less quality than [`LEAST_QUALITY`] unless the old one was worse. Returns the number of flips.
@@ -73,8 +68,8 @@ fn lowers(region: &Region, a: u32, b: u32) -> bool {
         cost_after += length * angle(after[new_side], outside);
     }
     // Of two ways of the same cost, the one with the better triangles.
-    let slack = EVEN * distance(at(a), at(b)).max(distance(at(c), at(d)));
-    cost_after < (1.0 - ENOUGH) * cost && cost_after < cost - slack
+    let slack = EVEN_ANGLE * distance(at(a), at(b)).max(distance(at(c), at(d)));
+    cost_after < (1.0 - FLIP_GAIN) * cost && cost_after < cost - slack
         || cost_after < cost + slack && worst(new) > 1.05 * worst(old)
 }
 

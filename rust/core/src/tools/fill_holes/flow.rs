@@ -1,5 +1,6 @@
 //! The L1 flow of one patch (Rowe et al. 2024, section 7.4.2), everything around it fixed.
 
+use super::constants::SOLVER_ITERATIONS;
 use super::guard::move_guarded;
 use super::region::Region;
 use super::FillHolesOptions;
@@ -7,10 +8,6 @@ use crate::mesh::{edge_lengths, Connectivity};
 use crate::progress::Progress;
 use crate::tools::{stylize, Scale, SolveOptions, StylizeOptions};
 use crate::Result;
-
-/// Iterations of the solver in a step that is certified to no tolerance. Most steps take 30 to 100; on patches whose edges grow a hundredfold
-/// a thousand, which move them no closer to the ridges: a corner with a loop of 5000 vertices came back alike in half of the time.
-const SOLVER_ITERATIONS: usize = 150;
 
 /// What a few steps of the flow did.
 pub(super) struct Flowed {

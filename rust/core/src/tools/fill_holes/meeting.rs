@@ -1,6 +1,7 @@
 //! Where the parts around a hole meet in its patch, and whether its faces lie there in order.
 
 use super::assign::parts_at;
+use super::constants::{DROPPED_EIGENVALUES, NEWTON_STEPS};
 use super::parts::Parts;
 use super::region::Region;
 use super::snap::eigen;
@@ -9,12 +10,6 @@ use crate::mesh::vector::{add, area_vector, centroid, dot, norm, quality, scale,
 /// A face is turned away from its part if it looks along it by less than this (60 degrees), and in order from this quality on.
 const TURNED: f64 = 0.5;
 pub(super) const IN_ORDER: f64 = 0.2;
-
-/// Newton steps onto the surfaces: for planes one is enough.
-const STEPS: usize = 5;
-
-/// Eigenvalues under this part of the largest are dropped: surfaces that meet at less than some twelve degrees have no line.
-const DROP: f64 = 0.01;
 
 /// A patch has reached its surfaces if its vertices lie on them, no face is turned from its own by more than 45 degrees, and none is
 /// thinner than this.
@@ -47,7 +42,7 @@ pub(super) fn turned(region: &Region, parts: &Parts, labels: &[u32]) -> Vec<u32>
 /// Where the surfaces of the parts that meet at free vertex `v` meet.
 pub(super) fn meeting_point(region: &Region, parts: &Parts, labels: &[u32], v: u32) -> Point {
     let own = parts_at(region, parts, labels, v);
-    (0..STEPS).fold(region.mesh.position(v), |p, _| add(p, step(parts, &own, p)))
+    (0..NEWTON_STEPS).fold(region.mesh.position(v), |p, _| add(p, step(parts, &own, p)))
 }
 
 /// The shortest step from `p` onto the tangent planes of some parts.
@@ -62,7 +57,7 @@ fn step(parts: &Parts, own: &[u32], p: Point) -> Point {
     }
     let (values, vectors) = eigen(quadric);
     let largest = values.iter().fold(0.0, |a: f64, &x| a.max(x));
-    let kept = values.into_iter().zip(vectors).filter(|(value, _)| *value > DROP * largest);
+    let kept = values.into_iter().zip(vectors).filter(|(value, _)| *value > DROPPED_EIGENVALUES * largest);
     kept.fold([0.0; 3], |sum, (value, vector)| add(sum, scale(vector, dot(vector, right) / value)))
 }
 

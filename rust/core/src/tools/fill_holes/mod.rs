@@ -10,6 +10,7 @@
 
 mod assign;
 mod choice;
+mod constants;
 mod decide;
 mod extend;
 mod fair;
@@ -43,15 +44,10 @@ use crate::operators::Dual;
 use crate::progress::{Progress, Report};
 use crate::solve::Coupling;
 use crate::{Error, Result};
+use constants::{MARKED_ANGLE, REGION_RINGS};
 use neighbourhoods::Neighbourhoods;
 use region::Region;
 use restore::{restore, Restored};
-
-/// The flow's stencil takes two rings; planes are fitted over five.
-const RINGS: usize = 5;
-
-/// Patch edges bent by more than this (radians) are ridges: 30 degrees, as Blender's own "smooth by angle".
-const RIDGE: f64 = std::f64::consts::PI / 6.0;
 
 /// How sharp the ridges of patches get.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -262,7 +258,7 @@ fn fill_one(
     progress: &Progress,
     watch: &dyn Fn(f64, usize, Option<f64>),
 ) -> Result<Restored> {
-    let mut region = Region::new(mesh, near, patch, patches_from, RINGS, shared)?;
+    let mut region = Region::new(mesh, near, patch, patches_from, REGION_RINGS, shared)?;
     region.first_new = (mesh.connectivity().n_vertices() + filled.vertices.len()) as u32;
     let restored = restore(&mut region, options, progress, &mut |region, part, steps, energy| {
         let (vertices, faces, _) = region.patch();
@@ -273,7 +269,7 @@ fn fill_one(
     filled.faces.extend(region.patch_faces().map(|(_, face)| face.map(|v| region.global(v))));
     filled.patch.resize(filled.faces.len(), filled.holes.len() as u32);
     if restored.sharpness > 0.0 {
-        filled.ridges.extend(surface::ridges(&region, RIDGE));
+        filled.ridges.extend(surface::ridges(&region, MARKED_ANGLE));
     }
     Ok(restored)
 }

@@ -1,15 +1,8 @@
 //! How a part of the surface around a hole goes on: as a plane, or as a quadratic height over one.
 
+use super::constants::{AS_GOOD, BENT_STIFFNESS, FLAT};
 use crate::mesh::vector::{add, dot, scale, sub, unit, Point};
 use crate::tools::heights::{frame, solve, TERMS};
-
-/// The pull of the quadratic terms to zero, relative to what they explain: it decides where few points do not.
-const STIFFNESS: f64 = 1e-4;
-
-/// A part is flat if a plane misses its vertices by no more than this part of an edge, or no more than this many times what the
-/// quadratic misses: noise.
-const FLAT: f64 = 0.01;
-const AS_GOOD: f64 = 1.5;
 
 /// A surface that goes on as the points do that it was fitted to.
 #[derive(Debug, Clone)]
@@ -47,7 +40,7 @@ impl Model {
         flat.axes = frame(flat.at(origin).1);
         flat.solve(points, total, 1e12);
         let mut bent = Self { is_flat: false, ..flat.clone() };
-        bent.solve(points, total, STIFFNESS);
+        bent.solve(points, total, BENT_STIFFNESS);
         let is_flat = points.len() <= TERMS || flat.misfit <= (FLAT * edge).max(AS_GOOD * bent.misfit);
         Some(if is_flat { flat } else { bent })
     }

@@ -1,19 +1,11 @@
 //! The smooth parts that the surface around a hole falls into along its ridges, each with the surface that it goes on as.
 
+use super::constants::{NEAR_PART, PART_WIDTH, WORST_FIT};
 use super::fair::root;
 use super::model::Model;
 use super::region::Region;
 use super::surface::Surface;
 use crate::mesh::vector::{add, norm, scale, unit, Point};
-
-/// Faces count less the more rings they are away from the hole: a Gaussian of this width.
-const WIDTH: f64 = 3.0;
-
-/// A part that no surface of ours fits better than to this part of an edge is none that we know how to go on.
-const WORST_FIT: f64 = 0.3;
-
-/// A point is on a surface if it is no farther from it than this part of an edge, beyond what it misses its own points by.
-const NEAR: f64 = 0.1;
 
 /// No part.
 pub(super) const NONE: u32 = u32::MAX;
@@ -73,7 +65,7 @@ impl Parts {
     /// Whether `p` lies on the surface that `part` goes on as.
     pub(super) fn has(&self, part: u32, p: Point, edge: f64) -> bool {
         let model = &self.models[part as usize];
-        model.at(p).0.abs() < NEAR * edge + 3.0 * model.misfit
+        model.at(p).0.abs() < NEAR_PART * edge + 3.0 * model.misfit
     }
 
     /// The parts of the faces around the patch that `v` has.
@@ -110,7 +102,7 @@ fn model(region: &Region, surface: &Surface, of_face: &[u32], rings: &[u32], par
             continue;
         }
         for v in face {
-            let away = f64::from(rings[v as usize]) / WIDTH;
+            let away = f64::from(rings[v as usize]) / PART_WIDTH;
             let weight = surface.areas[f as usize] * (-0.5 * away * away).exp();
             weights[v as usize] += weight;
             normal = add(normal, scale(surface.normals[f as usize], weight));

@@ -1,5 +1,9 @@
 //! One hole: the smooth patch, and from it the sharp one where the surroundings ask for it.
 
+use super::constants::{
+    ALIKE, COARSE_FACES, EXTEND_AFTER, FAIR_ROUNDS, FAIR_STEPS, FINE_FACES, FINE_ROUNDS, FLIP_SWEEPS, FLOW_STEPS,
+    MOST_BEND, RESAMPLE_EVERY, RESAMPLE_ROUNDS, RIDGE, SHARP, SMOOTH_ROUNDS, SNAPS, SNAP_FROM, STILL_CYCLE,
+};
 use super::decide::{ridges_around, Ridges};
 use super::extend::extend;
 use super::fair::fair;
@@ -15,52 +19,6 @@ use crate::operators::Energy;
 use crate::progress::Progress;
 use crate::remesh::guard::worst_bend;
 use crate::Result;
-
-/// Rounds of the smooth start: the third moves the patch by a hundredth of an edge.
-const SMOOTH_ROUNDS: usize = 3;
-
-/// Sharpness where the surroundings are sharp: with less, a cube's corner is cut off, since the plain energy prefers it so.
-const SHARP: f64 = 0.8;
-
-/// Flow steps in a cycle, and the cycle from which on vertices snap: before, no face is on its plane yet.
-const STEPS: usize = 3;
-const SNAP_FROM: usize = 3;
-const SNAPS: usize = 2;
-
-/// Cycles before the parts around the hole are extended into it.
-const EXTEND_AFTER: usize = 2;
-
-/// Every so many cycles the patch is remeshed: snapping crowds vertices on ridges, and ridges stretch the patch.
-const RESAMPLE_EVERY: usize = 4;
-pub(super) const RESAMPLE_ROUNDS: usize = 2;
-
-/// Edges of the patch bent by more than this part of the ridges around the hole are ridges; where those are unknown, by more
-/// than 0.6 radians.
-const RIDGE: f64 = 0.6;
-
-/// Faces that a patch has at most, about, while its ridges form: where it would have more, its edges grow with their distance from
-/// the rim, and become as short as they may be at the end.
-pub(super) const COARSE_FACES: usize = 8000;
-const FINE_FACES: usize = 40_000;
-const FINE_ROUNDS: usize = 4;
-
-/// Rounds that make the parts between ridges smooth, and steps in each; the metric of each step is that after the one before.
-const FAIR_ROUNDS: usize = 3;
-const FAIR_STEPS: usize = 2;
-
-/// Sweeps of flips at most; they end by themselves after three or four.
-const SWEEPS: usize = 10;
-
-/// A patch whose vertices all moved by less than this part of its mean edge in a cycle rests.
-const STILL: f64 = 1e-3;
-
-/// Ridges of which the most bent one is bent by no more than so many times the least bent one are of one kind.
-const ALIKE: f64 = 1.2;
-
-/// A ridge gathers the bend that a smooth patch spreads. A patch that is bent in all by more than so many times as much has folds
-/// that nothing around it asks for: in holes of six meshes, 10 of 13 patches below it were nearer to the truth than the smooth ones,
-/// and 3 of 22 above.
-const MOST_BEND: f64 = 1.35;
 
 /// A patch with a bend beyond this (154 degrees) is folded, unless its smooth start or its rim had such a bend: the last one
 /// without is taken.
@@ -119,7 +77,7 @@ pub(super) fn restore(
     }
     let coarse = region.clone();
     resample(region, options.edge_length, &Kept::ridges(ridge), FINE_FACES, FINE_ROUNDS, progress)?;
-    flip_along_ridges(region, SWEEPS);
+    flip_along_ridges(region, FLIP_SWEEPS);
     fair(region, ridge, progress)?;
     if worst_bend(&region.mesh) < worst_bend(&coarse.mesh).min(FOLD_COSINE) {
         *region = coarse;
@@ -142,14 +100,14 @@ fn form_ridges(
     let (smooth, mut sound) = (region.clone(), region.clone());
     let worst = worst_bend(&region.mesh).min(FOLD_COSINE);
     restored.status = HoleStatus::Finished;
-    let cycles = options.iterations.div_ceil(STEPS);
+    let cycles = options.iterations.div_ceil(FLOW_STEPS);
     for cycle in 1..=cycles {
         progress.check()?;
         if progress.is_finishing() {
             restored.status = HoleStatus::Stopped;
             return Ok(());
         }
-        let steps = STEPS.min(options.iterations - restored.iterations);
+        let steps = FLOW_STEPS.min(options.iterations - restored.iterations);
         let flowed = flow(region, steps, sharpness, options, progress)?;
         let moved = flowed.moved.max(if sharpness > 0.0 { align(region, cycle) } else { 0.0 });
         if cycle == 1 {
@@ -162,7 +120,7 @@ fn form_ridges(
         if worst_bend(&region.mesh) >= worst {
             sound.clone_from(region);
         }
-        if cycle > SNAP_FROM && moved < STILL * typical_edge(&region.mesh) {
+        if cycle > SNAP_FROM && moved < STILL_CYCLE * typical_edge(&region.mesh) {
             restored.status = HoleStatus::Converged;
             break;
         }
@@ -178,7 +136,7 @@ fn form_ridges(
         }
         if sharpness > 0.0 && cycle % RESAMPLE_EVERY == 0 {
             resample(region, options.edge_length, &Kept::ridges(ridge), COARSE_FACES, RESAMPLE_ROUNDS, progress)?;
-            flip_along_ridges(region, SWEEPS);
+            flip_along_ridges(region, FLIP_SWEEPS);
         }
     }
     if sharpness > 0.0 && cycles > 0 {
@@ -228,7 +186,7 @@ fn finish(region: &mut Region, options: &FillHolesOptions, ridge: f64, progress:
     for _ in 0..FAIR_ROUNDS {
         resample(region, options.edge_length, &Kept::ridges(ridge), COARSE_FACES, RESAMPLE_ROUNDS, progress)?;
         for _ in 0..FAIR_STEPS {
-            flip_along_ridges(region, SWEEPS);
+            flip_along_ridges(region, FLIP_SWEEPS);
             fair(region, ridge, progress)?;
         }
     }
@@ -238,12 +196,12 @@ fn finish(region: &mut Region, options: &FillHolesOptions, ridge: f64, progress:
 /// Turns the edges of the patch along its ridges and snaps its vertices onto them; returns the longest move, infinite where an
 /// edge was flipped.
 fn align(region: &mut Region, cycle: usize) -> f64 {
-    let mut flips = flip_along_ridges(region, SWEEPS);
+    let mut flips = flip_along_ridges(region, FLIP_SWEEPS);
     let mut moved: f64 = 0.0;
     if cycle >= SNAP_FROM {
         for _ in 0..SNAPS {
             moved = moved.max(snap(region, &Snapping::DEFAULT));
-            flips += flip_along_ridges(region, SWEEPS);
+            flips += flip_along_ridges(region, FLIP_SWEEPS);
         }
     }
     if flips > 0 {

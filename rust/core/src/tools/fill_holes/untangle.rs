@@ -1,15 +1,10 @@
 //! Folds of a patch that already lies on its surfaces: faces that look backwards, in a plane with their neighbours.
 
+use super::constants::{UNTANGLE_PASSES, UNTANGLE_RINGS};
 use super::meeting::{meeting_point, turned};
 use super::parts::Parts;
 use super::region::Region;
 use crate::mesh::vector::{add, scale, Point};
-
-/// Rings around a fold that make room for it.
-const RINGS: usize = 3;
-
-/// Passes of averaging: a fold of a few faces is open after ten.
-const PASSES: usize = 30;
 
 /// Moves vertices around faces that are turned away from their part to the mean of their neighbours, as in an embedding with fixed
 /// surroundings, which has no folds (Tutte 1963), and back onto their surfaces. Nothing changes if as many faces are turned after that.
@@ -19,7 +14,7 @@ pub(super) fn untangle(region: &mut Region, parts: &Parts, labels: &[u32]) {
         return;
     }
     let mut near: Vec<u32> = before.iter().filter_map(|&f| region.mesh.face(f)).flatten().collect();
-    for _ in 0..RINGS {
+    for _ in 0..UNTANGLE_RINGS {
         let more: Vec<u32> = near.iter().flat_map(|&v| region.mesh.neighbours(v)).collect();
         near.extend(more);
         near.sort_unstable();
@@ -27,7 +22,7 @@ pub(super) fn untangle(region: &mut Region, parts: &Parts, labels: &[u32]) {
     }
     near.retain(|&v| !region.is_anchor(v));
     let start: Vec<Point> = near.iter().map(|&v| region.mesh.position(v)).collect();
-    for _ in 0..PASSES {
+    for _ in 0..UNTANGLE_PASSES {
         for &v in &near {
             let around = region.mesh.neighbours(v);
             let share = 1.0 / around.len().max(1) as f64;

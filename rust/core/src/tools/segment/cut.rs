@@ -1,12 +1,10 @@
 //! The minimum cut of a small undirected graph between two sides, by augmenting shortest paths (Dinic 1970).
 
+use super::constants::FLOW_ROUNDING;
 use std::collections::VecDeque;
 
 /// A node that belongs to no side yet.
 const UNSEEN: u32 = u32::MAX;
-
-/// Flow below this part of the largest capacity is rounding.
-const ROUNDING: f64 = 1e-9;
 
 /// An undirected graph with capacities.
 pub(super) struct Graph {
@@ -34,7 +32,7 @@ impl Graph {
 
     /// Whether each node is on the side of node `source` of the least cut that parts it from node `sink`.
     pub fn cut(mut self, source: u32, sink: u32) -> Vec<bool> {
-        let least = ROUNDING * self.residual.iter().fold(0.0_f64, |most, x| most.max(*x));
+        let least = FLOW_ROUNDING * self.residual.iter().fold(0.0_f64, |most, x| most.max(*x));
         loop {
             let levels = self.levels(source, least);
             if levels[sink as usize] == UNSEEN {

@@ -6,24 +6,12 @@
 
 use std::collections::BTreeSet;
 
+use super::constants::{DIVIDE_ROUNDS, DIVIDE_TURNS, EVIDENCE_TO_DIVIDE, LEAST_PART};
 use super::fit::{Patch, Plane};
 use super::surface::{members, pieces, Surface};
 use crate::mesh::vector::{distance, dot, Point};
 use crate::progress::Progress;
 use crate::Result;
-
-/// Both parts of a divided segment must have so many faces.
-const LEAST_PART: usize = 8;
-
-/// Fits and assignments in turns, of planes and of patches; they settle after three to five.
-const TURNS: [usize; 2] = [8, 4];
-
-/// A segment at a corner lies on three planes: divided once, and its parts again.
-const ROUNDS: usize = 2;
-
-/// The logarithm of the ratio of likelihoods that two planes, or patches with more coefficients, must have. A quarter of it finds the
-/// same parts of known shapes, but takes steps in the walls of scanned buildings for parts.
-const EVIDENCE: [f64; 2] = [40.0, 60.0];
 
 /// How segments are divided.
 pub(super) struct Divide<'a> {
@@ -59,7 +47,7 @@ impl Divide<'_> {
     /// # Errors
     /// [`crate::Error::Cancelled`].
     pub fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
-        for _ in 0..ROUNDS {
+        for _ in 0..DIVIDE_ROUNDS {
             self.progress.check()?;
             let members = members(labels);
             let mut divided = false;
@@ -110,7 +98,7 @@ impl Divide<'_> {
                 return None;
             }
             let models = [self.model(&sides[0], curved)?, self.model(&sides[1], curved)?];
-            if turn < TURNS[kind] {
+            if turn < DIVIDE_TURNS[kind] {
                 turn += 1;
                 for (leaning, &f) in leanings.iter_mut().zip(faces) {
                     *leaning = self.squares(&models[0], &[f]) - self.squares(&models[1], &[f]);
@@ -120,7 +108,7 @@ impl Divide<'_> {
             let left = [0, 1].map(|i| self.squares(&models[i], &sides[i]));
             let fits = (0..2).all(|i| left[i] <= (3 * sides[i].len()) as f64 * self.flat * self.flat);
             let stands = fits
-                && log_likelihood_ratio(squares - left[0] - left[1], self.deviation) > EVIDENCE[kind]
+                && log_likelihood_ratio(squares - left[0] - left[1], self.deviation) > EVIDENCE_TO_DIVIDE[kind]
                 && self.bend_between(&models, &sides) > self.bend;
             let [_, second] = sides;
             return stands.then_some(second);

@@ -3,29 +3,12 @@
 //! The Hessian needs some rows of faces to tell a side from noise. Where the shape is exact there is no noise: faces in one plane are
 //! one side, and the angle between two planes is known from one edge.
 
+use super::constants::{
+    COORDINATE_ROUNDING, FEW_FACES, FLAT_SHARE, LEAST_INSIDE, MOST_TURN_IN_A_PLANE, SINGLE_PRECISION, SLIVER_ROUNDINGS,
+};
 use super::surface::{contiguous, Surface};
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::{add, distance, norm, sub, unit, Point};
-
-/// Coordinates are off by this part of the shape's extent, or of the largest coordinate: single precision, or files of six digits.
-const ROUNDING: f64 = 1e-6;
-const SINGLE: f64 = 2.4e-7;
-
-/// Two faces never count as one plane if their unit normals differ by more, however thin they are.
-const MOST_TURN: f64 = 0.02;
-
-/// A face of less height than so many roundings has no normal to speak of.
-const SLIVER: f64 = 50.0;
-
-/// A modelled mesh has flat polygons of more than three corners: at least this share of its edges is flat (a third where all are
-/// quads). Of noisy or smooth surfaces hardly any is.
-const FLAT_SHARE: f64 = 0.2;
-
-/// Below so many faces, noise cannot be told from shape, and the shape is taken as it is.
-const FEW_FACES: usize = 100;
-
-/// A side with fewer faces away from its border than this is too coarse for the Hessian: four by four quads have sixteen and are found.
-const LEAST_INSIDE: usize = 16;
 
 /// The flat sides of an exact shape.
 pub(super) struct Planes {
@@ -84,13 +67,13 @@ struct Turn {
 impl<'a> Facets<'a> {
     fn new(surface: &'a Surface<'a>) -> Self {
         let largest = surface.positions.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
-        let rounding = ROUNDING.max(SINGLE * largest);
+        let rounding = COORDINATE_ROUNDING.max(SINGLE_PRECISION * largest);
         let mut facets = Self { surface, rounding, normals: Vec::new(), slivers: Vec::new() };
         for f in 0..surface.n_faces() {
             facets.normals.push(unit(surface.vector_area(f)));
             let longest = facets.longest(f).0;
             let height = 2.0 * norm(surface.vector_area(f)) / longest.max(f64::MIN_POSITIVE);
-            facets.slivers.push(height < SLIVER * rounding);
+            facets.slivers.push(height < SLIVER_ROUNDINGS * rounding);
         }
         facets
     }
@@ -117,7 +100,7 @@ impl<'a> Facets<'a> {
             let turn = distance(self.normals[f], self.normals[g]);
             // Rounding turns a face by as much over its height.
             let rounded = self.rounding * (1.0 / self.height(h) + 1.0 / self.height(twin));
-            Some(Turn { faces: [f as u32, g as u32], turn, is_flat: turn < (4.0 * rounded).min(MOST_TURN) })
+            Some(Turn { faces: [f as u32, g as u32], turn, is_flat: turn < (4.0 * rounded).min(MOST_TURN_IN_A_PLANE) })
         };
         connectivity.edges().filter_map(turn).collect()
     }

@@ -2,22 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::constants::{EVIDENCE_TO_KEEP, LEAST_AROUND, SPECK_TOLERANCE};
 use super::divide::log_likelihood_ratio;
 use super::fit::{Patch, Plane};
 use super::surface::{members, Surface};
 use crate::mesh::vector::{add, dot};
 use crate::progress::Progress;
 use crate::Result;
-
-/// Two patches that explain a small segment and what lies around it better than one, by more than this logarithm of likelihoods, are two.
-const EVIDENCE: f64 = 10.0;
-
-/// So many faces around a small segment, or as many as it has, say how its neighbour would go on.
-const LEAST_AROUND: usize = 20;
-
-/// A speck inside one plane was found because it lies off that plane, by chance or at slivers that noise has folded over: it may
-/// lie off by this much more.
-const SPECK: f64 = 2.0;
 
 /// How much a neighbour explains.
 pub(super) struct Explain<'a> {
@@ -120,7 +111,8 @@ impl Explain<'_> {
                 squares += surface.areas[f as usize] / 3.0 * plane.distance(surface.positions[v as usize]).powi(2);
             }
         }
-        let tolerance = if enclosed && faces.len() <= self.most_faces { SPECK * self.flat } else { self.flat };
+        let tolerance =
+            if enclosed && faces.len() <= self.most_faces { SPECK_TOLERANCE * self.flat } else { self.flat };
         (enclosed || dot(vector, plane.normal()) > 0.0) && squares <= area * tolerance * tolerance
     }
 
@@ -129,7 +121,7 @@ impl Explain<'_> {
         let around = self.around(labels, faces, to);
         let joint: Vec<u32> = faces.iter().chain(&around).copied().collect();
         match [&joint, faces, &around].map(|faces| self.squares_off_patch(faces)) {
-            [Some(one), Some(a), Some(b)] => log_likelihood_ratio(one - a - b, self.deviation) < EVIDENCE,
+            [Some(one), Some(a), Some(b)] => log_likelihood_ratio(one - a - b, self.deviation) < EVIDENCE_TO_KEEP,
             _ => true,
         }
     }

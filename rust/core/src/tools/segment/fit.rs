@@ -1,24 +1,16 @@
 //! What a segment would look like at a face if it went on there: a plane, or a quadratic function fitted to its faces nearby.
 
+use super::constants::{MOST_NEARBY, NEARBY, NEARBY_OF_NOISE, PATCH_STIFFNESS};
 use super::surface::Surface;
 use crate::linear::small::symmetric_eigen;
 use crate::linear::Columns;
 use crate::mesh::vector::{add, dot, norm, scale, sub, unit, Point};
 use crate::tools::heights::{frame, solve, TERMS};
 
-/// Faces of a segment that a local fit looks at: few where the surface is clean and may be curved, more where noise has to be
-/// averaged out; as many more for each mean edge of noise, up to a limit.
-const NEARBY: f64 = 20.0;
-const NEARBY_OF_NOISE: f64 = 400.0;
-const MOST_NEARBY: f64 = 60.0;
-
 /// How many faces a local fit looks at where the noise is this part of a mean edge.
 pub(super) fn patch_size(noise: f64) -> usize {
     (NEARBY + NEARBY_OF_NOISE * noise).min(MOST_NEARBY) as usize
 }
-
-/// Weight of the pull of the quadratic terms to zero, in squared lengths of the fitted patch: it decides where few faces do not.
-const STIFFNESS: f64 = 1e-3;
 
 /// The plane of a whole segment.
 #[derive(Debug, Clone, Copy)]
@@ -117,7 +109,7 @@ impl Patch {
         }
         for (i, row) in matrix.iter_mut().enumerate() {
             // The constant and the slopes need it only where the corners lie on a line.
-            row[i] += if i < 3 { 1e-9 } else { STIFFNESS };
+            row[i] += if i < 3 { 1e-9 } else { PATCH_STIFFNESS };
         }
         patch.coefficients = right.iter().map(|row| solve(matrix, *row)).collect();
         Some(patch)

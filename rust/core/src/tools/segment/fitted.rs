@@ -1,5 +1,6 @@
 //! From the indicator to segments and their hierarchy.
 
+use super::constants::{BEND, BEND_SHARES, MOST_LEAST_FACES, NOISY, PERSISTENCE, PLANE_EDGE, PLANE_NOISE};
 use super::divide::Divide;
 use super::exact::Planes;
 use super::explain::Explain;
@@ -7,7 +8,7 @@ use super::fit::patch_size;
 use super::hierarchy::Hierarchy;
 use super::merge::{rename, Merge, Merging};
 use super::options::{SegmentMethod, SegmentOptions};
-use super::refit::{Refit, PLANE_EDGE, PLANE_NOISE};
+use super::refit::Refit;
 use super::slopes::Slopes;
 use super::straighten::Straighten;
 use super::surface::{contiguous, Surface};
@@ -16,20 +17,6 @@ use super::watershed::watershed;
 use crate::linear::Columns;
 use crate::progress::{Progress, Report};
 use crate::Result;
-
-/// Two basins of the indicator stay apart if the pass between them lies deeper than this. Low, since borders that are none are found
-/// by their bend later: 0.05 loses sides of coarse cubes under noise, 0.01 leaves basins too small to measure.
-const PERSISTENCE: f64 = 0.03;
-
-/// A border stands if it bends by more than this share of the length weight.
-pub(super) const BEND: f64 = 0.8;
-
-/// Shares of that bend up to which borders fall before each refit: with cleaner borders the later ones are measured better.
-const SHARES: [f64; 4] = [0.4, 0.7, 1.0, 1.0];
-
-/// The paper's least number of faces, and the noise, in mean edges, from which it is needed.
-const MOST_LEAST_FACES: f64 = 20.0;
-const NOISY: f64 = 0.1;
 
 /// All that segments are made from.
 pub(super) struct Fitted<'a> {
@@ -135,7 +122,7 @@ impl Fitted<'_> {
             progress: self.progress,
         };
         let threshold = BEND * self.options.length_weight;
-        for (round, share) in SHARES.into_iter().enumerate() {
+        for (round, share) in BEND_SHARES.into_iter().enumerate() {
             self.report(0.9 + 0.02 * round as f64, "segments");
             merging.below(labels, share * threshold)?;
             merging.absorb_small(labels, self.least_faces())?;

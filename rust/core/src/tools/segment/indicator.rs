@@ -1,5 +1,6 @@
 //! The alternating minimisation of the Ambrosio-Tortorelli functional with the L1 Hessian (Rowe et al. 2024, eq. (41)).
 
+use super::constants::{LEAST_WEIGHT, MOST_ALTERNATIONS, NOISE_ATTEMPTS, NOISE_POWER, NOISE_TOLERANCE};
 use super::indicator_step::IndicatorStep;
 use super::surface::Surface;
 use crate::block_rows::BlockRows;
@@ -9,12 +10,6 @@ use crate::progress::{Progress, Report};
 use crate::solve::{solve, Coupling, Problem, Session, Settings, Solution, Solver, Status};
 use crate::tools::sharpness::block_norms;
 use crate::Result;
-
-/// Alternations for one `ε` at most.
-const MOST_ALTERNATIONS: usize = 30;
-
-/// Weights `v²` of the conic program are held above this, so that no face is wholly free.
-const LEAST_WEIGHT: f64 = 1e-6;
 
 /// How the functional is minimised.
 pub(super) struct Functional<'a> {
@@ -127,13 +122,6 @@ struct Run<'a> {
     progress: &'a Progress,
     reached: Minimiser,
 }
-
-/// Solutions at most that look for the fidelity that leaves the noise, and by how much the remainder may miss it.
-const NOISE_ATTEMPTS: usize = 8;
-const NOISE_TOLERANCE: f64 = 0.1;
-
-/// The remainder grows with the fidelity to this power, measured on noisy cubes: the exponent of the search.
-const NOISE_POWER: f64 = 1.5;
 
 impl Run<'_> {
     /// Lowers the fidelity, still without any border, until `u` differs from `u₀` by the noise (Morozov's principle). Without

@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BinaryHeap};
 
+use super::constants::MERGE_SHARES;
 use super::crease::Border;
 use super::slopes::Slopes;
 use super::surface::Surface;
@@ -17,10 +18,6 @@ pub(super) struct Merge {
     /// The strength of the border that fell.
     pub strength: f64,
 }
-
-/// Shares of the threshold up to which borders fall before all are measured again: a small segment's neighbourhood says little
-/// until it has grown.
-const ROUNDS: [f64; 6] = [0.2, 0.4, 0.6, 0.8, 1.0, 1.0];
 
 /// Which segments may merge, and how far.
 pub(super) struct Merging<'a> {
@@ -39,7 +36,7 @@ impl Merging<'_> {
     /// [`crate::Error::Cancelled`].
     pub fn below(&self, labels: &mut [u32], threshold: f64) -> Result<Vec<Merge>> {
         let mut merges = Vec::new();
-        for share in ROUNDS {
+        for share in MERGE_SHARES {
             merges.extend(self.round(labels, share * threshold)?);
         }
         Ok(merges)

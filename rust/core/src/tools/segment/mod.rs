@@ -6,6 +6,7 @@
 //! to the segment that they fit best ([`refit`]), or, between curved segments, along creases ([`straighten`]). Sides of a few triangles, which the Hessian cannot see, are told by their planes
 //! ([`exact`]). In any case a [`hierarchy`] of nested segmentations comes with it.
 
+mod constants;
 mod crease;
 mod cut;
 mod divide;
@@ -36,16 +37,13 @@ use crate::linear::Columns;
 use crate::mesh::Mesh;
 use crate::progress::Progress;
 use crate::solve::{Settings, Status};
-use crate::tools::Scale;
 use crate::Result;
+use constants::{BEND, LEAST_EPSILON};
 use exact::coarse_planes;
-use fitted::{Finished, Fitted, BEND};
+use fitted::{Finished, Fitted};
 use indicator::Functional;
 use noise::noise_level;
 use surface::Surface;
-
-/// `ε` below this many mean edges makes the indicator rise again everywhere: no row of faces is narrow enough for it.
-const LEAST_EPSILON: f64 = 0.35;
 
 /// What came out of a segmentation.
 #[derive(Debug, Clone, PartialEq)]
@@ -214,6 +212,3 @@ impl Normalized {
         restored
     }
 }
-
-/// The unit in which the weights of a segmentation are meant unless the caller says otherwise.
-pub(super) const DEFAULT_SCALE: Scale = Scale::Extent;

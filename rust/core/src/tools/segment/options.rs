@@ -1,15 +1,13 @@
 //! How to segment.
 
-use super::DEFAULT_SCALE;
+use super::constants::CLEAN_FIDELITY;
+use super::constants::DEFAULT_SCALE;
 use crate::linear::Columns;
 use crate::mesh::Mesh;
 use crate::solve::MAX_JOINT_COLUMNS;
 use crate::tools::options::{check_range, check_weights};
 use crate::tools::{Scale, SolveOptions};
 use crate::{Error, Result};
-
-/// The paper's `α`, which is right for data without noise.
-const CLEAN_FIDELITY: f64 = 1000.0;
 
 /// How segments are made from the indicator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -5,36 +5,16 @@
 
 use std::collections::BTreeMap;
 
+use super::constants::{
+    EDGE_COST, LEAST_NOISE, LEAST_NOISE_OF_VALUES, LEAST_TURN, MOST_MISFIT, PLANE_EDGE, PLANE_NOISE, REFIT_ROUNDS,
+    REFIT_SWEEPS, TURN_OF_NOISE,
+};
 use super::fit::{nearby, patch_size, Patch, Plane};
 use super::surface::{pieces, Surface};
 use crate::linear::Columns;
 use crate::mesh::vector::{distance, unit};
 use crate::progress::Progress;
 use crate::Result;
-
-/// Rounds of fits, and sweeps over the faces with the fits of a round.
-const ROUNDS: usize = 6;
-const SWEEPS: usize = 12;
-
-/// A segment counts as plane if it is off its plane by no more than this many times the noise, or this part of an edge.
-pub(super) const PLANE_NOISE: f64 = 1.5;
-pub(super) const PLANE_EDGE: f64 = 0.02;
-
-/// The least noise to reckon with, in mean edges for shapes and in the range of other signals: fits near curved borders are off by as
-/// much, and with less, borders on scans and characters have teeth.
-const LEAST_NOISE: f64 = 0.1;
-const LEAST_NOISE_OF_VALUES: f64 = 0.02;
-
-/// The most that one corner's misfit costs: a spike does not decide alone.
-const MOST_MISFIT: f64 = 12.0;
-
-/// How far unit normals of faces stray: that much in any case, and more for each mean edge of noise (measured on noisy cubes).
-const LEAST_TURN: f64 = 0.15;
-const TURN_OF_NOISE: f64 = 2.0;
-
-/// What a mean edge of border costs, in the units of the misfit: 1.5 and more leave fewer teeth on characters, but lose a side of a
-/// noisy dodecahedron.
-const EDGE_COST: f64 = 1.0;
 
 /// What is fitted, and how exactly.
 pub(super) struct Refit<'a> {
@@ -69,11 +49,11 @@ impl Refit<'_> {
     /// # Errors
     /// [`crate::Error::Cancelled`].
     pub fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
-        for _ in 0..ROUNDS {
+        for _ in 0..REFIT_ROUNDS {
             self.progress.check()?;
             let before = labels.clone();
             let mut fits = Fits::new(self, before.clone());
-            for _ in 0..SWEEPS {
+            for _ in 0..REFIT_SWEEPS {
                 if !self.sweep(&mut fits, labels) {
                     break;
                 }

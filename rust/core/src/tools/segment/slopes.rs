@@ -1,22 +1,10 @@
 //! What bends across borders, face by face: gradients of values, or normals of the shape.
 
+use super::constants::{BENDS_OF_A_STEP, LEAST_CONTACT, MOST_REACH, REACH, REACH_OF_NOISE};
 use super::surface::Surface;
 use crate::linear::Columns;
 use crate::mesh::triangle;
 use crate::mesh::vector::Point;
-
-/// How far, in mean edges, the gradient is averaged on either side, longer the more noise there is in mean edges, up to a limit: on the
-/// coarsest noisy shapes a limit of 3 finds more parts than 2.5, 3.5 or 5.
-const REACH: f64 = 2.5;
-const REACH_OF_NOISE: f64 = 10.0;
-const MOST_REACH: f64 = 3.0;
-
-/// A border that is a smaller part of the smaller segment's perimeter counts as stronger in proportion: where two segments touch at
-/// a corner only, a few edges say nothing.
-const LEAST_CONTACT: f64 = 0.25;
-
-/// A step in the values counts as two bends, up and down over one edge; a step of positions would be a crack, which a mesh has not.
-const BENDS_OF_A_STEP: f64 = 2.0;
 
 /// What bends across borders, face by face: the gradients of a function, or the normals of the surface.
 ///

@@ -5,21 +5,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::constants::{BAND_ROWS, BEND_OVER_A_RIDGE, STRAIGHTEN_PASSES};
 use super::cut::Graph;
 use super::fit::Plane;
 use super::surface::{members, Surface};
 use crate::mesh::vector::{add, distance, dot, sub, unit, Point};
 use crate::progress::Progress;
 use crate::Result;
-
-/// How many rows of faces on either side of a border may change sides.
-const ROWS: usize = 4;
-
-/// What a bend over a ridge counts against the same bend in a hollow.
-const RIDGE: f64 = 0.5;
-
-/// Passes over all borders: where three segments meet, the second pass sees what the first has done.
-const PASSES: usize = 2;
 
 /// What borders cost.
 pub(super) struct Straighten<'a> {
@@ -41,7 +33,7 @@ impl<'a> Straighten<'a> {
             .collect();
         let bend = |f: usize, g: usize| {
             let outward = dot(sub(normals[g], normals[f]), sub(surface.centroids[g], surface.centroids[f]));
-            distance(normals[f], normals[g]) * if outward > 0.0 { RIDGE } else { 1.0 }
+            distance(normals[f], normals[g]) * if outward > 0.0 { BEND_OVER_A_RIDGE } else { 1.0 }
         };
         let (mut sum, mut count) = (0.0, 0);
         for f in 0..surface.n_faces() {
@@ -69,7 +61,7 @@ impl<'a> Straighten<'a> {
         let is_curved =
             |faces: &Vec<u32>| Plane::through(self.surface, faces).is_none_or(|plane| plane.spread > self.flat);
         let curved: Vec<bool> = members(labels).iter().map(is_curved).collect();
-        for _ in 0..PASSES {
+        for _ in 0..STRAIGHTEN_PASSES {
             let mut borders: BTreeMap<[u32; 2], Vec<u32>> = BTreeMap::new();
             for f in 0..labels.len() {
                 for (_, g) in self.surface.around(f) {
@@ -127,7 +119,7 @@ impl<'a> Straighten<'a> {
     fn band(&self, labels: &[u32], pair: [u32; 2], faces: &[u32]) -> BTreeMap<u32, usize> {
         let mut row: BTreeSet<u32> = faces.iter().copied().filter(|f| pair.contains(&labels[*f as usize])).collect();
         let mut rows: BTreeMap<u32, usize> = row.iter().map(|f| (*f, 0)).collect();
-        for depth in 1..=ROWS {
+        for depth in 1..=BAND_ROWS {
             let beside = |f: &u32| {
                 let label = labels[*f as usize];
                 self.surface.around(*f as usize).map(|(_, g)| g as u32).filter(move |g| labels[*g as usize] == label)

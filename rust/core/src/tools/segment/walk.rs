@@ -1,19 +1,10 @@
 //! Averages on both sides of a border edge: walking away from it over the faces of a segment, unfolded into the plane.
 
+use super::constants::{MOST_SLOPE_ERROR, STEP_DOUBT, STRAY_OF_NOISE};
 use super::slopes::Slopes;
 use super::surface::Surface;
 use crate::mesh::vector::distance;
 use crate::solve::MAX_JOINT_COLUMNS;
-
-/// Standard deviations of a step that noise alone may make.
-const DOUBT: f64 = 3.0;
-
-/// How far gradients, and unit normals, of single faces stray for each mean edge of noise (measured on noisy cubes).
-const STRAY_OF_NOISE: f64 = 2.0;
-
-/// Curvature explains part of a bend if what it explains is known better than this, half of the bend at which borders stand by default.
-/// Less, or demanding that it be significant, cuts the side of a coarse noisy cylinder into strips.
-const MOST_SLOPE_ERROR: f64 = 0.2;
 
 /// A rigid motion of the plane: rotation as a complex number, then a shift.
 #[derive(Clone, Copy)]
@@ -191,7 +182,7 @@ impl Walk<'_> {
     fn doubt(&self, inner: &Side, outer: &Side) -> f64 {
         let face = self.surface.mean_edge * self.surface.mean_edge;
         let columns = (self.slopes.n_columns as f64).sqrt();
-        DOUBT * columns * self.slopes.noise * (face / inner.area + face / outer.area).sqrt()
+        STEP_DOUBT * columns * self.slopes.noise * (face / inner.area + face / outer.area).sqrt()
     }
 
     /// Where the centroid of face `f` is in the frame of the edge; for shapes its distance in space from the middle of the edge,

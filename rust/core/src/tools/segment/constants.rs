@@ -1,0 +1,182 @@
+//! How segments are told apart: every threshold of the segmentation, with its reason.
+
+use crate::tools::Scale;
+
+// Noise and the functional (41).
+
+/// `ε` below this many mean edges makes the indicator rise again everywhere: no row of faces is narrow
+/// enough for it.
+pub(super) const LEAST_EPSILON: f64 = 0.35;
+
+/// The unit in which the weights of a segmentation are meant unless the caller says otherwise.
+pub(super) const DEFAULT_SCALE: Scale = Scale::Extent;
+
+/// The paper's `α`, which is right for data without noise.
+pub(super) const CLEAN_FIDELITY: f64 = 1000.0;
+
+/// Alternations for one `ε` at most.
+pub(super) const MOST_ALTERNATIONS: usize = 30;
+
+/// Weights `v²` of the conic program are held above this, so that no face is wholly free.
+pub(super) const LEAST_WEIGHT: f64 = 1e-6;
+
+/// Solutions at most that look for the fidelity that leaves the noise, and by how much the remainder may
+/// miss it.
+pub(super) const NOISE_ATTEMPTS: usize = 8;
+pub(super) const NOISE_TOLERANCE: f64 = 0.1;
+
+/// The remainder grows with the fidelity to this power, measured on noisy cubes: the exponent of the
+/// search.
+pub(super) const NOISE_POWER: f64 = 1.5;
+
+// Shapes that were modeled, not measured.
+
+/// Coordinates are off by this part of the shape's extent, or of the largest coordinate: single
+/// precision, or files of six digits.
+pub(super) const COORDINATE_ROUNDING: f64 = 1e-6;
+pub(super) const SINGLE_PRECISION: f64 = 2.4e-7;
+
+/// Two faces never count as one plane if their unit normals differ by more, however thin they are.
+pub(super) const MOST_TURN_IN_A_PLANE: f64 = 0.02;
+
+/// A face of less height than so many roundings has no normal to speak of.
+pub(super) const SLIVER_ROUNDINGS: f64 = 50.0;
+
+/// A modeled mesh has flat polygons of more than three corners: at least this share of its edges is flat
+/// (a third where all are quads). Of noisy or smooth surfaces hardly any is.
+pub(super) const FLAT_SHARE: f64 = 0.2;
+
+/// Below so many faces, noise cannot be told from shape, and the shape is taken as it is.
+pub(super) const FEW_FACES: usize = 100;
+
+/// A side with fewer faces away from its border than this is too coarse for the Hessian: four by four
+/// quads have sixteen and are found.
+pub(super) const LEAST_INSIDE: usize = 16;
+
+// The order of the passes.
+
+/// Two basins of the indicator stay apart if the pass between them lies deeper than this. Low, since
+/// borders that are none are found by their bend later: 0.05 loses sides of coarse cubes under noise,
+/// 0.01 leaves basins too small to measure.
+pub(super) const PERSISTENCE: f64 = 0.03;
+
+/// A border stands if it bends by more than this share of the length weight.
+pub(super) const BEND: f64 = 0.8;
+
+/// Shares of that bend up to which borders fall before each refit: with cleaner borders the later ones
+/// are measured better.
+pub(super) const BEND_SHARES: [f64; 4] = [0.4, 0.7, 1.0, 1.0];
+
+/// The paper's least number of faces, and the noise, in mean edges, from which it is needed.
+pub(super) const MOST_LEAST_FACES: f64 = 20.0;
+pub(super) const NOISY: f64 = 0.1;
+
+// The bend across borders.
+
+/// How far, in mean edges, the gradient is averaged on either side, longer the more noise there is in
+/// mean edges, up to a limit: on the coarsest noisy shapes a limit of 3 finds more parts than 2.5, 3.5 or
+/// 5.
+pub(super) const REACH: f64 = 2.5;
+pub(super) const REACH_OF_NOISE: f64 = 10.0;
+pub(super) const MOST_REACH: f64 = 3.0;
+
+/// A border that is a smaller part of the smaller segment's perimeter counts as stronger in proportion:
+/// where two segments touch at a corner only, a few edges say nothing.
+pub(super) const LEAST_CONTACT: f64 = 0.25;
+
+/// A step in the values counts as two bends, up and down over one edge; a step of positions would be a
+/// crack, which a mesh has not.
+pub(super) const BENDS_OF_A_STEP: f64 = 2.0;
+
+/// Standard deviations of a step that noise alone may make.
+pub(super) const STEP_DOUBT: f64 = 3.0;
+
+/// How far gradients, and unit normals, of single faces stray for each mean edge of noise (measured on
+/// noisy cubes).
+pub(super) const STRAY_OF_NOISE: f64 = 2.0;
+
+/// Curvature explains part of a bend if what it explains is known better than this, half of the bend at
+/// which borders stand by default. Less, or demanding that it be significant, cuts the side of a coarse
+/// noisy cylinder into strips.
+pub(super) const MOST_SLOPE_ERROR: f64 = 0.2;
+
+/// Shares of the threshold up to which borders fall before all are measured again: a small segment's
+/// neighborhood says little until it has grown.
+pub(super) const MERGE_SHARES: [f64; 6] = [0.2, 0.4, 0.6, 0.8, 1.0, 1.0];
+
+// Planes and patches.
+
+/// Faces of a segment that a local fit looks at: few where the surface is clean and may be curved, more
+/// where noise has to be averaged out; as many more for each mean edge of noise, up to a limit.
+pub(super) const NEARBY: f64 = 20.0;
+pub(super) const NEARBY_OF_NOISE: f64 = 400.0;
+pub(super) const MOST_NEARBY: f64 = 60.0;
+
+/// Weight of the pull of the quadratic terms to zero, in squared lengths of the fitted patch: it decides
+/// where few faces do not.
+pub(super) const PATCH_STIFFNESS: f64 = 1e-3;
+
+/// Both parts of a divided segment must have so many faces.
+pub(super) const LEAST_PART: usize = 8;
+
+/// Fits and assignments in turns, of planes and of patches; they settle after three to five.
+pub(super) const DIVIDE_TURNS: [usize; 2] = [8, 4];
+
+/// A segment at a corner lies on three planes: divided once, and its parts again.
+pub(super) const DIVIDE_ROUNDS: usize = 2;
+
+/// The logarithm of the ratio of likelihoods that two planes, or patches with more coefficients, must
+/// have. A quarter of it finds the same parts of known shapes, but takes steps in the walls of scanned
+/// buildings for parts.
+pub(super) const EVIDENCE_TO_DIVIDE: [f64; 2] = [40.0, 60.0];
+
+/// Two patches that explain a small segment and what lies around it better than one, by more than this
+/// logarithm of likelihoods, are two.
+pub(super) const EVIDENCE_TO_KEEP: f64 = 10.0;
+
+/// So many faces around a small segment, or as many as it has, say how its neighbor would go on.
+pub(super) const LEAST_AROUND: usize = 20;
+
+/// A speck inside one plane was found because it lies off that plane, by chance or at slivers that noise
+/// has folded over: it may lie off by this much more.
+pub(super) const SPECK_TOLERANCE: f64 = 2.0;
+
+// Where borders run.
+
+/// Rounds of fits, and sweeps over the faces with the fits of a round.
+pub(super) const REFIT_ROUNDS: usize = 6;
+pub(super) const REFIT_SWEEPS: usize = 12;
+
+/// A segment counts as plane if it is off its plane by no more than this many times the noise, or this
+/// part of an edge.
+pub(super) const PLANE_NOISE: f64 = 1.5;
+pub(super) const PLANE_EDGE: f64 = 0.02;
+
+/// The least noise to reckon with, in mean edges for shapes and in the range of other signals: fits near
+/// curved borders are off by as much, and with less, borders on scans and characters have teeth.
+pub(super) const LEAST_NOISE: f64 = 0.1;
+pub(super) const LEAST_NOISE_OF_VALUES: f64 = 0.02;
+
+/// The most that one corner's misfit costs: a spike does not decide alone.
+pub(super) const MOST_MISFIT: f64 = 12.0;
+
+/// How far unit normals of faces stray: that much in any case, and more for each mean edge of noise
+/// (measured on noisy cubes).
+pub(super) const LEAST_TURN: f64 = 0.15;
+pub(super) const TURN_OF_NOISE: f64 = 2.0;
+
+/// What a mean edge of border costs, in the units of the misfit: 1.5 and more leave fewer teeth on
+/// characters, but lose a side of a noisy dodecahedron.
+pub(super) const EDGE_COST: f64 = 1.0;
+
+/// How many rows of faces on either side of a border may change sides.
+pub(super) const BAND_ROWS: usize = 4;
+
+/// What a bend over a ridge counts against the same bend in a hollow.
+pub(super) const BEND_OVER_A_RIDGE: f64 = 0.5;
+
+/// Passes over all borders: where three segments meet, the second pass sees what the first has done.
+pub(super) const STRAIGHTEN_PASSES: usize = 2;
+
+/// Flow below this part of the largest capacity is rounding.
+pub(super) const FLOW_ROUNDING: f64 = 1e-9;
