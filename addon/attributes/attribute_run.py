@@ -13,34 +13,16 @@ import ridgeform
 
 from ..blender import attribute_io, attribute_names, display, mesh_io
 from ..blender.attribute_io import PointValues
-from ..blender.attribute_names import AttributeRefusedError
+from ..blender.refusals import RefusedError
 from ..blender.welding import Weld
-from ..framework.run import Part, RefusedError, Run, group_weights, meshes_phrase, welded
-from ..framework.shared_settings import ridge_weights_of
+from ..framework.run import Part, Run, meshes_phrase
+from ..framework.sources import source_of
+from ..framework.surface import Surface, painted_ridges, surface_of
 from .settings import solve_options
 
 SUFFIXES = ("_denoised", "_interpolated")
 VISIBLE = 1e-5
 """A value changed by less to fit its range is not worth a word: solutions are exact to about that."""
-
-
-@dataclass
-class Surface:
-    """What the wheel gets of a mesh: its welded vertices and triangles, and a weight (l,) per triangle."""
-
-    weld: Weld
-    mesh: ridgeform.Mesh
-    face_weights: np.ndarray | None = None
-
-
-def surface_of(obj: bpy.types.Object) -> Surface:
-    """The surface of an object in Object Mode; `RefusedError` if the wheel cannot use it."""
-    coordinates = mesh_io.open_coordinates(obj).original
-    weld, _ = welded(obj, coordinates)
-    try:
-        return Surface(weld, ridgeform.Mesh(coordinates[weld.first].astype(np.float64), weld.triangles))
-    except ridgeform.RidgeformError as error:
-        raise RefusedError(f'"{obj.name}": {error}') from error
 
 
 @dataclass
@@ -95,20 +77,14 @@ class AttributeRun(Run):
 
     def prepare(self, obj: bpy.types.Object) -> AttributePart:
         """Read the attribute, the selection and the ridge paint of one mesh."""
-        try:
-            name = self.settings.attribute or attribute_names.default_name(obj, SUFFIXES)
-            source = attribute_io.read_values(obj, name)
-        except AttributeRefusedError as refusal:
-            raise RefusedError(str(refusal)) from refusal
+        source = source_of(obj, self.settings, SUFFIXES)
         if self.settings.output == "IN_PLACE":
             reason = attribute_io.reason_locked(obj, source)
             if reason is not None:
                 raise RefusedError(reason)
         surface = surface_of(obj)
-        if self.settings.ridge_group:
-            painted = group_weights(obj, self.settings.ridge_group)
-            triangles = mesh_io.triangles(obj.data)[surface.weld.kept]
-            surface.face_weights = ridge_weights_of(painted, triangles, self.settings.avoid_ridges)
+        triangles = mesh_io.triangles(obj.data)
+        surface.face_weights = painted_ridges(obj, self.settings, triangles, surface.weld)
         return self.pose(obj, source, surface)
 
     @abstractmethod
@@ -171,45 +147,14 @@ def energy_on(mesh: ridgeform.Mesh, options: dict[str, object]) -> Callable[[np.
     return partial(ridgeform.energy, edges, kind=options["energy"], dual=options["dual"])
 
 
-def refuse_non_finite(obj: bpy.types.Object, source: PointValues, needed: np.ndarray) -> None:
-    """`RefusedError` if a value that is needed (n,) bool is not a finite number."""
-    broken = np.flatnonzero(needed & ~np.isfinite(source.values).all(axis=1))
-    if len(broken):
-        raise RefusedError(
-            f'"{source.name}" of "{obj.name}" is not a finite number at vertex {broken[0]} ({len(broken)} in '
-            "all): select these vertices and fill them in with Interpolate Attribute, Fill the Selection"
-        )
-
-
-def refuse_mixed(obj: bpy.types.Object, source: PointValues, needed: np.ndarray) -> None:
-    """`RefusedError` if a vertex that is needed (n,) bool has several colours at its face corners."""
-    mixed = np.flatnonzero(needed & source.mixed)
-    if len(mixed):
-        raise RefusedError(
-            f'The face corners of "{obj.name}" have different "{source.name}" at vertex {mixed[0]} '
-            f"({len(mixed)} in all): convert it to the domain Vertex with Object Data ▸ Color Attributes ▸ "
-            "Convert Attribute"
-        )
-
-
-def varying(values: np.ndarray) -> np.ndarray:
-    """Which columns (k,) bool of values (n, k) are not the same everywhere."""
-    return (values != values[:1]).any(axis=0)
-
-
-def as_argument(values: np.ndarray) -> np.ndarray:
-    """Values (k, c) as the wheel wants them: one column is (k,)."""
-    return values[:, 0] if values.shape[1] == 1 else values
-
-
 def _notes(part: AttributePart) -> list[str]:
     notes = []
     solution = part.task.result.solution
     if solution.status == "inaccurate":
         notes.append(f"the tolerance was not reached, the gap is {solution.gap:.1g}")
     elif solution.status == "stopped":
-        notes.append("stopped early, what was reached is kept")
+        notes.append("stopped early, the result so far is kept")
     limited = part.limited_vertices()
     if limited:
-        notes.append(f"values were limited to the range that they can have, at {limited} vertices")
+        notes.append(f"values were clamped to their valid range at {limited} vertices")
     return notes

@@ -8,20 +8,12 @@ import numpy as np
 import ridgeform
 
 from ..blender.attribute_io import PointValues
+from ..blender.refusals import RefusedError
 from ..blender.selection import Needs
 from ..framework.job import Task
-from ..framework.run import RefusedError
-from .attribute_run import (
-    AttributePart,
-    AttributeRun,
-    Solved,
-    Surface,
-    as_argument,
-    energy_on,
-    refuse_mixed,
-    refuse_non_finite,
-    varying,
-)
+from ..framework.sources import as_argument, varying_means
+from ..framework.surface import Surface
+from .attribute_run import AttributePart, AttributeRun, Solved, energy_on
 from .settings import denoise_fidelity_of
 
 
@@ -35,17 +27,12 @@ class Denoising(AttributeRun):
 
     def pose(self, obj: bpy.types.Object, source: PointValues, surface: Surface) -> AttributePart:
         """Denoise all values, or those of the selection with the others held."""
-        everywhere = np.ones(len(source.values), bool)
-        refuse_mixed(obj, source, everywhere)
-        refuse_non_finite(obj, source, everywhere)
         weld = surface.weld
+        columns, values = varying_means(obj, source, weld)
+        everywhere = np.ones(len(source.values), bool)
         free = weld.all_of(self.selected(obj) if self._in_edit_mode else everywhere)
         if not free.any():
             raise RefusedError(f'Nothing is selected in "{obj.name}": select the part to work on')
-        columns = varying(source.values)
-        if not columns.any():
-            raise RefusedError(f'"{source.name}" of "{obj.name}" has the same value everywhere')
-        values = np.stack([weld.mean_of(column) for column in source.values[:, columns].T], axis=1)
         options = self.options
         if not free.all():
             options["fixed"] = ~free

@@ -9,21 +9,13 @@ import ridgeform
 
 from ..blender.attribute_io import PointValues, read_values
 from ..blender.attribute_names import GROUP
+from ..blender.refusals import RefusedError
 from ..blender.selection import Needs
 from ..blender.welding import connected_parts
 from ..framework.job import Task
-from ..framework.run import RefusedError
-from .attribute_run import (
-    AttributePart,
-    AttributeRun,
-    Solved,
-    Surface,
-    as_argument,
-    energy_on,
-    refuse_mixed,
-    refuse_non_finite,
-    varying,
-)
+from ..framework.sources import as_argument, refuse_mixed, refuse_non_finite, varying
+from ..framework.surface import Surface
+from .attribute_run import AttributePart, AttributeRun, Solved, energy_on
 
 
 class Interpolation(AttributeRun):

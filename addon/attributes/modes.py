@@ -14,7 +14,8 @@ from ..blender.selection import Needs
 from ..blender.welding import Weld
 from ..framework.job import Task
 from ..framework.run import Part, Run, meshes_phrase
-from .attribute_run import Surface, energy_on, surface_of
+from ..framework.surface import Surface, surface_of
+from .attribute_run import energy_on
 from .settings import energy_options
 
 PREFIX = "ridgeform_mode_"

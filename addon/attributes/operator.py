@@ -4,6 +4,7 @@
 import bpy
 
 from ..blender import attribute_io, attribute_names, display, mesh_io, selection
+from ..blender.refusals import RefusedError
 from ..framework import rows
 from ..framework.settings import properties_of
 from .denoise import Denoising
@@ -35,7 +36,7 @@ class RIDGEFORM_OT_show_attribute(bpy.types.Operator):  # noqa: N801
                 try:
                     name = self.attribute or attribute_names.default_name(obj, ())
                     attribute_io.read_values(obj, name)
-                except attribute_names.AttributeRefusedError as refusal:
+                except RefusedError as refusal:
                     missing.append(str(refusal))
                 else:
                     shown.append((obj, name))

@@ -33,7 +33,7 @@ ENERGIES = (
         "Smooth, Curved (L2 Hessian)",
         "Smooth, also along borders, and true to the curvature of the surface (Stein et al. 2020)",
     ),
-    ("l2_laplacian", "Smooth, Flat Borders (L2 Laplacian)", "Smooth, but level towards borders"),
+    ("l2_laplacian", "Smooth, Flat Borders (L2 Laplacian)", "Smooth, but level toward borders"),
     (
         "l1_hessian_stein2018",
         "Sharp along Axes (L1 Hessian in Space)",

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The border between Blender and NumPy for the values of an attribute or vertex group at the vertices.
 
-Object Mode only: in Edit Mode Blender keeps attributes elsewhere. Colours are linear, as they are rendered.
+Object Mode only: in Edit Mode Blender keeps attributes elsewhere. Colors are linear, as they are rendered.
 """
 
 from dataclasses import dataclass
@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from .attribute_names import COLORS, GROUP, AttributeRefusedError, reason_against
+from .attribute_names import COLORS, GROUP, reason_against
 from .mesh_layers import ATTRIBUTE_KINDS
+from .refusals import AttributeRefusedError
 
 _LIMITS = {GROUP: (0.0, 1.0), "BYTE_COLOR": (0.0, 1.0), "FLOAT_COLOR": (0.0, np.inf)}
 

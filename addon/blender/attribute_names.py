@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which attributes and vertex groups can be worked on, and which one is meant when no name is given.
 
-Nothing is imported here, `bpy` least of all: Blender keeps the function behind a search field until the end,
-and with it all that this module knows. If `bpy` is a part of that, Python cannot end without a crash of 4.2.
+Nothing else is imported here, `bpy` least of all: Blender keeps the function behind a search field until the
+end, and with it all that this module knows. If `bpy` is a part of that, Python cannot end without a crash
+of 4.2.
 """
+
+from .refusals import AttributeRefusedError
 
 GROUP = "GROUP"
 """Stands for the data type of a vertex group."""
@@ -13,14 +16,10 @@ FACE_NUMBERS = ("INT", "FACE")
 """Type and domain of whole numbers on faces."""
 RESERVED = {"position": "use Stylize Flat to change the shape itself"}
 SHOWN = "ridgeform_shown"
-"""The colour attribute in which results are shown."""
+"""The color attribute in which results are shown."""
 _PLACES = {"CORNER": "face corners", "FACE": "faces", "EDGE": "edges"}
 LONGEST_NAME = 63
 """The most bytes in a name, in every Blender from 4.2 on."""
-
-
-class AttributeRefusedError(Exception):
-    """An attribute that cannot be used; the message says why, and what to do about it."""
 
 
 def reason_against(name: str, data_type: str, domain: str) -> str | None:
@@ -31,7 +30,7 @@ def reason_against(name: str, data_type: str, domain: str) -> str | None:
     if name.startswith("."):
         return "it belongs to Blender"
     if data_type not in USABLE:
-        return f"its values are no decimal numbers: convert it to Float, Vector or Color {convert}"
+        return f"its values are not decimal numbers: convert it to Float, Vector, or Color {convert}"
     if domain == "POINT" or (domain == "CORNER" and data_type in COLORS):
         return None
     return f"it is stored on {_PLACES.get(domain, domain.lower())}: convert it to the domain Vertex {convert}"
@@ -49,7 +48,7 @@ def usable_names(obj: object) -> list[str]:
 
 
 def default_name(obj: object, suffixes: tuple[str, ...]) -> str:
-    """What is worked on if no name is given: the active attribute, colour or vertex group that can be used.
+    """What is worked on if no name is given: the active attribute, color or vertex group that can be used.
 
     Results, told by their suffix, are not taken for sources. `AttributeRefusedError` if there is none.
     """
@@ -63,7 +62,7 @@ def default_name(obj: object, suffixes: tuple[str, ...]) -> str:
     if usable:
         return usable[0]
     raise AttributeRefusedError(
-        f'"{obj.name}" has no attribute of decimal numbers or colours on its vertices, and no vertex group'
+        f'"{obj.name}" has no attribute of decimal numbers or colors on its vertices, and no vertex group'
     )
 
 
@@ -80,7 +79,7 @@ def search_names(_settings: object, context: object, _typed: str) -> list[str]:
 
 
 def search_colors(_settings: object, context: object, _typed: str) -> list[str]:
-    """What a search field for colours offers."""
+    """What a search field for colors offers."""
     obj = context.object
     return [item.name for item in obj.data.color_attributes] if obj is not None and obj.type == "MESH" else []
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Showing an attribute: as viewport colours, by a colour-ramp material, or, for colours, as it is."""
+"""Showing an attribute: as viewport colors, by a color-ramp material, or, for colors, as it is."""
 
 from collections.abc import Sequence
 
@@ -51,7 +51,7 @@ def show(
 
 
 def show_materials() -> None:
-    """Have Solid shading show the colours of materials."""
+    """Have Solid shading show the colors of materials."""
     for space in _spaces():
         if space.shading.type == "SOLID":
             space.shading.color_type = "MATERIAL"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The material that turns the values of an attribute into colours."""
+"""The material that turns the values of an attribute into colors."""
 
 import bpy
 import numpy as np
@@ -18,8 +18,8 @@ def ramp_material(
 ) -> bpy.types.Material:
     """The material for an attribute, made once and brought up to date afterwards.
 
-    `limits` are the values, or lengths of vectors, at the ends of the ramp of linear colours (k, 3), evenly
-    spaced. With `bands` above 0 there are so many steps of one colour each, whose borders are isolines.
+    `limits` are the values, or lengths of vectors, at the ends of the ramp of linear colors (k, 3), evenly
+    spaced. With `bands` above 0 there are so many steps of one color each, whose borders are isolines.
     """
     material = next((item for item in bpy.data.materials if item.get(MARK) == attribute), None)
     if material is None or material.library is not None:

@@ -237,7 +237,7 @@ def _marks(layer: Layer, old: Triangulation, points: np.ndarray, ends: np.ndarra
 
 
 def active_layers(mesh: bpy.types.Mesh) -> dict[str, str]:
-    """The names of the active UV maps and colours of a mesh, in use and for rendering."""
+    """The names of the active UV maps and colors of a mesh, in use and for rendering."""
     colors = mesh.color_attributes
     shown = colors.render_color_index
     render_uv = next((layer.name for layer in mesh.uv_layers if layer.active_render), "")
@@ -250,7 +250,7 @@ def active_layers(mesh: bpy.types.Mesh) -> dict[str, str]:
 
 
 def set_active_layers(mesh: bpy.types.Mesh, active: dict[str, str | int]) -> None:
-    """Make UV maps and colours active again, those that are there."""
+    """Make UV maps and colors active again, those that are there."""
     if active["uv"] in mesh.uv_layers:
         mesh.uv_layers.active = mesh.uv_layers[active["uv"]]
     if active["uv_render"] in mesh.uv_layers:

@@ -11,7 +11,7 @@ from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix
 
 FRONT = np.array([1.0, 0.55, 0.15])
-"""The colour of a surface that faces the light: an orange that is no theme's mesh colour."""
+"""The color of a surface that faces the light: an orange that is no theme's mesh color."""
 LIGHT = np.array([0.36, -0.48, 0.8])
 SHADE = 0.35
 """How bright a surface is that faces away from the light."""
@@ -79,7 +79,7 @@ def _triangles(matrix: Matrix, vertices: np.ndarray, faces: np.ndarray) -> np.nd
 
 
 def _shaded(corners: np.ndarray) -> np.ndarray:
-    """A colour (3 m, 4) float32 for each corner (3 m, 3), the same for a whole triangle."""
+    """A color (3 m, 4) float32 for each corner (3 m, 3), the same for a whole triangle."""
     a, b, c = (corners[i::3].astype(np.float64) for i in range(3))
     normal = np.cross(b - a, c - a)
     length = np.linalg.norm(normal, axis=1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Colour ramps for values: one from low to high, one from negative over zero to positive."""
+"""Color ramps for values: one from low to high, one from negative over zero to positive."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ def _linear(srgb: list[tuple[int, int, int]]) -> np.ndarray:
     return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
 
 
-# Viridis (matplotlib, CC0): even steps look even, also in grey and to the colour-blind.
+# Viridis (matplotlib, CC0): even steps look even, also in gray and to the color-blind.
 SEQUENTIAL = _linear(
     [
         (68, 1, 84),
@@ -24,13 +24,13 @@ SEQUENTIAL = _linear(
         (253, 231, 37),
     ]
 )
-"""Linear colours (10, 3) from low to high, evenly spaced."""
+"""Linear colors (10, 3) from low to high, evenly spaced."""
 DIVERGING = _linear([(24, 56, 140), (96, 152, 214), (242, 242, 238), (228, 140, 92), (150, 22, 34)])
-"""Linear colours (5, 3) from negative to positive, evenly spaced, zero in the middle."""
+"""Linear colors (5, 3) from negative to positive, evenly spaced, zero in the middle."""
 
 
 def colors_at(ramp: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Linear colours (n, 4) with alpha 1 at places (n,) from 0 to 1 on a ramp (k, 3)."""
+    """Linear colors (n, 4) with alpha 1 at places (n,) from 0 to 1 on a ramp (k, 3)."""
     stops = np.linspace(0.0, 1.0, len(ramp))
     channels = [np.interp(places, stops, channel) for channel in ramp.T] + [np.ones(len(places))]
     return np.stack(channels, axis=1)

@@ -15,7 +15,7 @@ PIECES = 16
 
 
 def straightened(data: bpy.types.Curves, drawn: DrawnCurves) -> DrawnCurves:
-    """The same curves, those of type Bézier with points along them; colours go on linearly between points."""
+    """The same curves, those of type Bézier with points along them; colors go on linearly between points."""
     types = np.zeros(len(drawn.sizes), np.int8)
     if "curve_type" in data.attributes:
         data.attributes["curve_type"].data.foreach_get("value", types)
@@ -45,7 +45,7 @@ def straightened(data: bpy.types.Curves, drawn: DrawnCurves) -> DrawnCurves:
 
 
 def _segment(corners: np.ndarray, colors: np.ndarray) -> np.ndarray:
-    """Places and colours from the first of four corners (4, 3) up to the last, and between two colours."""
+    """Places and colors from the first of four corners (4, 3) up to the last, and between two colors."""
     t = np.arange(PIECES)[:, None] / PIECES
     weights = np.concatenate([(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3], axis=1)
     return np.concatenate([weights @ corners, (1 - t) * colors[0] + t * colors[1]], axis=1)

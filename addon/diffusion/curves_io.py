@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The border between Blender and NumPy for diffusion curves: curve objects with colours on both sides.
+"""The border between Blender and NumPy for diffusion curves: curve objects with colors on both sides.
 
 They are objects of Blender's newer type Curves, poly curves through vertices of the mesh: the points of the
-older type Curve have no attributes, in no version. Each point has the attributes `left` and `right`, colours,
-and `offset`, how far from its vertex it is drawn. A curve of one point is a colour for the vertex there.
+older type Curve have no attributes, in no version. Each point has the attributes `left` and `right`, colors,
+and `offset`, how far from its vertex it is drawn. A curve of one point is a color for the vertex there.
 """
 
 from dataclasses import dataclass
@@ -13,11 +13,7 @@ import numpy as np
 
 LEFT, RIGHT, OFFSET = "left", "right", "offset"
 MARK = "ridgeform_diffusion"
-"""The property of the curves that tells them from others: the name of the colours that they stand for."""
-
-
-class CurvesRefusedError(Exception):
-    """Curves that cannot be drawn from; the message says why, and what to do about it."""
+"""The property of the curves that tells them from others: the name of the colors that they stand for."""
 
 
 @dataclass
@@ -31,9 +27,9 @@ class CurvePoints:
     vertices: np.ndarray
     """The vertex of the mesh of each point (p,) int."""
     left: np.ndarray
-    """Colours (p, 4) on the left."""
+    """Colors (p, 4) on the left."""
     right: np.ndarray
-    """Colours (p, 4) on the right."""
+    """Colors (p, 4) on the right."""
     offsets: np.ndarray
     """Where each point is drawn, from its vertex (p, 3): without the teeth of the mesh's edges."""
 
@@ -49,9 +45,9 @@ class DrawnCurves:
     places: np.ndarray
     """Where each point is (p, 3), in the space of the mesh, less its offset: at a vertex if unmoved."""
     left: np.ndarray
-    """Colours (p, 4) on the left."""
+    """Colors (p, 4) on the left."""
     right: np.ndarray
-    """Colours (p, 4) on the right."""
+    """Colors (p, 4) on the right."""
 
 
 def curves_of(obj: bpy.types.Object) -> bpy.types.Object | None:
@@ -112,7 +108,7 @@ def _child(obj: bpy.types.Object, data: bpy.types.Curves) -> bpy.types.Object:
 
 
 def read_curves(child: bpy.types.Object) -> DrawnCurves:
-    """The curves of an object, also in Edit Mode. Colours that were never given are 0.
+    """The curves of an object, also in Edit Mode. Colors that were never given are 0.
 
     Where the object stands does not count, so that the curves may be set aside to see both.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Colours between curves as a colour attribute."""
+"""Colors between curves as a color attribute."""
 
 from dataclasses import dataclass
 
@@ -20,14 +20,14 @@ class _Shown:
 
 
 def show(obj: bpy.types.Object, name: str) -> list[str]:
-    """Show a colour attribute in the viewport; returns notes."""
+    """Show a color attribute in the viewport; returns notes."""
     return display.show([(obj, name)], _Shown())[0]
 
 
 def write_corners(obj: bpy.types.Object, weld: Weld, corners: np.ndarray, source: str, alpha: float) -> str:
-    """Store the colours (l, 3, c) of the corners of welded triangles as a colour attribute on face corners.
+    """Store the colors (l, 3, c) of the corners of welded triangles as a color attribute on face corners.
 
-    There colours may jump from face to face, as they do across a curve. The name is that of the source and
+    There colors may jump from face to face, as they do across a curve. The name is that of the source and
     `SUFFIX`; what has it is written over. Returns the name that Blender gave.
     """
     mesh = obj.data

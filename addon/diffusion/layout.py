@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Between the package's edges with colours at both ends and the points of curve objects."""
+"""Between the package's edges with colors at both ends and the points of curve objects."""
 
 from dataclasses import dataclass
 
@@ -24,7 +24,7 @@ class ColoredEdges:
 def curve_points(
     found: ridgeform.DiffusionCurves, mesh: ridgeform.Mesh, weld: Weld, alpha: float
 ) -> CurvePoints:
-    """The points of the curves that the package found on a mesh; colours get an alpha if they have none."""
+    """The points of the curves that the package found on a mesh; colors get an alpha if they have none."""
     sizes, cyclic, edge_of_point, end_of_point = [], [], [], []
     for begin, end in zip(found.starts[:-1], found.starts[1:], strict=True):
         closed = bool(found.edges[begin, 0] == found.edges[end - 1, 1])
@@ -60,7 +60,7 @@ def _with_alpha(colors: np.ndarray, alpha: float) -> np.ndarray:
 
 
 def colored_edges(points: CurvePoints, weld: Weld) -> ColoredEdges:
-    """The edges of curves, as they are now, with the colours at their ends."""
+    """The edges of curves, as they are now, with the colors at their ends."""
     ends, alone = point_edges(points)
     vertices = weld.vertex[points.vertices]
     return ColoredEdges(

@@ -9,7 +9,8 @@ from bpy.props import BoolProperty, FloatProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
 from ..blender import mesh_io
-from ..framework.run import RefusedError
+from ..blender.refusals import RefusedError
+from ..framework.run import counted
 from ..framework.writing import write_text
 from . import curves_io, drawing, svg
 from .redraw_curves import read_on_mesh, redraw
@@ -22,7 +23,7 @@ def _pair(context: bpy.types.Context) -> tuple[bpy.types.Object, bpy.types.Objec
     if curves_io.is_curves(obj):
         parent = obj.parent
         if parent is None or parent.type != "MESH":
-            return f'"{obj.name}" is no child of a mesh: parent it to the mesh that it belongs to'
+            return f'"{obj.name}" is not a child of a mesh: parent it to the mesh that it belongs to'
         return parent, obj
     if obj is None or obj.type != "MESH":
         return "Select a mesh with diffusion curves, or the curves"
@@ -71,14 +72,12 @@ class RIDGEFORM_OT_redraw_diffusion_curves(_OnCurves, bpy.types.Operator):  # no
         obj, child = _pair(context)
         try:
             name = redraw(obj, child)
-        except (RefusedError, curves_io.CurvesRefusedError, ridgeform.RidgeformError) as error:
+        except (RefusedError, ridgeform.RidgeformError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         notes = drawing.show(obj, name) if self.show else []
-        self.report(
-            {"INFO"},
-            "; ".join([f'Redrew "{name}" of "{obj.name}" from {len(child.data.curves)} curves', *notes]),
-        )
+        curves = counted(len(child.data.curves), "curve")
+        self.report({"INFO"}, "; ".join([f'Redrew "{name}" of "{obj.name}" from {curves}', *notes]))
         return {"FINISHED"}
 
 
@@ -112,10 +111,10 @@ class RIDGEFORM_OT_export_diffusion_svg(_OnCurves, bpy.types.Operator, ExportHel
                 _, points = read_on_mesh(obj, child)
             text = svg.drawing(obj, child, points, self.width / 100.0, self.fill)
             write_text(Path(self.filepath), text)
-        except (RefusedError, curves_io.CurvesRefusedError, ridgeform.RidgeformError, OSError) as error:
+        except (RefusedError, ridgeform.RidgeformError, OSError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        self.report({"INFO"}, f"Wrote {len(child.data.curves)} curves to {self.filepath}")
+        self.report({"INFO"}, f"Wrote {counted(len(child.data.curves), 'curve')} to {self.filepath}")
         return {"FINISHED"}
 
 

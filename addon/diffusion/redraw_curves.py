@@ -4,8 +4,8 @@
 import bpy
 import ridgeform
 
-from ..attributes.attribute_run import Surface, surface_of
 from ..blender import mesh_io
+from ..framework.surface import Surface, surface_of
 from . import curves_io
 from .curves_io import CurvePoints
 from .drawing import write_corners
@@ -23,10 +23,10 @@ def read_on_mesh(obj: bpy.types.Object, child: bpy.types.Object) -> tuple[Surfac
 
 
 def redraw(obj: bpy.types.Object, child: bpy.types.Object) -> str:
-    """Redraw the colours of a mesh object from its curves as they are now; returns the attribute's name.
+    """Redraw the colors of a mesh object from its curves as they are now; returns the attribute's name.
 
-    `RefusedError` of the tools for a mesh that cannot be used, `CurvesRefusedError` for such curves, and the
-    errors of `ridgeform.trace_curves` and `ridgeform.redraw`.
+    `RefusedError` for a mesh or curves that cannot be used, and the errors of `ridgeform.trace_curves`
+    and `ridgeform.redraw`.
     """
     with mesh_io.object_mode():
         surface, points = read_on_mesh(obj, child)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The colours of a mesh at its vertices: from a colour attribute, or from the image of its material."""
+"""The colors of a mesh at its vertices: from a color attribute, or from the image of its material."""
 
 from dataclasses import dataclass
 
@@ -7,31 +7,32 @@ import bpy
 import numpy as np
 
 from ..blender import attribute_io, mesh_io
-from ..blender.attribute_names import COLORS, SHOWN, AttributeRefusedError
+from ..blender.attribute_names import COLORS, SHOWN
+from ..blender.refusals import AttributeRefusedError
 
 SUFFIX = "_diffused"
-"""What the name of the rebuilt colours ends with."""
+"""What the name of the rebuilt colors ends with."""
 LINEAR_SPACES = {"Linear", "Linear Rec.709", "Non-Color", "Raw"}
-"""Colour spaces whose numbers are taken as they are."""
+"""Color spaces whose numbers are taken as they are."""
 SRGB = "sRGB"
 INSIDE = 0.75
-"""Pixels by which a corner is drawn in: then its bilinear neighbours lie in the face, also on a diagonal."""
+"""Pixels by which a corner is drawn in: then its bilinear neighbors lie in the face, also on a diagonal."""
 
 
 @dataclass
 class Colors:
-    """Linear colours of the vertices, and what to call them."""
+    """Linear colors of the vertices, and what to call them."""
 
     name: str
     values: np.ndarray
-    """Colours (n, 4) float64."""
+    """Colors (n, 4) float64."""
     notes: list[str]
 
 
 def attribute_colors(obj: bpy.types.Object, name: str) -> Colors:
-    """The colours of an attribute, the active one without a name; `AttributeRefusedError` if there is none.
+    """The colors of an attribute, the active one without a name; `AttributeRefusedError` if there is none.
 
-    A vertex whose face corners have different colours takes one of them, not their mean: at a sharp border
+    A vertex whose face corners have different colors takes one of them, not their mean: at a sharp border
     that would belong to neither side.
     """
     name = name or _default_name(obj.data)
@@ -46,12 +47,12 @@ def attribute_colors(obj: bpy.types.Object, name: str) -> Colors:
     if not np.isfinite(values).all():
         raise AttributeRefusedError(f'"{name}" of "{obj.name}" has colors that are not finite numbers')
     mixed = int(source.mixed.sum())
-    notes = [f"{mixed} vertices have several colors at their corners, one of them was taken"] if mixed else []
+    notes = [f"{mixed} vertices have several colors at their corners, one of them was used"] if mixed else []
     return Colors(name, values, notes)
 
 
 def _default_name(mesh: bpy.types.Mesh) -> str | None:
-    """The active colour attribute, or the first; not what this add-on has made of another one."""
+    """The active color attribute, or the first; not what this add-on has made of another one."""
     names = [attribute.name for attribute in mesh.color_attributes if attribute.name != SHOWN]
     active = mesh.color_attributes.active_color
     ordered = ([active.name] if active is not None and active.name in names else []) + names
@@ -84,7 +85,7 @@ def image_colors(obj: bpy.types.Object) -> Colors:
     notes = []
     space = image.colorspace_settings.name
     if space not in LINEAR_SPACES and space != SRGB:
-        notes.append(f'the color space "{space}" of the image was taken for linear')
+        notes.append(f'the color space "{space}" of the image was assumed to be linear')
     return Colors(image.name, np.stack(sums, axis=1) / count[:, None], notes)
 
 
@@ -131,7 +132,7 @@ def _pixels(image: bpy.types.Image) -> np.ndarray:
 
 
 def drawn_in(uv: np.ndarray, starts: np.ndarray, size: tuple[int, int]) -> np.ndarray:
-    """Places (c, 2) of face corners, moved towards the middle of their face by `INSIDE` pixels."""
+    """Places (c, 2) of face corners, moved toward the middle of their face by `INSIDE` pixels."""
     counts = np.diff(np.append(starts, len(uv)))
     middle = np.repeat(np.add.reduceat(uv, starts, axis=0) / counts[:, None], counts, axis=0)
     way = middle - uv
@@ -140,7 +141,7 @@ def drawn_in(uv: np.ndarray, starts: np.ndarray, size: tuple[int, int]) -> np.nd
 
 
 def sampled(pixels: np.ndarray, uv: np.ndarray) -> np.ndarray:
-    """The colours (k, 4) of pixels (h, w, 4) at places (k, 2), bilinear, the image repeated."""
+    """The colors (k, 4) of pixels (h, w, 4) at places (k, 2), bilinear, the image repeated."""
     height, width = pixels.shape[:2]
     place = np.nan_to_num(uv) * (width, height) - 0.5
     low = np.floor(place)

@@ -6,8 +6,9 @@ import numpy as np
 
 from ..blender import mesh_io
 from ..blender.attribute_names import result_name
+from ..blender.refusals import CurvesRefusedError
 from . import curves_io
-from .curves_io import CurvePoints, CurvesRefusedError
+from .curves_io import CurvePoints
 from .sources import SUFFIX
 
 FLATNESS = 1e-3

@@ -9,18 +9,19 @@ import bpy
 import numpy as np
 import ridgeform
 
-from ..attributes.attribute_run import Surface, surface_of
 from ..blender import mesh_io
-from ..blender.attribute_names import FACE_NUMBERS, AttributeRefusedError
+from ..blender.attribute_names import FACE_NUMBERS
+from ..blender.refusals import RefusedError
 from ..blender.selection import Needs
 from ..framework.job import Task
-from ..framework.run import Part, RefusedError, Run, meshes_phrase
+from ..framework.run import Part, Run, counted, meshes_phrase
+from ..framework.surface import Surface, surface_of
 from . import curves_io, drawing
 from .layout import curve_points
 from .sources import Colors, attribute_colors, image_colors
 
 EXACT = 120.0
-"""Decibels beyond which colours are exact, but for the rounding of single precision."""
+"""Decibels beyond which colors are exact, but for the rounding of single precision."""
 
 
 @dataclass(kw_only=True)
@@ -30,9 +31,9 @@ class DiffusionPart(Part):
     surface: Surface
     colors: Colors
     alpha: float
-    """The alpha of the colours where it is the same everywhere, and so was not computed."""
+    """The alpha of the colors where it is the same everywhere, and so was not computed."""
     target: str = ""
-    """The name of the rebuilt colours."""
+    """The name of the rebuilt colors."""
 
 
 class DiffusionCurves(Run):
@@ -42,12 +43,9 @@ class DiffusionCurves(Run):
     needs = Needs(coordinates=False, selection=False)
 
     def prepare(self, obj: bpy.types.Object) -> DiffusionPart:
-        """Read the colours and the regions of one mesh."""
-        try:
-            from_image = self.settings.source == "IMAGE"
-            colors = image_colors(obj) if from_image else attribute_colors(obj, self.settings.attribute)
-        except AttributeRefusedError as refusal:
-            raise RefusedError(str(refusal)) from refusal
+        """Read the colors and the regions of one mesh."""
+        from_image = self.settings.source == "IMAGE"
+        colors = image_colors(obj) if from_image else attribute_colors(obj, self.settings.attribute)
         surface = surface_of(obj)
         # One of the vertices that lie in the same place, not their mean: see `attribute_colors`.
         values = colors.values[surface.weld.first]
@@ -84,7 +82,7 @@ class DiffusionCurves(Run):
         return partial(_drawn, surface.mesh, values, regions | options)
 
     def write(self, parts: Sequence[DiffusionPart]) -> None:
-        """Write the curves as child objects and the rebuilt colours as an attribute, and show them."""
+        """Write the curves as child objects and the rebuilt colors as an attribute, and show them."""
         with mesh_io.object_mode():
             for part in parts:
                 found = part.task.result
@@ -95,10 +93,10 @@ class DiffusionCurves(Run):
                 )
                 part.warnings += drawing.show(part.object, part.target) if self.settings.show else []
                 if not len(found.edges):
-                    part.warnings.append(f'there is one region only, so "{child.name}" has no curve')
+                    part.warnings.append(f'there is only one region, so "{child.name}" has no curve')
 
     def figures(self, part: DiffusionPart) -> dict[str, object]:
-        """How good the rebuilt colours are, and how many numbers the curves are."""
+        """How good the rebuilt colors are, and how many numbers the curves are."""
         found = part.task.result
         return {
             "attribute": part.colors.name,
@@ -117,7 +115,7 @@ class DiffusionCurves(Run):
         """How many curves there are, how good they are, and how few numbers."""
         quality = "exact" if entry["psnr"] is None else f"{entry['psnr']:.1f} dB"
         return [
-            f"{entry['name']}: {entry['curves']} curves, {quality}",
+            f"{entry['name']}: {counted(entry['curves'], 'curve')}, {quality}",
             f"{entry['numbers_after']} numbers instead of {entry['numbers_before']}",
         ]
 
@@ -125,7 +123,7 @@ class DiffusionCurves(Run):
     def phrases(cls, done: Sequence[dict[str, object]]) -> list[str]:
         """How many curves and numbers there are."""
         curves, before, after = _totals(done)
-        return [f"{curves} curves, {after} numbers instead of {before}"] if done else []
+        return [f"{counted(curves, 'curve')}, {after} numbers instead of {before}"] if done else []
 
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """How many curves of which mesh, how few numbers they are, and how good they are."""
@@ -133,8 +131,8 @@ class DiffusionCurves(Run):
         quality = [entry["psnr"] for entry in done if entry["psnr"] is not None]
         error = f"PSNR {min(quality):.1f} dB" if quality else "no error"
         seconds = sum(entry["seconds"] for entry in done)
-        where = meshes_phrase(done)
-        return f"{curves} curves of {where}: {after} numbers instead of {before}, {error}, {seconds:.1f} s"
+        what = f"{counted(curves, 'curve')} of {meshes_phrase(done)}"
+        return f"{what}: {after} numbers instead of {before}, {error}, {seconds:.1f} s"
 
 
 def _totals(done: Sequence[dict[str, object]]) -> tuple[int, int, int]:
@@ -152,7 +150,7 @@ def _face_labels(obj: bpy.types.Object, settings: object) -> np.ndarray:
     attribute = mesh.attributes.get(settings.region_attribute)
     if attribute is None or (attribute.data_type, attribute.domain) != FACE_NUMBERS:
         raise RefusedError(
-            f'"{obj.name}" has no attribute "{settings.region_attribute}" of whole numbers on its faces'
+            f'"{obj.name}" has no integer attribute "{settings.region_attribute}" on its faces'
         )
     attribute.data.foreach_get("value", labels)
     return labels

@@ -5,10 +5,10 @@ import bpy
 import numpy as np
 import ridgeform
 
-from ..blender.attribute_names import AttributeRefusedError
+from ..blender.refusals import AttributeRefusedError, CurvesRefusedError
 from ..blender.welding import Weld
 from .bezier import straightened
-from .curves_io import LEFT, MARK, RIGHT, CurvePoints, CurvesRefusedError, DrawnCurves, read_curves
+from .curves_io import LEFT, MARK, RIGHT, CurvePoints, DrawnCurves, read_curves
 from .layout import offsets, point_edges
 from .sources import attribute_colors, image_colors
 
@@ -18,7 +18,7 @@ def curves_on_mesh(
 ) -> CurvePoints:
     """The curves of an object on vertices of its mesh: where they lie, or as near as edges run to them.
 
-    Colours are interpolated along each curve. A side without any, as those of a curve drawn by hand,
+    Colors are interpolated along each curve. A side without any, as those of a curve drawn by hand,
     takes those of the paint there. `CurvesRefusedError` if there is no paint any more, and the errors of
     `ridgeform.trace_curves`.
     """
@@ -51,7 +51,7 @@ def curves_on_mesh(
 def _along(
     colors: np.ndarray, drawn: DrawnCurves, begins: np.ndarray, of_curve: np.ndarray, places: np.ndarray
 ) -> np.ndarray:
-    """Colours (k, 4) of traced points at these places along their curves."""
+    """Colors (k, 4) of traced points at these places along their curves."""
     before = np.floor(places).astype(np.int64)
     part = (places - before)[:, None]
     size = drawn.sizes[of_curve]
@@ -62,7 +62,7 @@ def _along(
 
 
 def _paint(obj: bpy.types.Object, child: bpy.types.Object) -> np.ndarray:
-    """The colours (n, 4) that the curves stand for; `CurvesRefusedError` if they are gone."""
+    """The colors (n, 4) that the curves stand for; `CurvesRefusedError` if they are gone."""
     name = child.data[MARK]
     try:
         return (attribute_colors(obj, name) if name in obj.data.attributes else image_colors(obj)).values
@@ -74,7 +74,7 @@ def _paint(obj: bpy.types.Object, child: bpy.types.Object) -> np.ndarray:
 
 
 def _without_colors(given: np.ndarray, begins: np.ndarray) -> np.ndarray:
-    """The curves whose points have no colours (p, 4) on a side."""
+    """The curves whose points have no colors (p, 4) on a side."""
     some = np.add.reduceat(np.append(given.any(axis=1), False), begins[:-1]) > 0
     return np.flatnonzero(~some)
 
@@ -97,7 +97,7 @@ def _take_paint(
     *,
     direction: int,
 ) -> None:
-    """Give curves without colours on one side the paint at the corners opposite their edges, off the curve.
+    """Give curves without colors on one side the paint at the corners opposite their edges, off the curve.
 
     `direction` is 1 for the left side and -1 for the right one.
     """

@@ -19,9 +19,10 @@ from pathlib import Path
 import bpy
 
 from ..blender import selection
+from ..blender.refusals import RefusedError
 from . import files, flags
 from .console import ProgressBar
-from .run import NO_RESULT, RefusedError, Run
+from .run import NO_RESULT, Run
 from .targets import Ledger, Target, assign
 from .tool import Tool
 

@@ -93,7 +93,7 @@ def _word(identifier: str) -> str:
 def _chosen(words: dict[str, str]) -> Callable[[str], str]:
     def parse(text: str) -> str:
         if text not in words:
-            raise argparse.ArgumentTypeError(f'"{text}" is none of {", ".join(words)}')
+            raise argparse.ArgumentTypeError(f'"{text}" is not one of {", ".join(words)}')
         return words[text]
 
     return parse

@@ -188,7 +188,7 @@ class ModalRun:
         job = self._run.job
         line = status_line(job)
         context.window_manager.progress_update(int(CURSOR_RANGE * job.fraction))
-        hint = "Finishing this step" if self._keeping else "Keep what is there"
+        hint = "Finishing this step" if self._keeping else "Keep the result so far"
 
         def draw(header: bpy.types.Header, _context: bpy.types.Context) -> None:
             row = header.layout.row(align=True)
@@ -217,7 +217,7 @@ class ModalRun:
 
 
 def _cancelled(left: Sequence[str]) -> str:
-    return "; ".join(["Cancelled", *left]) if left else "Cancelled: everything is as it was"
+    return "; ".join(["Canceled", *left]) if left else "Canceled: everything is as it was"
 
 
 def _set_header(context: bpy.types.Context, area_pointer: int | None, text: str | None) -> None:

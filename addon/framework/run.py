@@ -8,23 +8,18 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 import bpy
-import numpy as np
 import ridgeform
 
 from ..blender import mesh_io
 from ..blender.mesh_state import ChangedError, MeshState
+from ..blender.refusals import RefusedError
 from ..blender.selection import MOVES
-from ..blender.welding import Weld, weld_seams
 from .job import Job, Task, store_summary
 
 NOT_BEGUN = "not begun"
 FAILED = "failed"
 NO_RESULT = {NOT_BEGUN, FAILED}
 """What a summary says the status of a mesh is that has no result."""
-
-
-class RefusedError(Exception):
-    """A mesh that cannot be worked on; the message says why."""
 
 
 @dataclass
@@ -208,29 +203,3 @@ def counted(number: int, word: str) -> str:
 def meshes_phrase(done: Sequence[dict[str, object]]) -> str:
     """The name of the one mesh that is done, or how many there are."""
     return f'"{done[0]["name"]}"' if len(done) == 1 else f"{len(done)} meshes"
-
-
-def welded(
-    obj: bpy.types.Object, coordinates: np.ndarray, triangles: np.ndarray | None = None
-) -> tuple[Weld, np.ndarray]:
-    """The mesh of an object with its seams welded, and all its loop triangles (m, 3) int32, if not given.
-
-    `RefusedError` for a mesh without faces, or with a coordinate (n, 3) that is not a finite number.
-    """
-    triangles = mesh_io.triangles(obj.data) if triangles is None else triangles
-    if len(triangles) == 0:
-        raise RefusedError(f'"{obj.name}" has no faces')
-    if not np.isfinite(coordinates).all():
-        broken = np.flatnonzero(~np.isfinite(coordinates).all(axis=1))
-        raise RefusedError(
-            f'Vertex {broken[0]} of "{obj.name}" has a coordinate that is not a finite number '
-            f"({len(broken)} in all): delete or move it"
-        )
-    return weld_seams(coordinates, triangles, mesh_io.border_vertices(obj.data)), triangles
-
-
-def group_weights(obj: bpy.types.Object, name: str) -> np.ndarray:
-    """The weights (n,) of a vertex group, 0 outside it; `RefusedError` if the object has no such group."""
-    if name not in obj.vertex_groups:
-        raise RefusedError(f'"{obj.name}" has no vertex group "{name}"')
-    return mesh_io.group_weights(obj, name)

@@ -7,9 +7,10 @@ import bpy
 from bpy.props import BoolProperty
 
 from ..blender import selection
+from ..blender.refusals import RefusedError
 from . import rows
 from .modal import ModalRun
-from .run import RefusedError, Run
+from .run import Run
 from .settings import properties_of, setting_names
 from .tool import Tool
 

@@ -25,12 +25,12 @@ class PatchGraph:
         ends = np.stack([around.edge_start, around.edge_end], axis=1)
         length = np.linalg.norm(around.places[ends[rows, 0]] - around.places[ends[rows, 1]], axis=1)
         self._n_edges = len(around.inside)
-        self._neighbours: dict[int, list[tuple[int, int, float, bool]]] = {}
+        self._neighbors: dict[int, list[tuple[int, int, float, bool]]] = {}
         for (a, b), row, size, ridge in zip(
             ends[rows].tolist(), rows.tolist(), length.tolist(), around.is_ridge[rows].tolist(), strict=True
         ):
-            self._neighbours.setdefault(a, []).append((b, row, size, ridge))
-            self._neighbours.setdefault(b, []).append((a, row, size, ridge))
+            self._neighbors.setdefault(a, []).append((b, row, size, ridge))
+            self._neighbors.setdefault(b, []).append((a, row, size, ridge))
 
     def connected(self, ends: Collection[int], only_ridges: bool = False) -> np.ndarray:
         """Edges (e,) bool of a short tree through the vertices `ends`; those out of reach are left out."""
@@ -84,7 +84,7 @@ class PatchGraph:
         ridge_cost: float = RIDGE_COST,
         only_ridges: bool = False,
     ) -> tuple[dict[int, float], dict[int, tuple[int, int] | None]]:
-        """Dijkstra up to the first target: distances, and whence vertices were reached, in that order."""
+        """Dijkstra up to the first target: distances, and from where vertices were reached, in that order."""
         queue = [(0.0, vertex, -1, -1) for vertex in sorted(sources)]
         distance: dict[int, float] = {}
         came: dict[int, tuple[int, int] | None] = {}
@@ -96,7 +96,7 @@ class PatchGraph:
             came[vertex] = None if before < 0 else (before, row)
             if vertex in targets:
                 break
-            for other, edge, length, ridge in self._neighbours.get(vertex, ()):
+            for other, edge, length, ridge in self._neighbors.get(vertex, ()):
                 if other not in distance and (ridge or not only_ridges):
                     step = length * (ridge_cost if ridge else 1.0)
                     heapq.heappush(queue, (cost + step, other, vertex, edge))

@@ -12,8 +12,10 @@ import ridgeform
 
 from ..blender import mesh_io
 from ..blender.overlay import Overlay
+from ..blender.refusals import RefusedError
 from ..framework.job import Task
-from ..framework.run import Part, RefusedError, Run, counted, meshes_phrase, welded
+from ..framework.run import Part, Run, counted, meshes_phrase
+from ..framework.surface import welded
 from .append import append
 from .extension import Extension, Source, extend
 from .reading import picked_edges, read_source, reference_coordinates

@@ -67,7 +67,7 @@ def _new_slot(mesh: bpy.types.Mesh) -> int:
 
 
 def color_of(number: int) -> tuple[float, float, float, float]:
-    """A linear colour with alpha for the number of a segment; numbers in a row differ clearly."""
+    """A linear color with alpha for the number of a segment; numbers in a row differ clearly."""
     saturation, value = TONES[number % len(TONES)]
     screen = colorsys.hsv_to_rgb((0.58 + GOLDEN * number) % 1.0, saturation, value)
     linear = (c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in screen)

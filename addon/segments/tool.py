@@ -11,22 +11,19 @@ import bpy
 import numpy as np
 import ridgeform
 
-from ..attributes.attribute_run import (
-    Surface,
-    as_argument,
-    refuse_mixed,
-    refuse_non_finite,
-    surface_of,
-    varying,
-)
 from ..blender import attribute_io, attribute_names, display, mesh_io
 from ..blender.attribute_io import PointValues
-from ..blender.attribute_names import AttributeRefusedError
+from ..blender.refusals import RefusedError
 from ..blender.selection import Needs
 from ..blender.welding import Weld
 from ..framework.job import Task
-from ..framework.run import Part, RefusedError, Run, counted, group_weights, meshes_phrase
-from ..framework.shared_settings import ridge_weights_of
+from ..framework.run import Part, Run, counted, meshes_phrase
+from ..framework.sources import (
+    as_argument,
+    source_of,
+    varying_means,
+)
+from ..framework.surface import Surface, painted_ridges, surface_of
 from . import layers, slots
 from .parts import separate
 from .settings import segment_options
@@ -100,16 +97,12 @@ class Segmenting(Run):
         options = segment_options(self.settings)
         source, columns = None, None
         if self.settings.source == "ATTRIBUTE":
-            source = self._read_source(obj)
-            columns = varying(source.values)
-            if not columns.any():
-                raise RefusedError(f'"{source.name}" of "{obj.name}" has the same value everywhere')
-            values = np.stack([weld.mean_of(column) for column in source.values[:, columns].T], axis=1)
+            source = source_of(obj, self.settings, (SUFFIX,))
+            columns, values = varying_means(obj, source, weld)
             options["values"] = as_argument(values)
-        if self.settings.ridge_group:
-            painted = group_weights(obj, self.settings.ridge_group)
-            triangles = mesh_io.triangles(obj.data)[weld.kept]
-            options["face_weights"] = ridge_weights_of(painted, triangles, self.settings.avoid_ridges)
+        weights = painted_ridges(obj, self.settings, mesh_io.triangles(obj.data), weld)
+        if weights is not None:
+            options["face_weights"] = weights
         if not taking.all():
             options["faces"] = taking[faces]
         task = Task(obj.name, partial(_segmented, surface, options), counted="iteration")
@@ -125,17 +118,6 @@ class Segmenting(Run):
             columns=columns,
         )
         return part
-
-    def _read_source(self, obj: bpy.types.Object) -> PointValues:
-        try:
-            name = self.settings.attribute or attribute_names.default_name(obj, (SUFFIX,))
-            source = attribute_io.read_values(obj, name)
-        except AttributeRefusedError as refusal:
-            raise RefusedError(str(refusal)) from refusal
-        everywhere = np.ones(len(source.values), bool)
-        refuse_mixed(obj, source, everywhere)
-        refuse_non_finite(obj, source, everywhere)
-        return source
 
     def write(self, parts: Sequence[SegmentPart]) -> None:
         """Write what was asked for."""
@@ -182,9 +164,9 @@ class Segmenting(Run):
         if part.task.result.status == "inaccurate":
             notes.append("the tolerance was not reached")
         elif part.task.result.status == "stopped":
-            notes.append("stopped early, what was reached is kept")
+            notes.append("stopped early, the result so far is kept")
         if "OBJECTS" in self.settings.outputs and self._in_edit_mode:
-            notes.append("segments become objects in Object Mode only")
+            notes.append("segments become objects only in Object Mode")
         return notes
 
     def figures(self, part: SegmentPart) -> dict[str, object]:

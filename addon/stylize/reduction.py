@@ -19,13 +19,13 @@ def reduce_mesh(obj: bpy.types.Object, ratio: float) -> str | None:
     """Simplify the mesh of an object to `ratio` of its triangles; Object Mode only, meshes without shape
     keys only.
 
-    UVs, colours and other corner attributes, materials, vertex groups and point attributes are taken from
+    UVs, colors and other corner attributes, materials, vertex groups and point attributes are taken from
     the nearest point of the surface as it was, edge marks from the nearest marked edge. Returns what a
     modeler should know, or why it was not done, or `None`.
     """
     mesh = obj.data
     if mesh.is_editmode:
-        return "its triangles were not reduced, because that works in Object Mode only"
+        return "its triangles were not reduced, because that works only in Object Mode"
     if mesh.shape_keys is not None:
         return "its triangles were not reduced, because the mesh has shape keys"
     simplifier = _simplifier()

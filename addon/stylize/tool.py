@@ -10,10 +10,11 @@ import numpy as np
 import ridgeform
 
 from ..blender import mesh_io
+from ..blender.refusals import RefusedError
 from ..blender.welding import Weld
 from ..framework.job import Task
-from ..framework.run import Part, RefusedError, Run, group_weights, meshes_phrase, welded
-from ..framework.shared_settings import ridge_weights_of
+from ..framework.run import Part, Run, counted, meshes_phrase
+from ..framework.surface import group_weights, painted_ridges, welded
 from .reduction import reduce_mesh
 from .ridges import ridge_edges
 from .settings import stylize_options
@@ -109,7 +110,7 @@ class Stylization(Run):
         steps = max((entry["steps"] for entry in done), default=0)
         seconds = sum(entry["seconds"] for entry in done)
         energies = f"energy {before:.4g} → {after:.4g}, gap {gap:.1g}"
-        return f"Stylized {meshes_phrase(done)}: {energies}, {steps} steps, {seconds:.1f} s"
+        return f"Stylized {meshes_phrase(done)}: {energies}, {counted(steps, 'step')}, {seconds:.1f} s"
 
 
 def stylize_objects(
@@ -134,9 +135,9 @@ def _prepare(obj: bpy.types.Object, settings: object) -> FlowPart:
         strength = weld.mean_of(group_weights(obj, settings.strength_group))
         free &= strength[weld.vertex] > 0
         options["strength"] = strength
-    if settings.ridge_group:
-        painted = group_weights(obj, settings.ridge_group)
-        options["ridge_weights"] = ridge_weights_of(painted, triangles[weld.kept], settings.avoid_ridges)
+    ridges = painted_ridges(obj, settings, triangles, weld)
+    if ridges is not None:
+        options["ridge_weights"] = ridges
     moving = weld.all_of(free)
     if not moving.any():
         raise RefusedError(f'No vertex of "{obj.name}" may move: the mask is empty where it is selected')
@@ -176,10 +177,10 @@ def _write_result(part: FlowPart, settings: object) -> None:
     result = part.task.result
     if result.status == "collapsed":
         part.warnings.append(
-            f"the shape collapsed, step {result.iterations} is kept: less strength or fewer steps avoid it"
+            f"the shape collapsed, step {result.iterations} is kept: use less strength or fewer steps"
         )
     elif result.status == "converged":
-        part.warnings.append(f"nothing moved any more after step {result.iterations}")
+        part.warnings.append(f"nothing moved after step {result.iterations}")
     coordinates = part.merged(result.vertices)
     if settings.keep_volume:
         if part.free.all():

@@ -115,7 +115,7 @@ class Session:
 
 
 def open_box(name="Box", cuts=3):
-    """A box with noise and a hole, a painted number and a painted colour, and a vertex group."""
+    """A box with noise and a hole, a painted number and a painted color, and a vertex group."""
     obj = kit.bumpy_box(name, cuts=cuts)
     mesh = obj.data
     bpy.ops.object.mode_set(mode="EDIT")

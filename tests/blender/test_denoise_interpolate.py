@@ -368,7 +368,7 @@ def test_values_beyond_the_range_of_weights_are_limited_and_said():
     weights = values_of(obj, "paint")
     assert weights.min() == 0.0
     assert weights.max() == 1.0
-    assert "were limited to the range" in job.last_summary()[0]["warnings"][0]
+    assert "were clamped to their valid range" in job.last_summary()[0]["warnings"][0]
 
 
 def test_long_names_find_their_result_again():

@@ -64,7 +64,7 @@ def find(**settings):
     return bpy.ops.ridgeform.diffusion_curves(**({"regions": "MATERIALS"} | settings))
 
 
-def test_the_curve_and_the_colours_are_those_of_the_wheel():
+def test_the_curve_and_the_colors_are_those_of_the_wheel():
     obj = add_plane(lambda p: np.column_stack([p, p[:, 0] * p[:, 1], np.ones(len(p))]))
     split_materials(obj)
     assert find() == {"FINISHED"}
@@ -108,7 +108,7 @@ def test_a_second_run_replaces_the_first():
     assert np.abs(corner_colors(obj) - before).max() < 1e-5
 
 
-def test_two_colours_come_back_exactly_and_jump_at_the_curve():
+def test_two_colors_come_back_exactly_and_jump_at_the_curve():
     obj = add_plane(halves)
     # The border runs through vertices of the blue side.
     split_materials(obj)
@@ -143,7 +143,7 @@ def test_redrawing_from_an_edited_curve(mode):
     assert np.abs(colors[right] - BLUE).max() < 1e-5
 
 
-def test_setting_colours_with_blenders_own_operator():
+def test_setting_colors_with_blenders_own_operator():
     obj = add_plane(halves)
     split_materials(obj)
     find()
@@ -160,7 +160,7 @@ def test_setting_colours_with_blenders_own_operator():
 
 
 @pytest.mark.parametrize("count", [0, 2])
-def test_regions_are_found_by_their_colours_and_keep_faces_whole(count):
+def test_regions_are_found_by_their_colors_and_keep_faces_whole(count):
     obj = add_plane(lambda p: np.where(np.hypot(*(p - 0.5).T)[:, None] < 0.3, RED, BLUE), cells=24)
     assert find(regions="COLORS", count=count) == {"FINISHED"}
     (entry,) = job.last_summary()
@@ -171,7 +171,7 @@ def test_regions_are_found_by_their_colours_and_keep_faces_whole(count):
     assert len(curves_io.curves_of(obj).data.curves) == 1
 
 
-def test_one_region_has_a_colour_point_and_loose_pieces_too():
+def test_one_region_has_a_color_point_and_loose_pieces_too():
     obj = add_plane(lambda p: np.tile(np.float32(RED), (len(p), 1)))
     find()
     child = curves_io.curves_of(obj)
@@ -182,7 +182,7 @@ def test_one_region_has_a_colour_point_and_loose_pieces_too():
     assert np.abs(corner_colors(obj) - BLUE).max() < 1e-6
 
 
-def test_colours_of_an_image_through_the_uv_map():
+def test_colors_of_an_image_through_the_uv_map():
     obj = add_plane()
     split_materials(obj)
     layer = obj.data.uv_layers.new()
@@ -248,7 +248,7 @@ def test_refusals(tmp_path):
     with pytest.raises(RuntimeError, match="has no material with nodes"):
         find(source="IMAGE")
     store_colors(obj, halves(np.zeros((len(obj.data.vertices), 2))))
-    with pytest.raises(RuntimeError, match='has no attribute "zone"'):
+    with pytest.raises(RuntimeError, match='has no integer attribute "zone"'):
         find(regions="ATTRIBUTE", region_attribute="zone")
     assert not bpy.ops.ridgeform.redraw_diffusion_curves.poll()
     find()

@@ -1,4 +1,4 @@
-"""Results are seen at once: viewport colours, the colour-ramp material, and colours as they are."""
+"""Results are seen at once: viewport colors, the color-ramp material, and colors as they are."""
 
 import addon_kit as kit
 import bpy
@@ -31,7 +31,7 @@ def views():
     return [area.spaces.active for area in bpy.context.screen.areas if area.type == "VIEW_3D"]
 
 
-def test_viewport_colours_follow_the_values():
+def test_viewport_colors_follow_the_values():
     obj = heated_box()
     bpy.ops.ridgeform.denoise_attribute(attribute="heat")
     values = result_of(obj)
@@ -86,7 +86,7 @@ def test_the_users_materials_are_left_alone():
     assert {face.material_index for face in obj.data.polygons} == {0}
 
 
-def test_colours_are_shown_as_they_are():
+def test_colors_are_shown_as_they_are():
     obj = kit.bumpy_box()
     paint = obj.data.attributes.new("paint", "BYTE_COLOR", "CORNER")
     vertices = np.array([loop.vertex_index for loop in obj.data.loops])

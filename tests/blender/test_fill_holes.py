@@ -6,8 +6,8 @@ import hole_kit
 import numpy as np
 import pytest
 from bl_ext.user_default.ridgeform.blender import mesh_io
+from bl_ext.user_default.ridgeform.blender.refusals import RefusedError
 from bl_ext.user_default.ridgeform.framework import job
-from bl_ext.user_default.ridgeform.framework.run import RefusedError
 from bl_ext.user_default.ridgeform.framework.settings import defaults_of
 from bl_ext.user_default.ridgeform.holes.settings import HoleSettings
 from bl_ext.user_default.ridgeform.holes.tool import HoleFilling

@@ -99,7 +99,7 @@ def test_linear_values_go_on_linearly(data_type, domain, columns):
 
 
 @pytest.mark.parametrize("domain", ["POINT", "CORNER"])
-def test_byte_colours_go_on_and_the_old_ones_stay(domain):
+def test_byte_colors_go_on_and_the_old_ones_stay(domain):
     obj = hole_kit.sheet()
     mesh = obj.data
     at, corner = kit.coordinates(obj), hole_kit.corner_vertices(mesh)

@@ -238,7 +238,7 @@ def test_reduce_is_left_with_a_reason():
     kit.select_only(obj, np.ones(len(obj.data.vertices), bool))
     bpy.ops.ridgeform.stylize(steps=1, reduce=True)
     bpy.ops.object.mode_set(mode="OBJECT")
-    assert any("Object Mode only" in note for note in notes())
+    assert any("only in Object Mode" in note for note in notes())
     obj.shape_key_add(name="Basis")
     bpy.ops.ridgeform.stylize(steps=1, reduce=True)
     assert any("has shape keys" in note for note in notes())

@@ -71,7 +71,7 @@ def test_cancel_leaves_everything_as_it_was(tool):
     assert not run.job.is_running
     assert names(obj) == before
     assert context.timers == 0
-    assert operator.reports == [({"INFO"}, "Cancelled: everything is as it was")]
+    assert operator.reports == [({"INFO"}, "Canceled: everything is as it was")]
 
 
 @pytest.mark.parametrize("tool", list(TOOLS))

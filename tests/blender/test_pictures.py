@@ -47,7 +47,7 @@ def test_ridges_are_drawn_dark_where_the_mesh_bends():
     assert (everything[middle, middle] < 60).any()
 
 
-def test_lines_and_dots_are_drawn_over_the_surface_in_their_colours():
+def test_lines_and_dots_are_drawn_over_the_surface_in_their_colors():
     vertices, faces = shapes.cube(4)
     marks = [
         Lines(np.array([[[-0.9, 0.5, 1.0], [0.9, 0.5, 1.0]]]), (0.0, 0.0, 1.0), 4.0),

@@ -44,7 +44,7 @@ def refused(operator="denoise_attribute", **settings):
 
 def test_no_attribute_at_all():
     kit.bumpy_box()
-    assert "has no attribute of decimal numbers or colours" in refused()
+    assert "has no attribute of decimal numbers or colors" in refused()
 
 
 def test_unknown_attribute_and_groups():
@@ -98,7 +98,7 @@ def test_non_finite_coordinates_name_the_vertex():
     assert 'Vertex 17 of "Box" has a coordinate that is not a finite number' in refused(attribute="heat")
 
 
-def test_corner_colours_that_differ_at_a_vertex():
+def test_corner_colors_that_differ_at_a_vertex():
     obj = kit.bumpy_box()
     attribute = obj.data.attributes.new("paint", "FLOAT_COLOR", "CORNER")
     attribute.data[5].color = (1.0, 0.0, 0.0, 1.0)

@@ -80,7 +80,7 @@ def test_the_operator_gives_what_the_wheel_gives():
     assert entry["possible"] == list(found.range)
 
 
-def test_each_segment_gets_a_slot_with_a_colour_and_old_slots_stay():
+def test_each_segment_gets_a_slot_with_a_color_and_old_slots_stay():
     obj, truth = cube()
     old = bpy.data.materials.new("Old")
     obj.data.materials.append(old)

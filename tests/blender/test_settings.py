@@ -10,6 +10,7 @@ from types import SimpleNamespace
 import bpy
 import layout_kit
 import pytest
+from american_words import british_words
 from bl_ext.user_default.ridgeform import registry
 from bl_ext.user_default.ridgeform.framework import batch, flags, presets, rows
 from bl_ext.user_default.ridgeform.framework.settings import defaults_of, setting_names
@@ -107,7 +108,7 @@ def test_flags_of_the_version_before_mean_what_they_meant():
         (("stylize", "--steps", "many"), 'argument --steps: "many" is not a whole number'),
         (("stylize", "--fidelity", "nan"), "argument --fidelity: nan is out of range"),
         (("stylize", "--mark-angle", "200"), "argument --mark-angle: 200 is out of range: 0 to 180"),
-        (("stylize", "--mark", "blunt"), 'argument --mark: "blunt" is none of sharp, crease, bevel'),
+        (("stylize", "--mark", "blunt"), 'argument --mark: "blunt" is not one of sharp, crease, bevel'),
         (("fill-holes", "--edge-length", "-1"), "argument --edge-length: -1 is out of range: at least 0"),
     ],
 )
@@ -239,6 +240,19 @@ def test_the_manual_names_every_setting_and_every_flag():
         assert f"`{option}" in manual, f"{option} is not in the manual"
     for option in re.findall(r"`(--[a-z][a-z-]*)", manual):
         assert option in options, f"the command has no {option}"
+
+
+@every_tool
+def test_the_words_are_blenders(tool):
+    """American, and as Blender writes them: titles in title case, no full stop at the end of a tooltip."""
+    texts = [tool.description]
+    for setting in tool.settings.declared.values():
+        assert setting.label == setting.label.title(), setting.label
+        texts += [setting.label, setting.keywords["description"], *(text for *_, text in setting.items)]
+    for text in texts:
+        assert british_words(text) == []
+        assert text[0].isupper(), text
+        assert not text.endswith("."), text
 
 
 MANUALS = {

@@ -29,7 +29,7 @@ def plane():
 
 
 def redrawn(obj):
-    """The colours of the quads (f, 4, 4) after redrawing."""
+    """The colors of the quads (f, 4, 4) after redrawing."""
     assert bpy.ops.ridgeform.redraw_diffusion_curves() == {"FINISHED"}
     return corner_colors(obj).reshape(-1, 4, 4)
 
@@ -39,7 +39,7 @@ def centers(obj):
 
 
 def add_line(child, places, **colors):
-    """Add a curve of points at these places, as drawing by hand does, with colours if there are any."""
+    """Add a curve of points at these places, as drawing by hand does, with colors if there are any."""
     begin = len(child.data.points)
     child.data.add_curves([len(places)])
     for i, place in enumerate(places):
@@ -48,7 +48,7 @@ def add_line(child, places, **colors):
             child.data.attributes[side].data[begin + i].color = color
 
 
-def test_a_moved_curve_takes_its_colours_along(plane):
+def test_a_moved_curve_takes_its_colors_along(plane):
     obj, child = plane
     for point in child.data.points:
         # Off the mesh and between its vertices: a fifth of a cell.
@@ -72,14 +72,14 @@ def test_a_curve_of_two_points_is_drawn_along_the_edges(plane):
     add_line(child, [(0.0, y, 0.0), (0.4, y, 0.0)], left=GREEN, right=RED)
     colors = redrawn(obj)
     x, y, _ = centers(obj).T
-    # Beside the new curve; colours flow around its open end.
+    # Beside the new curve; colors flow around its open end.
     beside = (x < 0.25) & (np.abs(y - 0.5) < 1 / CELLS)
     assert np.abs(colors[beside & (y > 0.5)] - GREEN).max() < 0.2
     assert np.abs(colors[beside & (y < 0.5)] - RED).max() < 0.2
     assert np.abs(colors[x > 0.5] - BLUE).max() < 1e-5
 
 
-def test_a_curve_drawn_without_colours_takes_those_of_the_paint():
+def test_a_curve_drawn_without_colors_takes_those_of_the_paint():
     obj = add_plane(halves)
     find()
     child = curves_io.curves_of(obj)

@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is raised for a mesh, an attribute or curves that cannot be used.
+
+Nothing is imported here, for `attribute_names` imports it.
+"""
+
+
+class RefusedError(Exception):
+    """Something of the modeler's that cannot be worked on; the message says why, and what to do about it."""
+
+
+class AttributeRefusedError(RefusedError):
+    """An attribute that cannot be used."""
+
+
+class CurvesRefusedError(RefusedError):
+    """Curves that cannot be used."""

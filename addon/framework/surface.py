@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the wheel gets of the mesh of an object: its surface, split seams welded, and painted weights."""
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+import ridgeform
+
+from ..blender import mesh_io
+from ..blender.refusals import RefusedError
+from ..blender.welding import Weld, weld_seams
+from .shared_settings import ridge_weights_of
+
+
+@dataclass
+class Surface:
+    """What the wheel gets of a mesh: its welded vertices and triangles, and a weight (l,) per triangle."""
+
+    weld: Weld
+    mesh: ridgeform.Mesh
+    face_weights: np.ndarray | None = None
+
+
+def surface_of(obj: bpy.types.Object) -> Surface:
+    """The surface of an object in Object Mode; `RefusedError` if the wheel cannot use it."""
+    coordinates = mesh_io.open_coordinates(obj).original
+    weld, _ = welded(obj, coordinates)
+    try:
+        return Surface(weld, ridgeform.Mesh(coordinates[weld.first].astype(np.float64), weld.triangles))
+    except ridgeform.RidgeformError as error:
+        raise RefusedError(f'"{obj.name}": {error}') from error
+
+
+def welded(
+    obj: bpy.types.Object, coordinates: np.ndarray, triangles: np.ndarray | None = None
+) -> tuple[Weld, np.ndarray]:
+    """The mesh of an object with its seams welded, and all its loop triangles (m, 3) int32, if not given.
+
+    `RefusedError` for a mesh without faces, or with a coordinate (n, 3) that is not a finite number.
+    """
+    triangles = mesh_io.triangles(obj.data) if triangles is None else triangles
+    if len(triangles) == 0:
+        raise RefusedError(f'"{obj.name}" has no faces')
+    if not np.isfinite(coordinates).all():
+        broken = np.flatnonzero(~np.isfinite(coordinates).all(axis=1))
+        raise RefusedError(
+            f'Vertex {broken[0]} of "{obj.name}" has a coordinate that is not a finite number '
+            f"({len(broken)} in all): delete or move it"
+        )
+    return weld_seams(coordinates, triangles, mesh_io.border_vertices(obj.data)), triangles
+
+
+def group_weights(obj: bpy.types.Object, name: str) -> np.ndarray:
+    """The weights (n,) of a vertex group, 0 outside it; `RefusedError` if the object has no such group."""
+    if name not in obj.vertex_groups:
+        raise RefusedError(f'"{obj.name}" has no vertex group "{name}"')
+    return mesh_io.group_weights(obj, name)
+
+
+def painted_ridges(
+    obj: bpy.types.Object, settings: object, triangles: np.ndarray, weld: Weld
+) -> np.ndarray | None:
+    """The weights (l,) that ridge paint gives the welded triangles, given all triangles (m, 3).
+
+    `None` without paint; `RefusedError` if the object has no such group.
+    """
+    if not settings.ridge_group:
+        return None
+    painted = group_weights(obj, settings.ridge_group)
+    return ridge_weights_of(painted, triangles[weld.kept], settings.avoid_ridges)
