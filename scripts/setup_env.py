@@ -110,35 +110,32 @@ def _loads(library: str) -> bool:
     return True
 
 
-def make_environment(version: str, python: str, with_build_tools: bool) -> None:
-    """Create one environment, or bring it up to date; nothing to do if its requirements have not changed."""
-    short = version.replace(".", "")
-    lists = [ROOT / f"scripts/requirements-py{short}.txt", ROOT / "scripts/requirements-test.txt"]
-    if with_build_tools:
-        lists.append(ROOT / "scripts/requirements-build.txt")
-    stamp = STATE / f"py{short}.stamp"
+def fill_environment(name: str, python: str, requirements: list[str], imported: str) -> Path:
+    """Create the environment `.ridgeform/NAME`, or bring it up to date; returns its interpreter.
+
+    Nothing is done if the lists of requirements have not changed; else the module `imported` must load.
+    """
+    lists = [ROOT / f"scripts/requirements-{part}.txt" for part in requirements]
+    stamp = STATE / f"{name}.stamp"
     wanted = digest(lists, os.path.realpath(python), platform.machine())
-    if is_current(stamp, wanted) and environment_python(version).exists():
-        return
+    own = STATE / name / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+    if is_current(stamp, wanted) and own.exists():
+        return own
     stamp.unlink(missing_ok=True)
-    folder = environment_python(version).parents[1]
-    run(
-        [python, "-m", "venv", "--clear", folder],
-        f"environment for Python {version} (Blender {PYTHONS[version]})",
-    )
-    install: list[str | Path] = [
-        environment_python(version),
-        "-m",
-        "pip",
-        "install",
-        "--disable-pip-version-check",
-        "--quiet",
-    ]
-    for requirements in lists:
-        install += ["-r", requirements]
-    run(install, f"packages for Python {version}")
-    run([environment_python(version), "-c", "import bpy"], f"import of bpy in Python {version}", quiet=True)
+    run([python, "-m", "venv", "--clear", STATE / name], f"environment {name}")
+    install: list[str | Path] = [own, "-m", "pip", "install", "--disable-pip-version-check", "--quiet"]
+    for path in lists:
+        install += ["-r", path]
+    run(install, f"packages of {name}")
+    run([own, "-c", f"import {imported}"], f"import of {imported} in {name}", quiet=True)
     stamp.write_text(wanted, encoding="utf-8")
+    return own
+
+
+def make_environment(version: str, python: str, with_build_tools: bool) -> None:
+    """Create the environment of one Python, or bring it up to date."""
+    name = environment_python(version).parents[1].name
+    fill_environment(name, python, [name, "test", *(["build"] if with_build_tools else [])], "bpy")
 
 
 def main(arguments: list[str]) -> int:

@@ -29,6 +29,7 @@ mod watch;
 use pyo3::prelude::*;
 
 #[pymodule]
+#[pyo3(name = "_native_0_1_0")]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<mesh::Mesh>()?;
