@@ -1,5 +1,6 @@
 """British spellings, which documentation and interface must not have: they are in American English."""
 
+import ast
 import re
 from pathlib import Path
 
@@ -11,9 +12,8 @@ _ISE = (
     "parametris penalis polaris prioritis quantis randomis realis recognis regularis serialis specialis "
     "stabilis standardis summaris symmetris synchronis triangularis utilis vectoris visualis voxelis"
 )
-_DOUBLED = (
-    "cancelle cancelli labelle labelli levelle levelli modelle modelli signalle signalli travelle travelli"
-)
+# Not "cancelled": Blender's own interface has it.
+_DOUBLED = "labelle labelli levelle levelli modelle modelli signalle signalli travelle travelli"
 # Whole words.
 _WORDS = (
     "analyse analysed analyses analysing barycentre barycentres catalogue centre centred centres centring "
@@ -40,4 +40,13 @@ def british_lines(path: Path) -> list[str]:
     """Where a page has British spellings outside code: its name, the line's number, and the words."""
     lines = path.read_text(encoding="utf-8").splitlines()
     found = ((number, british_words(re.sub("`[^`]*`", "", line))) for number, line in enumerate(lines, 1))
+    return [f"{path.name}:{number}: {', '.join(words)}" for number, words in found if words]
+
+
+def british_strings(path: Path) -> list[str]:
+    """Where the strings of a Python file, which users may see, have British spellings."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    constants = (node for node in ast.walk(tree) if isinstance(node, ast.Constant))
+    strings = (node for node in constants if isinstance(node.value, str))
+    found = ((node.lineno, british_words(node.value)) for node in strings)
     return [f"{path.name}:{number}: {', '.join(words)}" for number, words in found if words]

@@ -1,5 +1,6 @@
 """The examples that need no Blender run as they stand, and find what they claim to find."""
 
+import inspect
 import re
 import runpy
 import sys
@@ -7,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import shapes
+import ridgeform
+from known_shapes import shapes
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SPOT = EXAMPLES.parent / "blend_fixtures/sources/spot_low_resolution.npz"
@@ -99,3 +101,13 @@ def test_watch_and_stop(run):
     said, numbers = run("watch_and_stop.py", SPOT)
     assert "stopped" in said
     assert 5 <= numbers[0] < 1000
+
+
+def test_api_has_a_cell_for_every_function(run):
+    said, numbers = run("api.py")
+    assert "solved" in said
+    assert numbers
+    cells = set(re.findall(r"^# %% (\w+)$", (EXAMPLES / "api.py").read_text(encoding="utf-8"), re.M))
+    functions = {name for name in ridgeform.__all__ if inspect.isroutine(getattr(ridgeform, name))}
+    assert functions <= cells, f"no example of {', '.join(sorted(functions - cells))}"
+    assert cells - {"prelude"} <= set(ridgeform.__all__)

@@ -1,0 +1,77 @@
+"""What the documentation says to type works: the Python of the recipes, and every command line."""
+
+import re
+import shlex
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+from addon_kit import coordinates, set_coordinates
+from bl_ext.user_default.ridgeform.framework import batch
+from hole_kit import box
+
+DOCS = Path(__file__).parents[2] / "docs"
+PAGES = [DOCS.parent / "README.md", *sorted(DOCS.glob("*.md"))]
+RECIPES = re.findall(
+    r"^## ([^\n]+)\n(?:(?!^## ).)*?^```python\n(.*?)^```",
+    (DOCS / "recipes.md").read_text(encoding="utf-8"),
+    re.MULTILINE | re.DOTALL,
+)
+
+
+def painted_box_with_a_hole():
+    """A box of quads with a hole at an edge, colors in two halves, and a vertex group of a few weights."""
+    obj = box(n=8, radius=0.3)
+    bumps = np.random.default_rng(0).normal(scale=0.004, size=coordinates(obj).shape)
+    set_coordinates(obj, coordinates(obj) + bumps)
+    colors = obj.data.color_attributes.new("Paint", "FLOAT_COLOR", "POINT")
+    above = np.array([vertex.co.z > 0 for vertex in obj.data.vertices])
+    colors.data.foreach_set("color", np.where(above[:, None], [1, 1, 1, 1], [0.1, 0.2, 0.8, 1]).ravel())
+    group = obj.vertex_groups.new(name="Weights")
+    for vertex in obj.data.vertices:
+        if vertex.index % 10 == 0:
+            group.add([vertex.index], float(vertex.co.z > 0), "REPLACE")
+    return obj
+
+
+@pytest.mark.parametrize(("title", "code"), RECIPES, ids=[title for title, _ in RECIPES])
+def test_the_python_of_a_recipe_runs(title, code):
+    obj = painted_box_with_a_hole()
+    if title.startswith("Weights"):
+        obj.data.color_attributes.remove(obj.data.color_attributes[0])
+    exec(code, {"bpy": bpy})
+    assert obj.mode == "OBJECT"
+    if "fill_holes" in code:
+        edges = np.array([edge for face in obj.data.polygons for edge in face.edge_keys])
+        assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
+    if "SEAMS" in code:
+        assert sum(edge.use_seam for edge in obj.data.edges) > 50
+        assert obj.data.uv_layers
+    if "VERTEX_GROUPS" in code:
+        assert len([group for group in obj.vertex_groups if group.name.startswith("ridgeform_segment")]) > 3
+    if "diffusion" in code:
+        assert any(child.type == "CURVES" for child in obj.children)
+    if "reduce" in code:
+        assert len(obj.data.polygons) < 100
+
+
+def test_all_recipes_with_python_are_found():
+    assert len(RECIPES) >= 7
+
+
+def command_lines():
+    """Every line of the documentation that calls the batch command, with its page."""
+    for page in PAGES:
+        text = page.read_text(encoding="utf-8")
+        for line in re.findall(
+            r"^(?:blender --command ridgeform|PYTHONPATH=\S+ \S+ -m addon) (.+)$", text, re.M
+        ):
+            yield page.name, line
+
+
+@pytest.mark.parametrize(("page", "line"), sorted(set(command_lines())))
+def test_the_command_understands_every_command_line(page, line):
+    words = shlex.split(line.replace("[options]", ""))
+    options = batch.parser().parse_args(words)
+    assert options.files
