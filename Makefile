@@ -3,7 +3,7 @@ PYTHON ?= python3
 RUN = @$(PYTHON) scripts/setup_env.py
 
 .PHONY: help demo test test-all-blenders lint workflows notices advisories bench bench-holes bench-segments \
-	extension wheel release sizes docs fixtures pictures gallery
+	bench-memory bench-limits bench-growth extension wheel release sizes docs fixtures pictures gallery
 
 help:
 	@echo "make demo        stylize a real scan in Blender, without a window: out/demo.png, out/demo.blend"
@@ -17,6 +17,9 @@ help:
 	@echo "                 ARGS=--quick: a minute, keeps nothing; ARGS=--large: a million vertices as well"
 	@echo "make bench-holes fill holes with known truth by every tool: benchmarks/holes.md"
 	@echo "make bench-segments  segment shapes of known parts: benchmarks/segments.md"
+	@echo "make bench-memory  what calls take beside what is said of them: docs/reliability.md"
+	@echo "make bench-limits  every call under caps on memory: docs/reliability.md"
+	@echo "make bench-growth  how time grows with what a file has many of: docs/reliability.md"
 	@echo "make wheel       build the Python wheel"
 	@echo "make extension   build and check the Blender extension: .ridgeform/extension/"
 	@echo "                 WHEELS=folder: with wheels built elsewhere, for other platforms too"
@@ -57,6 +60,11 @@ bench-holes:
 
 bench-segments:
 	$(RUN) benchmarks/segments.py $(ARGS)
+
+# The wheel is built first; these run it where it lies.
+bench-memory bench-limits bench-growth: wheel
+	@PYTHONPATH=.ridgeform/wheel-site .ridgeform/py311/bin/python \
+		benchmarks/$(subst bench-growth,growth,$(subst bench-limits,limits,$(subst bench-memory,peaks,$@))).py --write $(ARGS)
 
 extension:
 	$(RUN) scripts/build_extension.py $(if $(WHEELS),--wheels $(WHEELS))

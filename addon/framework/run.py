@@ -96,8 +96,6 @@ class Run(ABC):
     @classmethod
     def lines(cls, entry: dict[str, object]) -> list[str]:
         """What the panel says of a mesh that is done, given its summary."""
-        if entry["energy_after"] is None:
-            return [f"{entry['name']}: {entry['seconds']:.1f} s"]
         before = "" if entry["energy_before"] is None else f"{entry['energy_before']:.3g} → "
         return [
             f"{entry['name']}: energy {before}{entry['energy_after']:.3g}",

@@ -21,6 +21,20 @@ pub enum Error {
     /// The numerical problem could not be solved at all.
     #[error(transparent)]
     Solve(#[from] SolveError),
+    /// The call, or an array of it, does not fit into memory.
+    #[error("{}", memory_text(what, *needed, *limit, *is_given, *fits))]
+    Memory {
+        /// The call or the argument.
+        what: &'static str,
+        /// Bytes that it needs, about.
+        needed: usize,
+        /// Bytes that it may take.
+        limit: usize,
+        /// Whether the caller gave that limit; otherwise it is a share of what is free.
+        is_given: bool,
+        /// How many vertices a mesh may have that fits; 0 if not known.
+        fits: usize,
+    },
     /// The caller asked to stop through [`crate::Progress::cancel`]; nothing is returned.
     #[error("cancelled")]
     Cancelled,
@@ -86,6 +100,12 @@ pub enum MeshError {
     TooManyFaces {
         /// How many there are.
         n_faces: usize,
+    },
+    /// More vertices than 32-bit indices can number.
+    #[error("{n_vertices} vertices are more than the 2147483647 that 32-bit indices can number")]
+    TooManyVertices {
+        /// How many there are.
+        n_vertices: usize,
     },
     /// There is no face with positive area.
     #[error("the mesh has no face with positive area; nothing can be computed on it")]
@@ -161,6 +181,17 @@ pub enum SolveError {
         /// Why.
         reason: String,
     },
+}
+
+fn memory_text(what: &str, needed: usize, limit: usize, is_given: bool, fits: usize) -> String {
+    let limit = readable(limit);
+    let (limit, cure) = if is_given {
+        (format!("the limit of {limit}"), "raise memory_limit")
+    } else {
+        (format!("the {limit} that are free for it"), "free memory")
+    };
+    let reduce = if fits > 0 { format!("reduce the mesh to about {fits} vertices") } else { "reduce the mesh".into() };
+    format!("{what}: needs about {} of memory, more than {limit}; {reduce}, or {cure}", readable(needed))
 }
 
 fn readable(bytes: usize) -> String {

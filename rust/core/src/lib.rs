@@ -6,6 +6,7 @@ pub mod error;
 pub mod hole_filling;
 pub mod intrinsic;
 pub mod linear;
+pub mod memory;
 pub mod mesh;
 pub mod operators;
 pub mod progress;

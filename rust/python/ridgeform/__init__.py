@@ -37,6 +37,8 @@ from ._native import (
     hessian_norm,
     interpolate,
     intrinsic_delaunay,
+    memory_available,
+    memory_estimate,
     redraw,
     remesh,
     segment,
@@ -46,7 +48,7 @@ from ._native import (
     vibration_modes,
     voronoi_mass,
 )
-from .errors import ArgumentError, Cancelled, MeshError, RidgeformError, SolveError
+from .errors import ArgumentError, Cancelled, MemoryLimitError, MeshError, RidgeformError, SolveError
 
 __all__ = [
     "ArgumentError",
@@ -55,6 +57,7 @@ __all__ = [
     "Filled",
     "FilledHole",
     "Hole",
+    "MemoryLimitError",
     "Mesh",
     "MeshError",
     "MeshReport",
@@ -79,6 +82,8 @@ __all__ = [
     "hessian_norm",
     "interpolate",
     "intrinsic_delaunay",
+    "memory_available",
+    "memory_estimate",
     "redraw",
     "remesh",
     "segment",

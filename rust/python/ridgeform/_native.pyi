@@ -427,6 +427,10 @@ def fill_holes(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Filled: ...
+def memory_available() -> int: ...
+def memory_estimate(
+    tool: str, mesh: Mesh | tuple[int, int], *, columns: int = 1, solver: Solver = "auto"
+) -> int: ...
 def remesh(
     mesh: Mesh,
     *,

@@ -17,5 +17,9 @@ class SolveError(RidgeformError):
     """The numerical problem has no answer: contradictory constraints or a singular system."""
 
 
+class MemoryLimitError(SolveError, MemoryError):
+    """A call needs more memory than it may take; the message says how much, and what would fit."""
+
+
 class Cancelled(RidgeformError):  # noqa: N818 - the caller's own decision, not an error
     """`Progress.cancel` was called: nothing is returned."""

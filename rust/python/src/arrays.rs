@@ -8,7 +8,12 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::errors::argument;
+use ridgeform_core::memory;
+
+use crate::errors::{argument, exception};
+
+/// The name of arrays that go out, in errors.
+const RESULT: &str = "the result";
 
 /// Numbers in C order, and the shape that they came in.
 pub struct Numbers<T> {
@@ -32,7 +37,7 @@ impl<T: Copy> Numbers<T> {
                 format!("expected an array of shape (k, {N}), got {}", shape_text(&self.shape)),
             ));
         }
-        Ok(self.data.as_chunks().0.to_vec())
+        copied(py, name, self.data.as_chunks().0)
     }
 
     /// The entries, for an array of shape (length,).
@@ -95,7 +100,7 @@ pub fn integers(name: &'static str, object: &Bound<'_, PyAny>) -> PyResult<Numbe
                 return Err(argument(py, name, format!("expected whole numbers, got {x}")));
             }
             #[allow(clippy::cast_possible_truncation)]
-            let data = numbers.data.iter().map(|&x| x as i64).collect();
+            let data = converted(py, name, &numbers.data, |&x| x as i64)?;
             Ok(Numbers { data, shape: numbers.shape })
         }
         _ => convert(name, &array),
@@ -138,6 +143,29 @@ pub fn indices(name: &'static str, object: &Bound<'_, PyAny>, length: usize, wha
     numbers.data.iter().map(index).collect()
 }
 
+/// A copy of `values`.
+///
+/// # Errors
+/// `MemoryLimitError` where there is no room for it.
+pub fn copied<T: Copy>(py: Python<'_>, name: &'static str, values: &[T]) -> PyResult<Vec<T>> {
+    memory::copied(name, values).map_err(|error| exception(py, &error))
+}
+
+/// `convert` of each of `values`.
+///
+/// # Errors
+/// `MemoryLimitError` where there is no room for them.
+pub fn converted<T, U>(
+    py: Python<'_>,
+    name: &'static str,
+    values: &[T],
+    convert: impl Fn(&T) -> U,
+) -> PyResult<Vec<U>> {
+    let mut array = memory::reserved(name, values.len()).map_err(|error| exception(py, &error))?;
+    array.extend(values.iter().map(convert));
+    Ok(array)
+}
+
 /// `(3, 2)` as Python writes it.
 pub fn shape_text(shape: &[usize]) -> String {
     match shape {
@@ -148,13 +176,19 @@ pub fn shape_text(shape: &[usize]) -> String {
 }
 
 /// A fresh (k, N) `float64` array.
-pub fn float_rows<'py, const N: usize>(py: Python<'py>, rows: &[[f64; N]]) -> Bound<'py, PyArray2<f64>> {
-    Array2::from(rows.to_vec()).into_pyarray(py)
+///
+/// # Errors
+/// `MemoryLimitError` where there is no room for it, as of all arrays that are made here.
+pub fn float_rows<'py, const N: usize>(py: Python<'py>, rows: &[[f64; N]]) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    Ok(Array2::from(copied(py, RESULT, rows)?).into_pyarray(py))
 }
 
 /// A fresh (k, N) `int32` array.
-pub fn index_rows<'py, const N: usize>(py: Python<'py>, rows: &[[u32; N]]) -> Bound<'py, PyArray2<i32>> {
-    Array2::from(rows.iter().map(|row| row.map(u32::cast_signed)).collect::<Vec<_>>()).into_pyarray(py)
+///
+/// # Errors
+/// As [`float_rows`].
+pub fn index_rows<'py, const N: usize>(py: Python<'py>, rows: &[[u32; N]]) -> PyResult<Bound<'py, PyArray2<i32>>> {
+    Ok(Array2::from(converted(py, RESULT, rows, |row| row.map(u32::cast_signed))?).into_pyarray(py))
 }
 
 /// A fresh array of `rows`, converted by `convert`, and after them `more` rows, flat; written once.
@@ -164,15 +198,18 @@ pub fn joined_rows<T: Copy, U: Element + Copy, const N: usize>(
     convert: impl Fn(T) -> U,
     more: &[U],
 ) -> PyResult<Py<PyArray2<U>>> {
-    let mut whole = Vec::with_capacity(rows.len() + more.len() / N);
+    let mut whole = memory::reserved(RESULT, rows.len() + more.len() / N).map_err(|error| exception(py, &error))?;
     whole.extend(rows.iter().map(|row| row.map(&convert)));
     whole.extend_from_slice(more.as_chunks::<N>().0);
     Ok(Array2::from(whole).into_pyarray(py).unbind())
 }
 
 /// A fresh (k,) `int32` array.
-pub fn index_array<'py>(py: Python<'py>, indices: &[u32]) -> Bound<'py, PyArray1<i32>> {
-    indices.iter().map(|&i| i.cast_signed()).collect::<Vec<_>>().into_pyarray(py)
+///
+/// # Errors
+/// As [`float_rows`].
+pub fn index_array<'py>(py: Python<'py>, indices: &[u32]) -> PyResult<Bound<'py, PyArray1<i32>>> {
+    Ok(converted(py, RESULT, indices, |i| i.cast_signed())?.into_pyarray(py))
 }
 
 /// `object` as a NumPy array of booleans, integers or floating-point numbers.
@@ -201,6 +238,6 @@ fn convert<T: Element + Copy>(name: &'static str, array: &Bound<'_, PyUntypedArr
     arguments.set_item("requirements", ["C_CONTIGUOUS", "ALIGNED"])?;
     let plain = py.import("numpy")?.call_method("require", (array,), Some(&arguments))?;
     let plain: PyReadonlyArrayDyn<'_, T> = plain.extract()?;
-    let data = plain.as_slice().map_err(|error| argument(py, name, error.to_string()))?.to_vec();
+    let data = copied(py, name, plain.as_slice().map_err(|error| argument(py, name, error.to_string()))?)?;
     Ok(Numbers { data, shape })
 }

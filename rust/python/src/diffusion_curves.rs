@@ -152,11 +152,11 @@ pub fn diffusion_curves(
     let edges = found.curves.edges.len();
     let shaped = |data: Vec<f64>, rows: &[usize]| shaped(py, data, rows, k, single);
     Ok(DiffusionCurves {
-        edges: arrays::index_rows(py, &found.curves.edges).unbind(),
+        edges: arrays::index_rows(py, &found.curves.edges)?.unbind(),
         starts: found.starts.iter().map(|&s| s as i32).collect::<Vec<_>>().into_pyarray(py).unbind(),
         left: shaped(found.curves.left, &[edges, 2])?,
         right: shaped(found.curves.right, &[edges, 2])?,
-        points: arrays::index_array(py, &found.curves.points).unbind(),
+        points: arrays::index_array(py, &found.curves.points)?.unbind(),
         point_colors: shaped(found.curves.point_colors, &[found.curves.points.len()])?,
         colors: columns::write(py, Values { columns: found.redrawn.colors, single }).unbind(),
         corners: shaped(found.redrawn.corners, &[mesh.n_faces(), 3])?,

@@ -2,13 +2,15 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyType;
+use ridgeform_core::error::SolveError;
 use ridgeform_core::Error;
 
-/// A `MeshError`, `ArgumentError`, `SolveError`, `Cancelled` or `RidgeformError` that says what `error` says.
+/// A `MeshError`, `ArgumentError`, `SolveError`, `MemoryLimitError`, `Cancelled` or `RidgeformError` that says what `error` says.
 pub fn exception(py: Python<'_>, error: &Error) -> PyErr {
     let class = match error {
         Error::Mesh(_) => "MeshError",
         Error::Argument { .. } => "ArgumentError",
+        Error::Memory { .. } | Error::Solve(SolveError::Memory { .. }) => "MemoryLimitError",
         Error::Solve(_) => "SolveError",
         Error::Cancelled => "Cancelled",
         _ => "RidgeformError",

@@ -199,35 +199,35 @@ pub fn fill_holes(
     let progress = handle(progress);
     let inner = mesh.get().inner();
     let result = doorway::call(py, &progress, || tools::fill_holes(inner, &options, &progress))?;
-    let holes = result.holes.iter().map(|hole| Py::new(py, filled_hole(py, hole)));
+    let holes = result.holes.iter().map(|hole| Py::new(py, filled_hole(py, hole)?));
     Ok(Filled {
         mesh: mesh.clone().unbind(),
-        new_vertices: arrays::float_rows(py, &result.vertices).unbind(),
-        new_faces: arrays::index_rows(py, &result.faces).unbind(),
-        new_patch: arrays::index_array(py, &result.patch).unbind(),
+        new_vertices: arrays::float_rows(py, &result.vertices)?.unbind(),
+        new_faces: arrays::index_rows(py, &result.faces)?.unbind(),
+        new_patch: arrays::index_array(py, &result.patch)?.unbind(),
         whole_vertices: PyOnceLock::new(),
         whole_faces: PyOnceLock::new(),
         whole_patch: PyOnceLock::new(),
         holes: holes.collect::<PyResult<_>>()?,
-        ridges: arrays::index_rows(py, &result.ridges).unbind(),
+        ridges: arrays::index_rows(py, &result.ridges)?.unbind(),
         status: result.status.name(),
     })
 }
 
-fn filled_hole(py: Python<'_>, hole: &tools::FilledHole) -> FilledHole {
+fn filled_hole(py: Python<'_>, hole: &tools::FilledHole) -> PyResult<FilledHole> {
     let reason = match hole.status {
         HoleStatus::Refused(reason) => Some(reason.to_string()),
         _ => None,
     };
-    FilledHole {
-        boundary: arrays::index_array(py, &hole.boundary).unbind(),
+    Ok(FilledHole {
+        boundary: arrays::index_array(py, &hole.boundary)?.unbind(),
         status: hole.status.name(),
         reason,
         sharpness: hole.sharpness,
         energy: hole.energy.into(),
         gap: hole.gap,
         iterations: hole.iterations,
-    }
+    })
 }
 
 /// `sharpness=`: the word "auto" (also the default) or a number.

@@ -3,6 +3,7 @@
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use ridgeform_core::hole_filling;
+use ridgeform_core::memory::Tool;
 
 use crate::arrays::index_array;
 use crate::doorway;
@@ -34,11 +35,14 @@ impl Hole {
 /// area. A tube has none: its two ends are holes. MeshError for a mesh without positions.
 #[pyfunction]
 pub fn find_holes(py: Python<'_>, mesh: &Mesh) -> PyResult<Vec<Hole>> {
-    let holes = doorway::call_briefly(py, || hole_filling::find_holes(mesh.inner()))?;
-    let convert = |hole: hole_filling::Hole| Hole {
-        vertices: index_array(py, &hole.vertices).unbind(),
-        is_outer_border: hole.is_outer_border,
-        refusal: hole.refusal.map(|reason| reason.to_string()),
+    let holes =
+        doorway::call_sized(py, mesh.inner().demand(Tool::FindHoles), || hole_filling::find_holes(mesh.inner()))?;
+    let convert = |hole: hole_filling::Hole| {
+        PyResult::Ok(Hole {
+            vertices: index_array(py, &hole.vertices)?.unbind(),
+            is_outer_border: hole.is_outer_border,
+            refusal: hole.refusal.map(|reason| reason.to_string()),
+        })
     };
-    Ok(holes.into_iter().map(convert).collect())
+    holes.into_iter().map(convert).collect()
 }

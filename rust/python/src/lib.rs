@@ -13,6 +13,7 @@ mod fill_holes;
 mod holes;
 mod interpolate;
 mod matrix;
+mod memory;
 mod mesh;
 mod modes;
 mod numbers;
@@ -64,5 +65,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(diffusion_curves::smooth_curves, module)?)?;
     module.add_function(wrap_pyfunction!(trace::trace_curves, module)?)?;
     module.add_function(wrap_pyfunction!(fill_holes::fill_holes, module)?)?;
+    module.add_function(wrap_pyfunction!(memory::memory_available, module)?)?;
+    module.add_function(wrap_pyfunction!(memory::memory_estimate, module)?)?;
     Ok(())
 }

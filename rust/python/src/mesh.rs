@@ -5,9 +5,10 @@ use std::sync::OnceLock;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use ridgeform_core::error::MeshError;
+use ridgeform_core::memory::{Demand, Tool};
 use ridgeform_core::{mesh as core, Error};
 
-use crate::arrays::{float_rows, floats, index_array, index_rows, integers, plain_rows};
+use crate::arrays::{self, float_rows, floats, index_array, index_rows, integers, plain_rows};
 use crate::numbers::at_least;
 use crate::{doorway, errors};
 
@@ -50,11 +51,12 @@ impl Mesh {
     #[new]
     fn from_arrays(py: Python<'_>, vertices: &Bound<'_, PyAny>, faces: &Bound<'_, PyAny>) -> PyResult<Self> {
         let vertices = match plain_rows::<f64, 3>(vertices) {
-            Some(array) => array.as_slice()?.as_chunks().0.to_vec(),
+            Some(array) => arrays::copied(py, "vertices", array.as_slice()?.as_chunks().0)?,
             None => floats("vertices", vertices)?.rows(py, "vertices")?,
         };
         let faces = read_faces(faces, Some(vertices.len()))?;
-        doorway::call_briefly(py, || Ok(core::Mesh::new(vertices, faces)?)).map(Self::new)
+        let demand = making(vertices.len(), faces.len());
+        doorway::call_sized(py, demand, || Ok(core::Mesh::new(vertices, faces)?)).map(Self::new)
     }
 
     /// A mesh known by its edge lengths only: lengths (m,3), column i opposite corner i of the face.
@@ -71,26 +73,36 @@ impl Mesh {
         n_vertices: Option<i64>,
     ) -> PyResult<Self> {
         let n_vertices = n_vertices.map(|n| at_least(py, "n_vertices", n, 0)).transpose()?;
+        if let Some(n) = n_vertices.filter(|&n| n > i32::MAX as usize) {
+            return Err(errors::argument(
+                py,
+                "n_vertices",
+                format!("got {n}; 32-bit indices number {} at most", i32::MAX),
+            ));
+        }
         let faces = read_faces(faces, n_vertices)?;
         let lengths = floats("lengths", lengths)?.rows(py, "lengths")?;
-        doorway::call_briefly(py, || Ok(core::Mesh::from_edge_lengths(faces, lengths, n_vertices)?)).map(Self::new)
+        let most = || faces.iter().flatten().max().map_or(0, |&v| v as usize + 1);
+        let demand = making(n_vertices.unwrap_or_else(most), faces.len());
+        doorway::call_sized(py, demand, || Ok(core::Mesh::from_edge_lengths(faces, lengths, n_vertices)?))
+            .map(Self::new)
     }
 
     /// The vertex positions, (n,3) float64, a fresh array; None for a mesh known by its edge lengths only.
     #[getter]
-    fn vertices<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray2<f64>>> {
-        self.inner.positions().map(|positions| float_rows(py, positions))
+    fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        self.inner.positions().map(|positions| float_rows(py, positions)).transpose()
     }
 
     /// The vertex indices of every face, (m,3) int32, a fresh array.
     #[getter]
-    fn faces<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<i32>> {
+    fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i32>>> {
         index_rows(py, self.inner.connectivity().faces())
     }
 
     /// The edge lengths of every face, (m,3) float64, column i opposite corner i, a fresh array.
     #[getter]
-    fn edge_lengths<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+    fn edge_lengths<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         float_rows(py, self.inner.edge_lengths())
     }
 
@@ -110,7 +122,8 @@ impl Mesh {
     #[getter]
     fn report(&self, py: Python<'_>) -> PyResult<MeshReport> {
         let make = || Ok(self.report.get_or_init(|| core::report(&self.inner)));
-        Ok(MeshReport::new(py, doorway::call_briefly(py, make)?))
+        let demand = self.inner.demand(Tool::Report);
+        MeshReport::new(py, doorway::call_sized(py, demand, make)?)
     }
 
     fn __repr__(&self) -> String {
@@ -141,18 +154,18 @@ pub struct MeshReport {
 }
 
 impl MeshReport {
-    fn new(py: Python<'_>, report: &core::MeshReport) -> Self {
-        let indices = |list: &[u32]| index_array(py, list).unbind();
-        Self {
+    fn new(py: Python<'_>, report: &core::MeshReport) -> PyResult<Self> {
+        let indices = |list: &[u32]| index_array(py, list).map(Bound::unbind);
+        Ok(Self {
             n_components: report.n_components,
             n_boundary_loops: report.n_boundary_loops,
-            nonmanifold_edges: index_rows(py, &report.nonmanifold_edges).unbind(),
-            inconsistent_edges: index_rows(py, &report.inconsistent_edges).unbind(),
-            nonmanifold_vertices: indices(&report.nonmanifold_vertices),
-            degenerate_faces: indices(&report.degenerate_faces),
-            duplicate_faces: indices(&report.duplicate_faces),
-            unreferenced_vertices: indices(&report.unreferenced_vertices),
-        }
+            nonmanifold_edges: index_rows(py, &report.nonmanifold_edges)?.unbind(),
+            inconsistent_edges: index_rows(py, &report.inconsistent_edges)?.unbind(),
+            nonmanifold_vertices: indices(&report.nonmanifold_vertices)?,
+            degenerate_faces: indices(&report.degenerate_faces)?,
+            duplicate_faces: indices(&report.duplicate_faces)?,
+            unreferenced_vertices: indices(&report.unreferenced_vertices)?,
+        })
     }
 }
 
@@ -172,6 +185,11 @@ impl MeshReport {
             count(&self.unreferenced_vertices)?,
         ))
     }
+}
+
+/// What making a mesh takes.
+fn making(n_vertices: usize, n_faces: usize) -> Demand {
+    Demand::new(Tool::Mesh, n_vertices, n_faces)
 }
 
 /// Read faces; indices that the core's type cannot hold are refused here, the others by the core.
@@ -201,5 +219,5 @@ fn vertex_rows<T: Copy + Into<i64>>(
         return Err(errors::exception(py, &Error::Mesh(MeshError::VertexOutOfRange { face, vertex, n_vertices })));
     }
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    Ok(rows.iter().map(|row| row.map(|vertex| vertex.into() as u32)).collect())
+    arrays::converted(py, "faces", rows, |row| row.map(|vertex| vertex.into() as u32))
 }

@@ -2,6 +2,7 @@
 
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
+use ridgeform_core::memory::Tool;
 use ridgeform_core::{intrinsic, mesh as core, operators};
 
 use crate::arrays::index_array;
@@ -20,7 +21,9 @@ use crate::{columns, doorway, options};
 #[pyo3(signature = (mesh, *, dual="barycentric"))]
 pub fn hessian(py: Python<'_>, mesh: &Mesh, dual: &str) -> PyResult<SparseMatrix> {
     let dual = options::dual(py, dual)?;
-    SparseMatrix::new(py, doorway::call_briefly(py, || Ok(operators::hessian(mesh.inner(), dual)?))?)
+    let matrix =
+        doorway::call_sized(py, mesh.inner().demand(Tool::Hessian), || Ok(operators::hessian(mesh.inner(), dual)?))?;
+    SparseMatrix::new(py, matrix)
 }
 
 /// The Frobenius norm of every face's Hessian, not times its area, (m,) float64, of values (n,) or (n,k).
@@ -39,7 +42,8 @@ pub fn hessian_norm<'py>(
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let dual = options::dual(py, dual)?;
     let values = columns::read("values", values, mesh.n_vertices(), "vertex")?.columns;
-    let norms = doorway::call_briefly(py, || operators::hessian_norm(mesh.inner(), &values.data, dual))?;
+    let demand = mesh.inner().demand(Tool::Energy).with_columns(values.n_columns, false);
+    let norms = doorway::call_sized(py, demand, || operators::hessian_norm(mesh.inner(), &values.data, dual))?;
     Ok(norms.into_pyarray(py))
 }
 
@@ -77,7 +81,8 @@ pub fn energy(
     let (energy, dual) = (options::energy(py, "kind", kind)?, options::dual(py, dual)?);
     let weights = options::weights("face_weights", face_weights, mesh.n_faces(), "face")?;
     let values = columns::read("values", values, mesh.n_vertices(), "vertex")?.columns;
-    doorway::call_briefly(py, || {
+    let demand = mesh.inner().demand(Tool::Energy).with_columns(values.n_columns, false);
+    doorway::call_sized(py, demand, || {
         operators::EnergyForm::new(energy, mesh.inner(), weights.as_deref(), dual)?.evaluate(&values.data)
     })
 }
@@ -88,7 +93,9 @@ pub fn energy(
 #[pyfunction]
 pub fn voronoi_mass<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let mesh = mesh.inner();
-    let mass = doorway::call_briefly(py, || Ok(operators::voronoi_mass(mesh.connectivity(), mesh.edge_lengths())))?;
+    let mass = doorway::call_sized(py, mesh.demand(Tool::Report), || {
+        Ok(operators::voronoi_mass(mesh.connectivity(), mesh.edge_lengths()))
+    })?;
     Ok(mass.into_pyarray(py))
 }
 
@@ -98,8 +105,9 @@ pub fn voronoi_mass<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Bound<'py, Py
 #[pyfunction]
 pub fn cotangent_laplacian(py: Python<'_>, mesh: &Mesh) -> PyResult<SparseMatrix> {
     let mesh = mesh.inner();
-    let matrix =
-        doorway::call_briefly(py, || Ok(operators::cotangent_laplacian(mesh.connectivity(), mesh.edge_lengths())))?;
+    let matrix = doorway::call_sized(py, mesh.demand(Tool::Laplacian), || {
+        Ok(operators::cotangent_laplacian(mesh.connectivity(), mesh.edge_lengths()))
+    })?;
     SparseMatrix::new(py, matrix)
 }
 
@@ -109,7 +117,7 @@ pub fn cotangent_laplacian(py: Python<'_>, mesh: &Mesh) -> PyResult<SparseMatrix
 #[pyfunction]
 pub fn intrinsic_delaunay(py: Python<'_>, mesh: &Mesh) -> PyResult<Mesh> {
     let mesh = mesh.inner();
-    let flipped = doorway::call_briefly(py, || {
+    let flipped = doorway::call_sized(py, mesh.demand(Tool::Delaunay), || {
         let (connectivity, lengths, _) = intrinsic::delaunay_flips(mesh.connectivity(), mesh.edge_lengths());
         Ok(core::Mesh::from_connectivity(connectivity, lengths)?)
     })?;
@@ -119,6 +127,7 @@ pub fn intrinsic_delaunay(py: Python<'_>, mesh: &Mesh) -> PyResult<Mesh> {
 /// The boundary loops, a list of (k,) int32 arrays of vertex indices in the direction of the faces' halfedges.
 #[pyfunction]
 pub fn boundary_loops<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Vec<Bound<'py, PyArray1<i32>>>> {
-    let loops = doorway::call_briefly(py, || Ok(core::boundary_loops(mesh.inner().connectivity())))?;
-    Ok(loops.iter().map(|vertices| index_array(py, vertices)).collect())
+    let demand = mesh.inner().demand(Tool::FindHoles);
+    let loops = doorway::call_sized(py, demand, || Ok(core::boundary_loops(mesh.inner().connectivity())))?;
+    loops.iter().map(|vertices| index_array(py, vertices)).collect()
 }

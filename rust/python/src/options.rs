@@ -64,6 +64,21 @@ pub fn scale(py: Python<'_>, given: &str) -> PyResult<Scale> {
     choice(py, "scale", given, &scales)
 }
 
+/// `solver=`.
+///
+/// # Errors
+/// `ArgumentError` for an unknown word.
+pub fn solver(py: Python<'_>, given: &str) -> PyResult<Solver> {
+    let solvers = [
+        ("auto", Solver::Auto),
+        ("fast", Solver::Fast),
+        ("clarabel", Solver::Clarabel),
+        ("clarabel-qdldl", Solver::ClarabelQdldl),
+        ("clarabel-faer", Solver::ClarabelFaer),
+    ];
+    choice(py, "solver", given, &solvers)
+}
+
 /// `solver=`, `tolerance=`, `max_iterations=`, `memory_limit=` and `threads=`.
 ///
 /// # Errors
@@ -76,15 +91,8 @@ pub fn solve(
     memory_limit: Option<i64>,
     threads: Option<i64>,
 ) -> PyResult<SolveOptions> {
-    let solvers = [
-        ("auto", Solver::Auto),
-        ("fast", Solver::Fast),
-        ("clarabel", Solver::Clarabel),
-        ("clarabel-qdldl", Solver::ClarabelQdldl),
-        ("clarabel-faer", Solver::ClarabelFaer),
-    ];
     Ok(SolveOptions {
-        solver: choice(py, "solver", solver, &solvers)?,
+        solver: self::solver(py, solver)?,
         tolerance,
         max_iterations: max_iterations.map(|count| at_least(py, "max_iterations", count, 1)).transpose()?,
         memory_limit: memory_limit.map(|bytes| at_least(py, "memory_limit", bytes, 1)).transpose()?,

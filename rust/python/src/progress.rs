@@ -65,14 +65,17 @@ impl Progress {
     }
 
     /// The vertices (n,3) float64 after the last finished flow step, a fresh array; None before the first.
-    fn snapshot<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray2<f64>>> {
-        self.inner.snapshot().map(|vertices| float_rows(py, &vertices))
+    fn snapshot<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        self.inner.snapshot().map(|vertices| float_rows(py, &vertices)).transpose()
     }
 
     /// The faces that a call which makes some (`fill_holes`) has made so far: their vertices (k,3) float64 and faces (j,3)
     /// int32 among these, fresh arrays; None before the first.
-    fn snapshot_surface<'py>(&self, py: Python<'py>) -> Option<Surface<'py>> {
-        self.inner.surface().map(|(vertices, faces)| (float_rows(py, &vertices), index_rows(py, &faces)))
+    fn snapshot_surface<'py>(&self, py: Python<'py>) -> PyResult<Option<Surface<'py>>> {
+        let read = |(vertices, faces): ridgeform_core::progress::Surface| {
+            PyResult::Ok((float_rows(py, &vertices)?, index_rows(py, &faces)?))
+        };
+        self.inner.surface().map(read).transpose()
     }
 
     fn __repr__(&self) -> String {

@@ -84,8 +84,8 @@ pub fn remesh(
     let result = doorway::call(py, &progress, || core::remesh(mesh.inner(), &options, &progress))?;
     let origin: Vec<i32> = result.origin.iter().map(|v| v.map_or(-1, u32::cast_signed)).collect();
     Ok(Remeshed {
-        vertices: arrays::float_rows(py, &result.vertices).unbind(),
-        faces: arrays::index_rows(py, &result.faces).unbind(),
+        vertices: arrays::float_rows(py, &result.vertices)?.unbind(),
+        faces: arrays::index_rows(py, &result.faces)?.unbind(),
         origin: origin.into_pyarray(py).unbind(),
         edge_length: result.edge_length,
         iterations: result.iterations,

@@ -189,7 +189,7 @@ pub fn segment(
         n_segments: found.n_segments,
         indicator: found.indicator.into_pyarray(py).unbind(),
         values: columns::write(py, Values { columns: found.values, single }).unbind(),
-        boundary_edges: arrays::index_rows(py, &found.boundary_edges).unbind(),
+        boundary_edges: arrays::index_rows(py, &found.boundary_edges)?.unbind(),
         noise: found.noise,
         fidelity: found.fidelity,
         epsilons: found.epsilons.into_pyarray(py).unbind(),

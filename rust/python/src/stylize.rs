@@ -117,7 +117,7 @@ pub fn stylize(
     let result = doorway::call(py, &progress, || tools::stylize(mesh.inner(), &options, &progress))?;
     let counts = result.solver_iterations.iter().map(|&count| i32::try_from(count).unwrap_or(i32::MAX));
     Ok(Stylized {
-        vertices: arrays::float_rows(py, &result.vertices).unbind(),
+        vertices: arrays::float_rows(py, &result.vertices)?.unbind(),
         solver_iterations: counts.collect::<Vec<_>>().into_pyarray(py).unbind(),
         iterations: result.gap.len(),
         energy: result.energy.into_pyarray(py).unbind(),

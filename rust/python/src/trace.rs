@@ -69,5 +69,5 @@ pub fn trace_curves<'py>(
     }
     let vertices: Vec<u32> = traced.iter().flat_map(|curve| curve.vertices.iter().copied()).collect();
     let places: Vec<f64> = traced.iter().flat_map(|curve| curve.places.iter().copied()).collect();
-    Ok((arrays::index_array(py, &vertices), arrays::index_array(py, &ends), places.into_pyarray(py)))
+    Ok((arrays::index_array(py, &vertices)?, arrays::index_array(py, &ends)?, places.into_pyarray(py)))
 }

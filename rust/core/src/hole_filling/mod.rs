@@ -31,7 +31,7 @@ pub use rims::faces_at;
 use crate::error::{MeshError, Refusal};
 use crate::mesh::vector::{area_vector, distance, norm, Point};
 use crate::mesh::Mesh;
-use crate::{Progress, Result};
+use crate::{Error, Progress, Result};
 use polygon::Polygon;
 use rims::Rims;
 
@@ -82,26 +82,33 @@ pub fn fill_loop(mesh: &Mesh, boundary_loop: &[u32], options: &FillOptions, prog
 /// [`MeshError::NoPositions`]; [`MeshError::Unfillable`] for the first loop that cannot be filled, with the reason;
 /// [`crate::Error::Cancelled`].
 pub fn fill_loops(mesh: &Mesh, loops: &[Vec<u32>], options: &FillOptions, progress: &Progress) -> Result<Vec<Patch>> {
-    fill_loops_at(mesh, loops, &faces_at(mesh, loops)?, options, progress)
+    let patches = fill_loops_at(mesh, loops, &faces_at(mesh, loops)?, options, progress)?;
+    Ok(patches.into_iter().collect::<std::result::Result<_, MeshError>>()?)
 }
 
-/// [`fill_loops`], given the faces at the loops ([`faces_at`]) or at more than those.
+/// [`fill_loops`], given the faces at the loops ([`faces_at`]) or at more than those; those that cannot be filled are left out, with
+/// the reason.
 pub(crate) fn fill_loops_at(
     mesh: &Mesh,
     loops: &[Vec<u32>],
     at: &[u32],
     options: &FillOptions,
     progress: &Progress,
-) -> Result<Vec<Patch>> {
+) -> Result<Vec<std::result::Result<Patch, MeshError>>> {
     let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
     let mut rims = Rims::new(mesh, loops, at)?;
     let mut n_vertices = positions.len() as u32;
     let mut patches = Vec::with_capacity(loops.len());
     for rim in loops {
-        let patch = fill_one(positions, rim, &rims, options, n_vertices, progress)?;
-        rims.add(&patch);
-        n_vertices += patch.vertices.len() as u32;
-        patches.push(patch);
+        patches.push(match fill_one(positions, rim, &rims, options, n_vertices, progress) {
+            Ok(patch) => {
+                rims.add(&patch);
+                n_vertices += patch.vertices.len() as u32;
+                Ok(patch)
+            }
+            Err(Error::Mesh(refused)) => Err(refused),
+            Err(error) => return Err(error),
+        });
     }
     Ok(patches)
 }

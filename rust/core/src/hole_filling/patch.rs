@@ -10,7 +10,7 @@ use crate::remesh::curves::Keep;
 use crate::remesh::isotropic::run;
 use crate::remesh::remesher::{Remesher, Surface};
 use crate::remesh::sizing::{growth, Sizing};
-use crate::remesh::{guard, EditableMesh};
+use crate::remesh::{budget, guard, EditableMesh};
 use crate::{Progress, Result};
 
 /// A patch with a bend beyond this (120 degrees) that was not there before it was remeshed is taken as it was: narrow
@@ -22,7 +22,7 @@ const FOLD_COSINE: f64 = -0.5;
 ///
 /// Edges are as long as those of the rim, interpolated smoothly where these differ, or `edge_length`. If that would take
 /// more faces than `max_faces` they grow with their distance from the rim: with growth g and a rim of length P some
-/// `P / (0.433 g L)` faces are made, however large the hole.
+/// `P / (0.433 g L)` faces are made, however large the hole; a rim that needs more even so gets them.
 pub(super) fn refined(
     polygon: &Polygon,
     flat: &Triangulation,
@@ -45,6 +45,9 @@ pub(super) fn refined(
     let rim_size = |i: usize| 0.5 * (rim_edges[i] + rim_edges[(i + n - 1) % n]);
     let typical = options.edge_length.unwrap_or(rim_length / n as f64);
     let area: f64 = mesh.faces().map(|(f, _)| norm(mesh.area_vector(f))).sum();
+    if let Some(length) = options.edge_length {
+        budget::check_length(mesh.faces().map(|(_, face)| mesh.corners(face)), length)?;
+    }
     let growth = growth(area, rim_length, typical, options.max_faces);
     let mut sizes: Vec<f64> = (0..n)
         .map(|i| options.edge_length.map_or(rim_size(i), |length| length.max(rim_size(i))))
@@ -54,7 +57,8 @@ pub(super) fn refined(
         Some(length) => length + growth * far.iter().copied().fold(f64::INFINITY, f64::min),
         None => (sizes.iter().sum::<f64>() + growth * far.iter().sum::<f64>()) / 3.0,
     };
-    refine(&mut mesh, &mut sizes, size_between, progress)?;
+    let most = budget::patch_faces(options.max_faces, n);
+    refine(&mut mesh, &mut sizes, size_between, most, progress)?;
     let refined = (mesh.clone(), guard::worst_bend(&mesh));
     let fixed: Vec<bool> = (0..mesh.n_vertices()).map(|v| v < n).collect();
     let keep = Keep { fixed: &fixed, fixed_faces: false, feature_cosine: -2.0, features: None };
@@ -62,7 +66,7 @@ pub(super) fn refined(
         Some(length) => Sizing::uniform(length, growth, mesh, curves),
         None => Sizing::graded(sizes.clone(), growth, mesh, curves),
     });
-    run(&mut remesher, options.remesh_iterations, progress)?;
+    run(&mut remesher, options.remesh_iterations, most, progress)?;
     let bend = guard::worst_bend(&remesher.mesh);
     let mesh = if bend < FOLD_COSINE && bend < refined.1 { refined.0 } else { remesher.mesh };
     let (points, faces, _) = mesh.into_parts(|v| (v as usize) < n);

@@ -5,12 +5,16 @@ use std::f64::consts::{PI, SQRT_2};
 use crate::mesh::vector::{centroid, distance, dot, norm, quality};
 use crate::mesh::{edge_lengths, triangle};
 use crate::remesh::guard::{self, SLIVER};
-use crate::remesh::EditableMesh;
+use crate::remesh::{budget, EditableMesh};
 use crate::{Progress, Result};
 
 /// A face is split if its centre is this much farther from each corner than the lengths wanted there: Liepa's density
 /// factor.
 const DENSITY: f64 = SQRT_2;
+
+/// A face that is split leaves three whose longest edges are two thirds as long, or are flipped: so many rounds make any length
+/// that double precision holds of any other.
+const ROUNDS: usize = 100;
 
 /// Flips past this many an edge are rounding, not progress.
 const FLIPS_PER_EDGE: usize = 20;
@@ -24,15 +28,20 @@ const FOLD_COSINE: f64 = 0.5;
 /// Inserts vertices at the centres of faces that are too large and flips edges to be Delaunay, in turns, until no face is.
 ///
 /// `sizes` is the length wanted at every vertex; `size_between` gives that at a new one from those at the corners of its face
-/// and its distances from them.
+/// and its distances from them. The mesh is to have about `most` faces at most; where lengths are wanted that coordinates cannot
+/// tell apart, or that no patch of so many faces has, it ends with longer ones.
 pub(super) fn refine(
     mesh: &mut EditableMesh,
     sizes: &mut Vec<f64>,
     size_between: impl Fn([f64; 3], [f64; 3]) -> f64,
+    most: usize,
     progress: &Progress,
 ) -> Result<()> {
     flip_to_delaunay(mesh);
-    loop {
+    let wanted =
+        |(_, face): (u32, [u32; 3])| (mesh.corners(face), face.map(|v| sizes[v as usize]).iter().sum::<f64>() / 3.0);
+    let limit = mesh.n_faces() + budget::faces_to_add(mesh.faces().map(wanted), most);
+    for _ in 0..ROUNDS {
         progress.check()?;
         let mut split_any = false;
         for f in 0..mesh.n_faces() as u32 {
@@ -42,7 +51,7 @@ pub(super) fn refine(
             let far = corners.map(|corner| distance(corner, centre));
             let size = size_between(face.map(|v| sizes[v as usize]), far);
             let is_far = |i: usize| DENSITY * far[i] > size && DENSITY * far[i] > sizes[face[i] as usize];
-            if (0..3).all(is_far) && mesh.split_face(f, centre).is_some() {
+            if mesh.n_faces() < limit && (0..3).all(is_far) && mesh.split_face(f, centre).is_some() {
                 sizes.push(size);
                 split_any = true;
             }
@@ -52,6 +61,7 @@ pub(super) fn refine(
         }
         flip_to_delaunay(mesh);
     }
+    Ok(())
 }
 
 /// Flips edges whose opposite angles sum to more than π, unless that folds the surface or makes its faces worse.

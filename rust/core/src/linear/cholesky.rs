@@ -17,6 +17,7 @@ use crate::linear::ordering::{minimum_degree, nested_dissection, postordered};
 use crate::linear::pattern::LowerPattern;
 use crate::linear::subtrees::Subtrees;
 use crate::linear::triangular::{Panels, Values, LANES};
+use crate::memory;
 
 /// Neighbouring supernodes of at most so many columns are joined while less than this part of the result is zero. The
 /// library's own thresholds make one solve a tenth slower and the factorisation no faster (measured on 10k and 58k rows).
@@ -78,7 +79,7 @@ impl Cholesky {
         let waiting = tree.most_waiting(&panels) * (rayon::current_num_threads() + 1) / 2;
         let needed = size_of::<f64>() * (len + waiting);
         let too_large = || SolveError::Memory { needed, limit: memory_limit };
-        if memory_limit.is_some_and(|limit| needed > limit) {
+        if needed > memory_limit.unwrap_or_else(|| memory::share_of_free(needed)) {
             return Err(too_large());
         }
         let mut factor = Vec::new();

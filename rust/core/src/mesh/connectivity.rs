@@ -66,6 +66,9 @@ impl Connectivity {
         if faces.len() >= NONE as usize / 3 {
             return Err(MeshError::TooManyFaces { n_faces: faces.len() });
         }
+        if n_vertices > i32::MAX as usize {
+            return Err(MeshError::TooManyVertices { n_vertices });
+        }
         for (face, corners) in faces.iter().enumerate() {
             if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= n_vertices) {
                 return Err(MeshError::VertexOutOfRange { face, vertex: i64::from(vertex), n_vertices });

@@ -20,6 +20,7 @@ pub use flip::Flip;
 pub use report::{report, MeshReport};
 
 use crate::error::MeshError;
+use crate::memory::{Demand, Tool};
 
 /// Two lengths of one edge may differ by this part of the longer one; lengths that were stored in single precision do.
 const LENGTH_TOLERANCE: f64 = 1e-6;
@@ -79,6 +80,12 @@ impl Mesh {
     ) -> Result<Self, MeshError> {
         let named = faces.iter().flatten().map(|&v| v as usize + 1).max().unwrap_or(0);
         Self::from_connectivity(Connectivity::new(faces, n_vertices.unwrap_or(named))?, lengths)
+    }
+
+    /// What the call of a tool on this mesh takes, with one column of values and the default solver.
+    #[must_use]
+    pub fn demand(&self, tool: Tool) -> Demand {
+        Demand::new(tool, self.connectivity.n_vertices(), self.connectivity.n_faces())
     }
 
     /// A mesh known by its edge lengths only, on a connectivity that exists already, say that of

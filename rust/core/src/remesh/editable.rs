@@ -161,6 +161,20 @@ impl EditableMesh {
     /// What lies at the vertices `a` and `b`.
     #[must_use]
     pub fn edge(&self, a: u32, b: u32) -> Edge {
+        // Of a hub with ten thousand faces and its neighbour, the neighbour's few are looked at.
+        if self.faces_of(b).len() < self.faces_of(a).len() {
+            return match self.edge_from(b, a) {
+                Edge::Interior(Wings { faces: [f, g], tips: [left, right] }) => {
+                    Edge::Interior(Wings { faces: [g, f], tips: [right, left] })
+                }
+                other => other,
+            };
+        }
+        self.edge_from(a, b)
+    }
+
+    /// [`EditableMesh::edge`], by the faces of `a`.
+    fn edge_from(&self, a: u32, b: u32) -> Edge {
         // For every face of the edge: its number, its tip, and whether `b` follows `a` in it.
         let mut found = [(0, 0, false); 2];
         let mut count = 0;
@@ -196,16 +210,18 @@ impl EditableMesh {
     /// Whether a face has both vertices, or the edge is forbidden.
     #[must_use]
     pub fn is_taken(&self, a: u32, b: u32) -> bool {
-        self.faces_of(a).iter().any(|&f| self.faces[f as usize].contains(&b))
+        let (few, other) = if self.faces_of(b).len() < self.faces_of(a).len() { (b, a) } else { (a, b) };
+        self.faces_of(few).iter().any(|&f| self.faces[f as usize].contains(&other))
             || (!self.forbidden.is_empty() && self.forbidden.contains(&key(a, b)))
     }
 
     /// Whether an edge at `v` has one face only.
     #[must_use]
     pub fn is_border(&self, v: u32) -> bool {
-        let around = |f: &u32| self.faces[*f as usize];
-        let count = |w: u32| self.faces_of(v).iter().filter(|f| around(f).contains(&w)).count();
-        self.faces_of(v).iter().flat_map(around).any(|w| w != v && count(w) == 1)
+        let mut around: Vec<u32> =
+            self.faces_of(v).iter().flat_map(|&f| self.faces[f as usize]).filter(|&w| w != v).collect();
+        around.sort_unstable();
+        around.chunk_by(|a, b| a == b).any(|same| same.len() == 1)
     }
 
     /// Whether the faces of `v` form one fan across interior edges; a vertex without faces has none.
@@ -213,21 +229,29 @@ impl EditableMesh {
     pub fn is_manifold(&self, v: u32) -> bool {
         let faces = self.faces_of(v);
         let Some(&first) = faces.first() else { return false };
-        let (mut reached, mut next) = (vec![first], 0);
-        while let Some(&f) = reached.get(next) {
-            next += 1;
-            for w in self.faces[f as usize].into_iter().filter(|&w| w != v) {
-                match self.edge(v, w) {
-                    Edge::Interior(wings) => {
-                        let new = wings.faces.into_iter().filter(|g| !reached.contains(g)).collect::<Vec<_>>();
-                        reached.extend(new);
-                    }
+        // In a fan every face is met from the one before: a walk both ways from the first sees each once.
+        let mut count = 1;
+        for w in self.faces[first as usize].into_iter().filter(|&w| w != v) {
+            let (mut f, mut across) = (first, w);
+            loop {
+                match self.edge(v, across) {
                     Edge::NonManifold => return false,
-                    Edge::Border(..) | Edge::None => {}
+                    Edge::Border(..) | Edge::None => break,
+                    Edge::Interior(wings) => {
+                        f = if wings.faces[0] == f { wings.faces[1] } else { wings.faces[0] };
+                        if f == first {
+                            return count == faces.len();
+                        }
+                        count += 1;
+                        let Some(next) = self.faces[f as usize].into_iter().find(|&x| x != v && x != across) else {
+                            return false;
+                        };
+                        across = next;
+                    }
                 }
             }
         }
-        reached.len() == faces.len()
+        count == faces.len()
     }
 
     /// The two faces that [`EditableMesh::flip`] would make, in the place of `wings.faces`; nothing if it would refuse.

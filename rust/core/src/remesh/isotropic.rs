@@ -1,23 +1,21 @@
 //! Isotropic remeshing [Botsch and Kobbelt 2004].
 
 use crate::error::{Error, MeshError};
+use crate::memory::{Demand, Tool};
 use crate::mesh::vector::{norm, Point};
 use crate::mesh::Mesh;
 use crate::progress::Report;
+use crate::remesh::budget;
 use crate::remesh::collapse::collapse_short_edges;
 use crate::remesh::curves::Keep;
 use crate::remesh::flips::equalise_valences;
 use crate::remesh::relax::relax_and_project;
 use crate::remesh::remesher::{Remesher, Surface};
 use crate::remesh::repair::remove_slivers;
-use crate::remesh::sizing::Sizing;
+use crate::remesh::sizing::{Sizing, EQUILATERAL};
 use crate::remesh::split::split_long_edges;
 use crate::remesh::EditableMesh;
 use crate::{Progress, Result};
-
-/// No remeshing makes more faces than about this many: a target length that is too small by a factor of a thousand would
-/// otherwise fill the memory.
-const MOST_FACES: f64 = 5e7;
 
 /// How a mesh is remeshed.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,13 +71,15 @@ pub fn remesh(mesh: &Mesh, options: &RemeshOptions, progress: &Progress) -> Resu
         let problem = format!("expected one entry for each of {} vertices, got {}", positions.len(), fixed.len());
         return Err(Error::argument("fixed", problem));
     }
+    mesh.demand(Tool::Remesh).admit(None)?;
     let editable = EditableMesh::new(positions.to_vec(), mesh.connectivity().faces().to_vec())?;
     let area: f64 = editable.faces().map(|(f, _)| norm(editable.area_vector(f))).sum();
     if area <= 0.0 {
         return Err(MeshError::NoFaces.into());
     }
     let edge_length = options.edge_length.unwrap_or_else(|| mean_edge_length(&editable));
-    check_length(edge_length, area)?;
+    budget::check_length(editable.faces().map(|(_, face)| editable.corners(face)), edge_length)?;
+    admit(mesh, area, edge_length)?;
     let feature_cosine = match options.feature_angle {
         None => -2.0,
         Some(angle) if (0.0..=std::f64::consts::PI).contains(&angle) => angle.cos(),
@@ -89,7 +89,7 @@ pub fn remesh(mesh: &Mesh, options: &RemeshOptions, progress: &Progress) -> Resu
     let surface = Surface::of(&editable);
     let mut remesher =
         Remesher::new(editable, &surface, &keep, |mesh, curves| Sizing::uniform(edge_length, 0.0, mesh, curves));
-    let iterations = run(&mut remesher, options.iterations, progress)?;
+    let iterations = run(&mut remesher, options.iterations, usize::MAX, progress)?;
     let moved = |v: u32| remesher.is_movable(v);
     let movable: Vec<bool> = (0..remesher.mesh.n_vertices() as u32).map(moved).collect();
     let (vertices, faces, kept) = remesher.mesh.into_parts(|v| fixed.get(v as usize).copied().unwrap_or(false));
@@ -97,8 +97,18 @@ pub fn remesh(mesh: &Mesh, options: &RemeshOptions, progress: &Progress) -> Resu
     Ok(Remeshed { vertices, faces, origin, iterations, edge_length })
 }
 
-/// The passes, `iterations` times, then the removal of slivers. Returns the number of rounds done.
-pub(crate) fn run(remesher: &mut Remesher, iterations: usize, progress: &Progress) -> Result<usize> {
+/// Refuses what does not fit into memory: as many faces as the mesh has, or as the length asks for.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+fn admit(mesh: &Mesh, area: f64, edge_length: f64) -> Result<()> {
+    let wanted = (area / (EQUILATERAL * edge_length * edge_length)) as usize;
+    let n_faces = mesh.connectivity().n_faces().max(wanted);
+    Demand { n_faces, ..mesh.demand(Tool::Remesh) }.admit(None)?;
+    Ok(())
+}
+
+/// The passes, `iterations` times, then the removal of slivers. Returns the number of rounds done. The mesh is to have about
+/// `most` faces at most.
+pub(crate) fn run(remesher: &mut Remesher, iterations: usize, most: usize, progress: &Progress) -> Result<usize> {
     for iteration in 0..iterations {
         progress.check()?;
         if progress.is_finishing() {
@@ -107,7 +117,11 @@ pub(crate) fn run(remesher: &mut Remesher, iterations: usize, progress: &Progres
         let fraction = iteration as f64 / iterations as f64;
         progress.report(Report { fraction, stage: "remesh".into(), iteration, ..Report::default() });
         remesher.sizing.update(&remesher.mesh);
-        split_long_edges(remesher);
+        let wanted = |(_, face): (u32, [u32; 3])| {
+            (remesher.mesh.corners(face), face.iter().map(|&v| remesher.sizing.at(v)).sum::<f64>() / 3.0)
+        };
+        let to_add = budget::faces_to_add(remesher.mesh.faces().map(wanted), most);
+        split_long_edges(remesher, to_add);
         progress.check()?;
         collapse_short_edges(remesher);
         progress.check()?;
@@ -125,16 +139,4 @@ fn mean_edge_length(mesh: &EditableMesh) -> f64 {
     let edges = mesh.edges();
     let sum: f64 = edges.iter().map(|&[a, b]| crate::mesh::vector::distance(mesh.position(a), mesh.position(b))).sum();
     sum / edges.len().max(1) as f64
-}
-
-fn check_length(length: f64, area: f64) -> Result<()> {
-    if !(length > 0.0 && length.is_finite()) {
-        return Err(Error::argument("edge_length", format!("got {length}; pass a number > 0")));
-    }
-    let n_faces = area / (0.25 * 3.0_f64.sqrt() * length * length);
-    if n_faces > MOST_FACES {
-        let problem = format!("{length} would make {n_faces:.1e} faces, more than {MOST_FACES:.0e}; pass a larger one");
-        return Err(Error::argument("edge_length", problem));
-    }
-    Ok(())
 }

@@ -3,6 +3,7 @@
 //! [`EditableMesh`] is the mesh under edit, [`guard`] says which edits keep it unfolded; [`remesh`] is isotropic remeshing
 //! [Botsch and Kobbelt 2004], with a file for each of its passes.
 
+pub(crate) mod budget;
 pub mod closest;
 mod collapse;
 pub(crate) mod curves;

@@ -78,6 +78,10 @@ impl<'a> Remesher<'a> {
     /// Splits the edge in the middle, on its curve if it is on one.
     pub(crate) fn split(&mut self, a: u32, b: u32) {
         let middle = between(self.mesh.position(a), self.mesh.position(b), 0.5);
+        if middle == self.mesh.position(a) || middle == self.mesh.position(b) {
+            // Coordinates have no room for a point between.
+            return;
+        }
         let curve = if self.is_free(a, b) { None } else { self.curves.curve(a, b) };
         let Some(new) = self.mesh.split(a, b, middle) else { return };
         self.near.push(self.near[a as usize]);

@@ -14,7 +14,7 @@ const SWEEPS: usize = 20;
 const STEEPEST_GROWTH: f64 = 0.5;
 
 /// The area of an equilateral triangle of edge length 1.
-const EQUILATERAL: f64 = 0.433;
+pub(crate) const EQUILATERAL: f64 = 0.433;
 
 /// How much edges must grow for every unit of distance from a rim of this length, with edges of length `edge`, so that a patch
 /// of this area has about `max_faces` faces at most; 0 if it has no more anyway.
@@ -106,7 +106,19 @@ impl Sizing {
         let far = self.distances(mesh, &neighbours);
         let mut base: Vec<f64> = match self.uniform {
             Some(length) => vec![length; far.len()],
-            None => self.sizes.iter().zip(&far).map(|(size, d)| size - self.growth * d).collect(),
+            None => {
+                // Without their growth sizes are means of the anchors'; distances along edges can be too long for that.
+                let [least, most] = self.range_of_anchors();
+                let base = |(size, d): (&f64, &f64)| {
+                    let base = size - self.growth * d;
+                    if self.growth > 0.0 && least <= most {
+                        base.clamp(least, most)
+                    } else {
+                        base
+                    }
+                };
+                self.sizes.iter().zip(&far).map(base).collect()
+            }
         };
         for (size, anchor) in base.iter_mut().zip(&self.anchors) {
             *size = anchor.unwrap_or(*size);
@@ -115,6 +127,12 @@ impl Sizing {
             self.spread(&mut base, &neighbours);
         }
         self.sizes = base.iter().zip(&far).map(|(size, d)| size + self.growth * d).collect();
+    }
+
+    /// The least and the largest length at anchors; the other way round if there are none.
+    fn range_of_anchors(&self) -> [f64; 2] {
+        let anchors = self.anchors.iter().flatten();
+        anchors.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], &x| [least.min(x), most.max(x)])
     }
 
     /// Moves the sizes at vertices that are no anchors towards the mean of their neighbours'.

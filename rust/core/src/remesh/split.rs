@@ -10,7 +10,11 @@ pub(crate) const LONG: f64 = 4.0 / 3.0;
 const ROUNDS: usize = 10;
 
 /// Splits edges longer than 4/3 of their target in the middle, longest first, until there are none.
-pub(crate) fn split_long_edges(remesher: &mut Remesher) {
+///
+/// At most `most` faces are added, the longest edges first: what then is still long was asked to be shorter than the surface has
+/// room for.
+pub(crate) fn split_long_edges(remesher: &mut Remesher, most: usize) {
+    let limit = remesher.mesh.n_faces().saturating_add(most);
     for _ in 0..ROUNDS {
         let mut long: Vec<(f64, [u32; 2])> = remesher
             .mesh
@@ -26,6 +30,9 @@ pub(crate) fn split_long_edges(remesher: &mut Remesher) {
         }
         long.sort_unstable_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
         for (_, [a, b]) in long {
+            if remesher.mesh.n_faces() >= limit {
+                return;
+            }
             remesher.split(a, b);
         }
     }

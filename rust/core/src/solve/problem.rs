@@ -34,6 +34,14 @@ pub enum Solver {
     Cholesky,
 }
 
+impl Solver {
+    /// Whether it is Clarabel, with whichever factorisation.
+    #[must_use]
+    pub fn is_clarabel(self) -> bool {
+        matches!(self, Self::Clarabel | Self::ClarabelQdldl | Self::ClarabelFaer)
+    }
+}
+
 /// How a solution was left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {

@@ -22,7 +22,9 @@ pub use diffusion_curves::{
     DiffusionCurves, DiffusionCurvesOptions, Redrawn, TracedCurve,
 };
 pub use energy_options::EnergyOptions;
-pub use fill_holes::{fill_holes, FillHolesOptions, Filled, FilledHole, HoleStatus, LoopChoice, Sharpness};
+pub use fill_holes::{
+    fill_holes, filling_demand, FillHolesOptions, Filled, FilledHole, HoleStatus, LoopChoice, Sharpness,
+};
 pub use interpolate::interpolate;
 pub use modes::{vibration_modes, ModeOptions, Modes};
 pub use options::SolveOptions;

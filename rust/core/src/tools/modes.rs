@@ -6,6 +6,7 @@ use super::unseen::{extend, unseen};
 use super::{EnergyOptions, SolveOptions};
 use crate::linear::small::symmetric_eigen;
 use crate::linear::Columns;
+use crate::memory::Tool;
 use crate::mesh::{triangle, Mesh};
 use crate::operators::{cotangent_laplacian, voronoi_mass, Energy, EnergyForm};
 use crate::progress::{Progress, Report};
@@ -55,6 +56,7 @@ pub struct Modes {
 pub fn vibration_modes(mesh: &Mesh, count: usize, options: &ModeOptions, progress: &Progress) -> Result<Modes> {
     let settings = Settings { announce: false, ..options.solve.settings()? };
     options.energy.check_solver(options.solve.solver)?;
+    mesh.demand(Tool::Modes).with_columns(1, options.solve.solver.is_clarabel()).admit(options.solve.memory_limit)?;
     let (mesh, form) = options.energy.on(mesh)?;
     let whole = voronoi_mass(mesh.connectivity(), mesh.edge_lengths());
     let unseen = unseen(&mesh, &form);

@@ -7,6 +7,7 @@ use super::sharpness::{block_norms, sharpened_weights};
 use super::unseen::{extend, unseen};
 use super::{EnergyOptions, SolveOptions};
 use crate::linear::Columns;
+use crate::memory::{Demand, Tool};
 use crate::mesh::{triangle, Mesh};
 use crate::operators::{voronoi_mass, Energy};
 use crate::progress::{Progress, Report};
@@ -42,6 +43,17 @@ pub(super) struct ScalarProblem<'a> {
 }
 
 impl ScalarProblem<'_> {
+    fn demand(&self) -> Demand {
+        let tool = match self.options.energy.kind.is_quadratic() {
+            true => Tool::Quadratic,
+            false if self.fidelity > 0.0 => Tool::Denoise,
+            false => Tool::Interpolate,
+        };
+        let is_joint = self.options.coupling == Coupling::Joint;
+        let n_columns = if is_joint { self.target.n_columns } else { 1 };
+        self.mesh.demand(tool).with_columns(n_columns, self.options.solve.solver.is_clarabel())
+    }
+
     pub(super) fn run(self, progress: &Progress) -> Result<Solution> {
         let options = self.options;
         let settings = options.solve.settings()?;
@@ -52,6 +64,7 @@ impl ScalarProblem<'_> {
             return Err(Error::argument("sharpness", problem));
         }
         options.energy.check_solver(options.solve.solver)?;
+        let demand = self.demand();
         let (mesh, form) = options.energy.on(self.mesh)?;
         let mass = voronoi_mass(mesh.connectivity(), mesh.edge_lengths());
         // With a fidelity or constraints, what the energy does not see is theirs.
@@ -69,6 +82,7 @@ impl ScalarProblem<'_> {
             coupling: options.coupling,
         };
         options.solve.run(|| {
+            demand.admit(options.solve.memory_limit)?;
             let mut solution = if kind.is_quadratic() {
                 quadratic::minimise(&problem, &settings, progress)?
             } else {

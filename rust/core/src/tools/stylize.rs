@@ -8,6 +8,7 @@ use crate::block_rows::BlockRows;
 use crate::error::MeshError;
 use crate::intrinsic::delaunay_flips_carrying;
 use crate::linear::Columns;
+use crate::memory::Tool;
 use crate::mesh::{edge_lengths, triangle, Connectivity, Mesh};
 use crate::operators::{mollify, voronoi_mass, Dual, HessianPattern};
 use crate::progress::{Progress, Report};
@@ -120,7 +121,13 @@ pub fn stylize(mesh: &Mesh, options: &StylizeOptions, progress: &Progress) -> Re
     let start = mesh.positions().ok_or(MeshError::NoPositions)?;
     check(mesh, options)?;
     let settings = Settings { announce: false, ..options.solve.settings()? };
-    options.solve.run(|| Flow::new(mesh, start, options)?.run(&settings, progress))
+    let n_columns = if options.coupling == Coupling::Joint { 3 } else { 1 };
+    options.solve.run(|| {
+        mesh.demand(Tool::Stylize)
+            .with_columns(n_columns, options.solve.solver.is_clarabel())
+            .admit(options.solve.memory_limit)?;
+        Flow::new(mesh, start, options)?.run(&settings, progress)
+    })
 }
 
 fn check(mesh: &Mesh, options: &StylizeOptions) -> Result<()> {

@@ -70,6 +70,10 @@ impl Workspace {
 
     /// Makes `buffer` hold `len` numbers of any value: the smallest free buffer that does, or a new one for the largest.
     pub fn take(&self, len: usize, buffer: &mut Vec<f64>) {
+        if len == 0 {
+            // Roots leave nothing, and a mesh can have as many as vertices.
+            return buffer.clear();
+        }
         let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
         let fits = |x: &Vec<f64>| (x.len() < len, x.len().abs_diff(len));
         let best = (0..spare.len()).min_by_key(|&i| fits(&spare[i]));
@@ -83,6 +87,9 @@ impl Workspace {
 
     /// Gives a buffer back.
     pub fn give(&self, buffer: Vec<f64>) {
+        if buffer.is_empty() {
+            return;
+        }
         self.spare.lock().unwrap_or_else(PoisonError::into_inner).push(buffer);
     }
 }

@@ -30,6 +30,7 @@ pub use trace::{trace_curves, TracedCurve};
 use super::options::check_range;
 use crate::error::MeshError;
 use crate::linear::Columns;
+use crate::memory::Tool;
 use crate::mesh::{triangle, CutMesh, EdgeTable, Mesh};
 use crate::operators::voronoi_mass;
 use crate::progress::{Progress, Report};
@@ -105,6 +106,7 @@ pub fn diffusion_curves(
     if area <= 0.0 {
         return Err(MeshError::NoFaces.into());
     }
+    mesh.demand(Tool::DiffusionCurves).admit(None)?;
     let report = |stage: &str, fraction| {
         progress.report(Report { fraction, stage: stage.into(), ..Report::default() });
         progress.check()

@@ -4,6 +4,7 @@ use super::chains::sided;
 use super::fit::pieces;
 use super::membrane::{Harmonic, Membrane};
 use crate::linear::Columns;
+use crate::memory::Tool;
 use crate::mesh::{Connectivity, CutMesh, EdgeTable, Mesh};
 use crate::progress::{Progress, Report};
 use crate::{Error, Result};
@@ -56,6 +57,7 @@ pub fn redraw(
     let connectivity = mesh.connectivity();
     curves.check(connectivity)?;
     check_sides(connectivity, sides)?;
+    mesh.demand(Tool::Redraw).admit(None)?;
     progress.report(Report { stage: "diffusing".into(), ..Report::default() });
     let table = EdgeTable::new(connectivity);
     let cut = CutMesh::new(connectivity, &table, &curves.cuts(connectivity, &table)?);

@@ -9,6 +9,7 @@ use super::sorting::{Paint, Sorted};
 use super::weak::merge_weak;
 use super::{check_fidelity, check_labels};
 use crate::linear::Columns;
+use crate::memory::Tool;
 use crate::mesh::Mesh;
 use crate::progress::{Progress, Report};
 use crate::tools::{segment, SegmentOptions};
@@ -36,6 +37,7 @@ pub fn color_regions(
     let connectivity = mesh.connectivity();
     colors.check("colors", connectivity.n_vertices())?;
     check_fidelity(fidelity)?;
+    mesh.demand(Tool::DiffusionCurves).admit(options.solve.memory_limit)?;
     let groups = Groups::new(groups, connectivity.n_faces())?;
     let original = Paint { mesh, colors, fidelity, progress };
     let sharp = sharpened(&original);

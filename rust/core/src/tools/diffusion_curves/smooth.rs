@@ -3,6 +3,7 @@
 use super::chains::border_edges;
 use super::constants::{FARTHEST, SMOOTH_STEPS};
 use crate::error::MeshError;
+use crate::memory::Tool;
 use crate::mesh::vector::{add, distance, scale, sub, Point};
 use crate::mesh::{EdgeTable, Mesh};
 use crate::remesh::closest::ClosestPoint;
@@ -22,6 +23,7 @@ pub fn smooth_curves(mesh: &Mesh, edges: &[[u32; 2]]) -> Result<Vec<[Point; 2]>>
     if let Some(v) = edges.iter().flatten().find(|&&v| v as usize >= positions.len()) {
         return Err(Error::argument("edges", format!("vertex {v} does not exist: there are {}", positions.len())));
     }
+    mesh.demand(Tool::Curves).admit(None)?;
     let mut around = vec![Vec::new(); positions.len()];
     for &[a, b] in edges.iter().filter(|[a, b]| a != b) {
         around[a as usize].push(b);

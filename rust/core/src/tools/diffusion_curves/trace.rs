@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use crate::error::MeshError;
+use crate::memory::Tool;
 use crate::mesh::vector::{add, distance, dot, scale, sub, Point};
 use crate::mesh::{Connectivity, EdgeTable, Mesh};
 use crate::remesh::closest::ClosestPoint;
@@ -34,6 +35,7 @@ pub fn trace_curves(mesh: &Mesh, curves: &[(Vec<Point>, bool)]) -> Result<Vec<Tr
     if connectivity.n_faces() == 0 {
         return Err(MeshError::NoFaces.into());
     }
+    mesh.demand(Tool::Curves).admit(None)?;
     let faces = connectivity.faces();
     let tree = ClosestPoint::new(faces.iter().map(|face| face.map(|v| positions[v as usize])).collect());
     let snapped = |p: Point| {

@@ -51,30 +51,23 @@ pub(super) fn triangulate(
     options: &FillOptions,
     progress: &Progress,
 ) -> Result<Vec<Patch>> {
-    loop {
-        let loops: Vec<Vec<u32>> =
-            chosen.iter().filter(|(_, refusal)| refusal.is_none()).map(|(vertices, _)| vertices.clone()).collect();
-        match fill_loops_at(mesh, &loops, at, options, progress) {
-            Ok(patches) => {
-                let mut patches = patches.into_iter();
-                let next = |(_, refusal): &Chosen| match refusal {
-                    None => patches.next().unwrap_or_default(),
-                    Some(_) => Patch::default(),
-                };
-                return Ok(chosen.iter().map(next).collect());
-            }
-            Err(Error::Mesh(MeshError::Unfillable { vertex, n_edges, reason })) if reason != Refusal::NotALoop => {
-                let culprit = chosen.iter_mut().find(|(vertices, refusal)| {
-                    refusal.is_none() && vertices.len() == n_edges && vertices.first() == Some(&vertex)
-                });
-                let Some((_, refusal)) = culprit else {
-                    return Err(MeshError::Unfillable { vertex, n_edges, reason }.into());
-                };
-                *refusal = Some(reason);
-            }
-            Err(error) => return Err(error),
+    let loops: Vec<Vec<u32>> =
+        chosen.iter().filter(|(_, refusal)| refusal.is_none()).map(|(vertices, _)| vertices.clone()).collect();
+    let mut patches = fill_loops_at(mesh, &loops, at, options, progress)?.into_iter();
+    let mut next = |(_, refusal): &mut Chosen| {
+        if refusal.is_some() {
+            return Ok(Patch::default());
         }
-    }
+        match patches.next() {
+            Some(Err(MeshError::Unfillable { reason, .. })) if reason != Refusal::NotALoop => {
+                *refusal = Some(reason);
+                Ok(Patch::default())
+            }
+            Some(patch) => Ok(patch?),
+            None => Ok(Patch::default()),
+        }
+    };
+    chosen.iter_mut().map(&mut next).collect()
 }
 
 /// The vertices that lie on several of the loops: between two of them, two patches could make the same edge.

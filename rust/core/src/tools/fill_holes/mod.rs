@@ -38,10 +38,12 @@ use super::options::check_range;
 use super::{Scale, SolveOptions};
 use crate::error::{MeshError, Refusal};
 use crate::hole_filling::{faces_at, FillOptions, Patch};
+use crate::memory::{Demand, Tool};
 use crate::mesh::vector::Point;
-use crate::mesh::Mesh;
+use crate::mesh::{boundary_loops, Mesh};
 use crate::operators::Dual;
 use crate::progress::{Progress, Report};
+use crate::remesh::budget;
 use crate::solve::Coupling;
 use crate::{Error, Result};
 use constants::{MARKED_ANGLE, REGION_RINGS};
@@ -175,6 +177,21 @@ pub fn fill_holes(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) 
     options.solve.run(|| fill(mesh, options, progress))
 }
 
+/// What filling all holes of a mesh takes: that of the longest, since they follow each other.
+#[must_use]
+pub fn filling_demand(mesh: &Mesh) -> Demand {
+    demand(mesh, boundary_loops(mesh.connectivity()).iter().map(Vec::len).max().unwrap_or(0))
+}
+
+/// What a patch in a rim of so many edges takes: it has as many faces as a disk with that rim has, up to the bound for all patches.
+/// The mesh itself is only looked through: a flag and a bit of bookkeeping for each face.
+fn demand(mesh: &Mesh, n_rim_edges: usize) -> Demand {
+    let disk = n_rim_edges.saturating_mul(n_rim_edges) / 5;
+    let most = budget::patch_faces(FillOptions::default().max_faces, n_rim_edges);
+    let whole = mesh.demand(Tool::FillHoles);
+    Demand { n_vertices: 0, n_faces: disk.min(most) + whole.n_faces / 200, ..whole }
+}
+
 fn check(options: &FillHolesOptions) -> Result<()> {
     if !(options.fidelity > 0.0 && options.fidelity.is_finite()) {
         return Err(Error::argument("fidelity", format!("is {}; it must be positive", options.fidelity)));
@@ -194,6 +211,7 @@ fn fill(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) -> Result<
     let geometry = FillOptions { edge_length: options.edge_length, ..FillOptions::default() };
     let mut chosen = choice::choose(mesh, options)?;
     let loops: Vec<Vec<u32>> = chosen.iter().map(|(vertices, _)| vertices.clone()).collect();
+    demand(mesh, loops.iter().map(Vec::len).max().unwrap_or(0)).admit(options.solve.memory_limit)?;
     let at_loops = faces_at(mesh, &loops)?;
     let patches = choice::triangulate(mesh, &mut chosen, &at_loops, &geometry, progress)?;
     let mut filled = Filled {

@@ -5,6 +5,7 @@ use std::collections::{HashMap, HashSet};
 use super::region::Region;
 use crate::mesh::vector::{distance, norm};
 use crate::progress::Progress;
+use crate::remesh::budget;
 use crate::remesh::curves::Keep;
 use crate::remesh::editable::{key, Edge};
 use crate::remesh::isotropic::run;
@@ -90,7 +91,7 @@ pub(super) fn resample(
         None if growth > 0.0 => Sizing::grown(rim_edge, growth, mesh, curves),
         None => Sizing::graded(vec![typical; mesh.n_vertices()], 0.0, mesh, curves),
     });
-    run(&mut remesher, rounds, &progress.quiet())?;
+    run(&mut remesher, rounds, budget::patch_faces(max_faces, n), &progress.quiet())?;
     let (points, faces, _) = remesher.mesh.into_parts(|v| (v as usize) < n);
     Ok(region.replace_patch(&points, &faces, &rim)?)
 }

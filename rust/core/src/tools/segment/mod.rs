@@ -34,6 +34,7 @@ pub use options::{SegmentMethod, SegmentOptions};
 
 use crate::error::MeshError;
 use crate::linear::Columns;
+use crate::memory::Tool;
 use crate::mesh::Mesh;
 use crate::progress::Progress;
 use crate::solve::{Settings, Status};
@@ -88,11 +89,17 @@ pub fn segment(
 ) -> Result<Segmentation> {
     options.check(mesh, values)?;
     let settings = Settings { announce: false, ..options.solve.settings()? };
-    options.solve.run(|| match &options.faces {
-        None => whole(mesh, values, options, &settings, progress),
-        Some(faces) => part::segment_part(mesh, values, faces, options, |mesh, values, options| {
-            whole(mesh, values, options, &settings, progress)
-        }),
+    let n_columns = values.map_or(3, |values| values.n_columns);
+    options.solve.run(|| {
+        mesh.demand(Tool::Segment)
+            .with_columns(n_columns, options.solve.solver.is_clarabel())
+            .admit(options.solve.memory_limit)?;
+        match &options.faces {
+            None => whole(mesh, values, options, &settings, progress),
+            Some(faces) => part::segment_part(mesh, values, faces, options, |mesh, values, options| {
+                whole(mesh, values, options, &settings, progress)
+            }),
+        }
     })
 }
 

@@ -1,0 +1,110 @@
+"""Every public call of the package on one mesh, as the tables of reliability make it: few iterations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import ridgeform
+
+Call = Callable[[ridgeform.Mesh, dict[str, Any]], Any]
+
+EVERY_THOUSANDTH = 1000
+
+
+def bumpy_grid(n_vertices: int, noise: float = 0.02) -> tuple[np.ndarray, np.ndarray]:
+    """A square grid of about so many vertices `(n,3)` at unit steps, with noise and a hole; faces `(m,3)`."""
+    side = max(round(float(np.sqrt(n_vertices))), 12)
+    x, y = np.meshgrid(np.arange(side, dtype=float), np.arange(side, dtype=float), indexing="ij")
+    vertices = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
+    vertices += np.random.default_rng(0).normal(scale=noise, size=vertices.shape)
+    vertices[:, 2] += 3 * np.sin(x.ravel() / side * 9) * np.cos(y.ravel() / side * 7)
+    corner = (np.arange(side - 1)[:, None] * side + np.arange(side - 1)).ravel()
+    faces = np.concatenate(
+        [
+            np.column_stack([corner, corner + side, corner + side + 1]),
+            np.column_stack([corner, corner + side + 1, corner + 1]),
+        ]
+    )
+    centre = vertices[faces].mean(1)[:, :2] - side / 2
+    return vertices, faces[np.hypot(*centre.T) > min(side / 6, 12)].astype(np.int32)
+
+
+def _pins(mesh: ridgeform.Mesh) -> tuple[np.ndarray, np.ndarray]:
+    pins = np.arange(0, mesh.n_vertices, EVERY_THOUSANDTH)
+    pins = pins[np.isin(pins, mesh.faces)]
+    return pins, np.sin(pins * 1.0)
+
+
+def _heights(mesh: ridgeform.Mesh) -> np.ndarray:
+    return np.ascontiguousarray(mesh.vertices[:, 2])
+
+
+def _paint(mesh: ridgeform.Mesh) -> np.ndarray:
+    x, y = mesh.vertices[:, 0], mesh.vertices[:, 1]
+    size = x.max()
+    stripes = (np.floor(3 * x / size) + np.floor(2 * y / size)) % 2
+    return np.column_stack([stripes, x / size, y / size])
+
+
+CALLS: dict[str, Call] = {
+    "report": lambda mesh, options: mesh.report,
+    "hessian": lambda mesh, options: ridgeform.hessian(mesh),
+    "cotangent_laplacian": lambda mesh, options: ridgeform.cotangent_laplacian(mesh),
+    "energy": lambda mesh, options: ridgeform.energy(mesh, _heights(mesh)),
+    "intrinsic_delaunay": lambda mesh, options: ridgeform.intrinsic_delaunay(mesh),
+    "find_holes": lambda mesh, options: ridgeform.find_holes(mesh),
+    "stylize": lambda mesh, options: ridgeform.stylize(mesh, iterations=1, **options),
+    "denoise": lambda mesh, options: ridgeform.denoise(
+        mesh, _heights(mesh), fidelity=1.0, max_iterations=30, **options
+    ),
+    "denoise 3 columns": lambda mesh, options: ridgeform.denoise(
+        mesh, mesh.vertices, fidelity=1.0, max_iterations=10, **options
+    ),
+    "denoise l2": lambda mesh, options: ridgeform.denoise(
+        mesh, _heights(mesh), fidelity=1.0, energy="l2_hessian", **options
+    ),
+    "interpolate": lambda mesh, options: ridgeform.interpolate(
+        mesh, *_pins(mesh), max_iterations=30, **options
+    ),
+    "interpolate clarabel": lambda mesh, options: ridgeform.interpolate(
+        mesh, *_pins(mesh), solver="clarabel", max_iterations=2, **options
+    ),
+    "denoise clarabel": lambda mesh, options: ridgeform.denoise(
+        mesh, mesh.vertices, fidelity=1.0, solver="clarabel", max_iterations=2, **options
+    ),
+    "vibration_modes": lambda mesh, options: ridgeform.vibration_modes(mesh, 3, max_iterations=10, **options),
+    "segment": lambda mesh, options: ridgeform.segment(mesh, **options),
+    "segment paper": lambda mesh, options: ridgeform.segment(
+        mesh, method="paper", epsilon_end=0.05, max_iterations=10, **options
+    ),
+    "fill_holes": lambda mesh, options: ridgeform.fill_holes(mesh, iterations=1, **options),
+    "fill_holes outer": lambda mesh, options: ridgeform.fill_holes(mesh, iterations=1, outer=True, **options),
+    "remesh": lambda mesh, options: ridgeform.remesh(mesh, iterations=2),
+    "diffusion_curves": lambda mesh, options: ridgeform.diffusion_curves(mesh, _paint(mesh)),
+    "trace_curves": lambda mesh, options: ridgeform.trace_curves(
+        mesh, mesh.vertices[:: EVERY_THOUSANDTH // 10]
+    ),
+}
+"""Name in the tables → the call; `options` are keywords that only tools with a solver take."""
+
+ESTIMATED: dict[str, tuple[str, int, str]] = {
+    "hessian": ("hessian", 1, "auto"),
+    "cotangent_laplacian": ("cotangent_laplacian", 1, "auto"),
+    "energy": ("energy", 1, "auto"),
+    "stylize": ("stylize", 3, "auto"),
+    "denoise": ("denoise", 1, "auto"),
+    "denoise 3 columns": ("denoise", 3, "auto"),
+    "denoise l2": ("denoise_quadratic", 1, "auto"),
+    "interpolate": ("interpolate", 1, "auto"),
+    "interpolate clarabel": ("interpolate", 1, "clarabel"),
+    "denoise clarabel": ("denoise", 3, "clarabel"),
+    "vibration_modes": ("vibration_modes", 1, "auto"),
+    "segment": ("segment", 3, "auto"),
+    "segment paper": ("segment", 3, "auto"),
+    "remesh": ("remesh", 1, "auto"),
+    "diffusion_curves": ("diffusion_curves", 3, "auto"),
+    "trace_curves": ("trace_curves", 1, "auto"),
+}
+"""Calls whose peak `memory_estimate` says: the tool, columns and solver to ask it for."""

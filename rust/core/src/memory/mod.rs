@@ -1,0 +1,112 @@
+//! How much memory a call needs, how much is free, and arrays that are refused instead of ending the process.
+//!
+//! A failed allocation of a Rust collection aborts, with everything that the process holds. So nothing large is taken before it
+//! is known to fit: [`Demand::admit`] compares a tool's [`Demand::estimate`] with the limit, by default [`SHARE`] of what is
+//! really free ([`available`]), and asks the system for as much, to give it back at once; and arrays whose size comes from
+//! arguments or meshes are made by [`filled`] and [`copied`], which return an error.
+
+mod cgroup;
+mod demand;
+mod free;
+mod model;
+mod threads;
+
+pub use demand::Demand;
+pub use free::available;
+pub use model::Tool;
+
+use crate::{Error, Result};
+
+/// The part of the free memory that a call takes at most by itself: estimates are within a quarter of the truth, so that one
+/// which is too low by that much still fits.
+pub const SHARE: f64 = 0.8;
+
+/// Calls that need less are not looked at one by one: the floor that every call asks for ([`floor`]) holds them.
+pub const SMALL: usize = 16 << 20;
+
+/// What must be free for any call: several calls that each are [`SMALL`], and what allocators keep for small pieces.
+const FLOOR: usize = 64 << 20;
+
+/// What a thread of a pool takes besides its work: its stack, and what the system allocator keeps for it.
+const THREAD: usize = 3 << 20;
+
+/// What a call may take when no limit was given: [`SHARE`] of what is free; no bound for what is [`SMALL`].
+#[must_use]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+pub fn share_of_free(needed: usize) -> usize {
+    if needed < SMALL {
+        return usize::MAX;
+    }
+    (SHARE * available() as f64) as usize
+}
+
+/// Refuses a call when not even the threads and small arrays of any call fit.
+///
+/// # Errors
+/// [`Error::Memory`].
+pub fn floor(what: &'static str) -> Result<()> {
+    let needed = FLOOR + THREAD * (1 + rayon::current_num_threads());
+    if is_granted(needed) {
+        return Ok(());
+    }
+    Err(Error::Memory { what, needed, limit: available(), is_given: false, fits: 0 })
+}
+
+/// `n` times `value`.
+///
+/// # Errors
+/// [`Error::Memory`] when the system does not give that much.
+pub fn filled<T: Clone>(what: &'static str, value: T, n: usize) -> Result<Vec<T>> {
+    let mut array = reserved(what, n)?;
+    array.resize(n, value);
+    Ok(array)
+}
+
+/// A copy of `values`.
+///
+/// # Errors
+/// [`Error::Memory`] when the system does not give that much.
+pub fn copied<T: Clone>(what: &'static str, values: &[T]) -> Result<Vec<T>> {
+    let mut array = reserved(what, values.len())?;
+    array.extend_from_slice(values);
+    Ok(array)
+}
+
+/// An empty array with room for `n` entries.
+///
+/// # Errors
+/// [`Error::Memory`] when the system does not give that much.
+pub fn reserved<T>(what: &'static str, n: usize) -> Result<Vec<T>> {
+    let mut array = Vec::new();
+    array.try_reserve_exact(n).map_err(|_| {
+        let needed = n.saturating_mul(size_of::<T>());
+        Error::Memory { what, needed, limit: available(), is_given: false, fits: 0 }
+    })?;
+    Ok(array)
+}
+
+/// An estimate, and by how much it may be too low: what must be free for [`SHARE`] of it to be `bytes`.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+fn with_margin(bytes: usize) -> usize {
+    (bytes as f64 / SHARE) as usize
+}
+
+/// Whether the system gives so many bytes now; they are given back at once.
+fn is_granted(bytes: usize) -> bool {
+    Vec::<u8>::new().try_reserve_exact(bytes).is_ok()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn an_array_that_no_machine_holds_is_an_error_that_says_its_size() {
+        let error = filled("values", 0.0, 1 << 60).unwrap_err();
+        assert!(error.to_string().starts_with("values: needs about 9223372036.85 GB of memory"), "{error}");
+        assert_eq!(filled("values", 7, 3).unwrap(), [7, 7, 7]);
+        assert_eq!(copied("values", &[1.0, 2.0]).unwrap(), [1.0, 2.0]);
+        floor("anything").unwrap();
+    }
+}
