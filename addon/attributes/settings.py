@@ -2,6 +2,7 @@
 """The settings of the tools on attributes, and how a modeler's sliders become the paper's numbers."""
 
 from ..blender.attribute_names import search_names
+from ..framework import shared_settings as shared
 from ..framework.settings import (
     Settings,
     boolean,
@@ -11,18 +12,6 @@ from ..framework.settings import (
     integer,
     number,
     vertex_group,
-)
-from ..framework.shared_settings import (
-    AVOID_RIDGES,
-    COUPLING,
-    DELAUNAY,
-    DUAL,
-    EXPERT,
-    FIDELITY,
-    MAX_ITERATIONS,
-    RIDGE_GROUP,
-    SOLVER,
-    USE_FIDELITY,
 )
 
 ENERGIES = (
@@ -111,8 +100,8 @@ class ResultSettings(EnergyChoice):
         default=0.0,
         active=_is_ours,
     )
-    ridge_group: RIDGE_GROUP
-    avoid_ridges: AVOID_RIDGES
+    ridge_group: shared.RIDGE_GROUP
+    avoid_ridges: shared.AVOID_RIDGES
     output: choice(
         "Result",
         "Where to put the result",
@@ -162,9 +151,9 @@ class DisplaySettings(Settings):
 class ExpertSettings(Settings):
     """The choices of the paper that rarely change, and the solver."""
 
-    dual: DUAL.but(active=_is_ours)
-    delaunay: DELAUNAY.but(active=lambda settings: settings.energy not in EXTRINSIC)
-    solver: SOLVER.but(active=lambda settings: settings.energy not in QUADRATIC)
+    dual: shared.DUAL.but(active=_is_ours)
+    delaunay: shared.DELAUNAY.but(active=lambda settings: settings.energy not in EXTRINSIC)
+    solver: shared.SOLVER.but(active=lambda settings: settings.energy not in QUADRATIC)
     tolerance: number(
         "Tolerance",
         "Certified relative duality gap that the result must reach",
@@ -172,32 +161,26 @@ class ExpertSettings(Settings):
         min=1e-8,
         max=1.0,
         precision=6,
-        section=EXPERT,
+        section=shared.EXPERT,
     )
-    max_iterations: MAX_ITERATIONS
+    max_iterations: shared.MAX_ITERATIONS
 
 
 class CoupledSettings(Settings):
     """How the components of the values share ridges."""
 
-    coupling: COUPLING
+    coupling: shared.COUPLING
 
 
 class StrengthSettings(AttributeName):
     """What is denoised, and how strongly."""
 
-    strength: factor(
-        "Strength",
+    strength: shared.strength(
         "How much is smoothed away: 0 keeps the values, 1 leaves only the broadest slopes. Independent of "
-        "the size and density of the mesh and the unit of the values",
-        default=0.5,
-        max=1.5,
-        soft_max=1.0,
-        active=lambda settings: not settings.use_fidelity,
+        "the size and density of the mesh and the unit of the values"
     )
-    use_fidelity: USE_FIDELITY
-    fidelity: number(
-        "Fidelity",
+    use_fidelity: shared.USE_FIDELITY
+    fidelity: shared.fidelity(
         "Fidelity weight (Rowe et al. 2024, eq. 23), in the units of the mesh: larger values stay closer to "
         "the original values",
         default=1000.0,
@@ -206,7 +189,6 @@ class StrengthSettings(AttributeName):
         soft_min=1e-3,
         soft_max=1e8,
         precision=3,
-        **FIDELITY,
     )
 
 

@@ -2,8 +2,8 @@
 """The settings of diffusion curves: where colors and regions come from, and how few colors are enough."""
 
 from ..blender.attribute_names import search_colors, search_face_numbers
+from ..framework import shared_settings as shared
 from ..framework.settings import Settings, boolean, choice, data_name, integer, number
-from ..framework.shared_settings import EXPERT
 
 
 def _finds_regions(settings: object) -> bool:
@@ -92,17 +92,12 @@ class DiffusionSettings(Settings):
         "Improve the colors of the curves until the redrawn surface is closest to the painted one, instead "
         "of leaving them as the paper has them",
         default=True,
-        section=EXPERT,
+        section=shared.EXPERT,
     )
-    fidelity: number(
-        "Fidelity",
+    fidelity: shared.fidelity(
         "How close the colors of the curves stay to the painted ones next to them (Rowe et al. 2024, eq. "
         "27), on a surface of unit area. Matters most without Best Colors",
         default=1000.0,
+        switched=False,
         min=1e-3,
-        max=1e12,
-        soft_min=1.0,
-        soft_max=1e6,
-        precision=1,
-        section=EXPERT,
     )

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from .settings import boolean, choice, choices, integer, vertex_group
+from .settings import Setting, boolean, choice, choices, factor, integer, number, vertex_group
 
 EXPERT = "Expert"
 """The subpanel of the paper's numbers and the solver's."""
@@ -90,9 +90,26 @@ USE_FIDELITY = boolean(
     section=EXPERT,
     flag=None,
 )
-FIDELITY = {
-    "section": EXPERT,
-    "active": lambda settings: settings.use_fidelity,
-    "implies": {"use_fidelity": True},
-}
-"""What a fidelity weight is that counts only if `use_fidelity` is on, which its flag turns on."""
+
+
+def fidelity(description: str, *, default: float, switched: bool = True, **more: object) -> Setting:
+    """The fidelity weight; if `switched`, it counts only with `use_fidelity`, which its flag sets."""
+    given = {"min": 1e-6, "max": 1e12, "soft_min": 1.0, "soft_max": 1e6, "precision": 1, "section": EXPERT}
+    if switched:
+        given |= {"active": uses_fidelity, "implies": {"use_fidelity": True}}
+    return number("Fidelity", description, default=default, **(given | more))
+
+
+def uses_fidelity(settings: object) -> bool:
+    """Whether the paper's fidelity weight counts."""
+    return settings.use_fidelity
+
+
+def has_strength(settings: object) -> bool:
+    """Whether the strength counts."""
+    return not settings.use_fidelity
+
+
+def strength(description: str) -> Setting:
+    """How strongly a tool acts, unless the fidelity weight is set; values up to 1.5 can be typed."""
+    return factor("Strength", description, default=0.5, max=1.5, soft_max=1.0, active=has_strength)

@@ -3,8 +3,8 @@
 
 import numpy as np
 
+from ..framework import shared_settings as shared
 from ..framework.settings import Settings, boolean, choice, factor, integer, number
-from ..framework.shared_settings import COUPLING, EXPERT, MARKS
 
 
 class HoleSettings(Settings):
@@ -68,7 +68,7 @@ class HoleSettings(Settings):
         flag=None,
         switches={"--one-material": "MAJORITY"},
     )
-    marks: MARKS.but(
+    marks: shared.MARKS.but(
         description="Mark the ridges of the patch. Marks that end at the hole always continue along them"
     )
     iterations: integer(
@@ -77,22 +77,16 @@ class HoleSettings(Settings):
         default=50,
         min=1,
         soft_max=200,
-        section=EXPERT,
+        section=shared.EXPERT,
         metavar="STEPS",
     )
-    fidelity: number(
-        "Fidelity",
+    fidelity: shared.fidelity(
         "Fidelity weight η of the flow (Rowe et al. 2024, eq. 24): larger values stay closer to the smooth "
         "patch that it starts from",
         default=50.0,
-        min=1e-6,
-        max=1e12,
-        soft_min=1.0,
-        soft_max=1e6,
-        precision=1,
-        section=EXPERT,
+        switched=False,
     )
-    coupling: COUPLING.but(description="How the coordinates share ridges")
+    coupling: shared.COUPLING.but(description="How the coordinates share ridges")
 
 
 PRESETS = {

@@ -2,16 +2,24 @@
 """The settings of segmenting: what is segmented, how finely, and what is made of the segments."""
 
 from ..blender.attribute_names import search_names
-from ..framework.settings import Settings, boolean, choice, choices, data_name, factor, integer, number
-from ..framework.shared_settings import (
-    AVOID_RIDGES,
-    EXPERT,
-    FIDELITY,
-    MAX_ITERATIONS,
-    RIDGE_GROUP,
-    SOLVER,
-    USE_FIDELITY,
+from ..framework import shared_settings as shared
+from ..framework.settings import (
+    Setting,
+    Settings,
+    boolean,
+    choice,
+    choices,
+    data_name,
+    factor,
+    integer,
+    number,
 )
+
+
+def _width(name: str, description: str, *, default: float) -> Setting:
+    """A width of the bands around borders."""
+    given = {"min": 1e-5, "max": 10.0, "precision": 4, "section": shared.EXPERT}
+    return number(name, description, default=default, **given)
 
 
 class SegmentSettings(Settings):
@@ -98,11 +106,11 @@ class SegmentSettings(Settings):
         default={"MATERIALS"},
         flag="--make",
     )
-    ridge_group: RIDGE_GROUP.but(
+    ridge_group: shared.RIDGE_GROUP.but(
         name="Borders",
         description="Vertex group painted where borders should run. Unpainted areas are neutral",
     )
-    avoid_ridges: AVOID_RIDGES.but(
+    avoid_ridges: shared.AVOID_RIDGES.but(
         name="Avoid Borders",
         description="Keep borders away from the painted vertices instead of drawing them there",
     )
@@ -113,7 +121,7 @@ class SegmentSettings(Settings):
         default=0,
         min=0,
         soft_max=200,
-        section=EXPERT,
+        section=shared.EXPERT,
     )
     method: choice(
         "Method",
@@ -128,49 +136,34 @@ class SegmentSettings(Settings):
             ("paper", "Paper", "Cut where the indicator is below the threshold (Rowe et al. 2024)"),
         ),
         default="fitted",
-        section=EXPERT,
+        section=shared.EXPERT,
     )
     cut_threshold: factor(
         "Threshold",
         "For the method Paper: the indicator is 1 inside a segment and falls to 0 on a border. Faces are cut "
         "apart where it is below this value: higher values cut along weaker borders as well",
         default=0.6,
-        section=EXPERT,
+        section=shared.EXPERT,
         active=lambda settings: settings.method == "paper",
     )
-    use_fidelity: USE_FIDELITY.but(
+    use_fidelity: shared.USE_FIDELITY.but(
         description="Set the fidelity weight of the paper instead of finding it from the noise of the mesh"
     )
-    fidelity: number(
-        "Fidelity",
+    fidelity: shared.fidelity(
         "Fidelity weight of the paper (Rowe et al. 2024, eq. 41): larger values stay closer to the surface, "
         "noise included",
         default=1000.0,
-        min=1e-6,
-        max=1e12,
-        soft_min=1.0,
-        soft_max=1e6,
-        precision=1,
-        **FIDELITY,
     )
-    epsilon_start: number(
+    epsilon_start: _width(
         "First Width",
         "Initial width of the bands around borders (ε of the paper), in the unit below. Halved until the "
         "last width",
         default=0.1,
-        min=1e-5,
-        max=10.0,
-        precision=4,
-        section=EXPERT,
     )
-    epsilon_end: number(
+    epsilon_end: _width(
         "Last Width",
         "Final width of the bands around borders. The method Fitted stops at the resolution of the mesh",
         default=0.001,
-        min=1e-5,
-        max=10.0,
-        precision=4,
-        section=EXPERT,
     )
     scale: choice(
         "Unit",
@@ -182,10 +175,10 @@ class SegmentSettings(Settings):
             ("max_edge", "Longest Edge", "The longest edge"),
         ),
         default="extent",
-        section=EXPERT,
+        section=shared.EXPERT,
     )
-    solver: SOLVER
-    max_iterations: MAX_ITERATIONS
+    solver: shared.SOLVER
+    max_iterations: shared.MAX_ITERATIONS
 
 
 PRESETS = {

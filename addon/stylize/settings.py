@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from ..framework import shared_settings as shared
 from ..framework.settings import (
     Settings,
     boolean,
@@ -14,19 +15,6 @@ from ..framework.settings import (
     integer,
     number,
     vertex_group,
-)
-from ..framework.shared_settings import (
-    AVOID_RIDGES,
-    COUPLING,
-    DELAUNAY,
-    DUAL,
-    EXPERT,
-    FIDELITY,
-    MARKS,
-    MAX_ITERATIONS,
-    RIDGE_GROUP,
-    SOLVER,
-    USE_FIDELITY,
 )
 
 WHERE = "Where"
@@ -53,13 +41,8 @@ class StylizeSettings(Settings):
         max=1000,
         soft_max=60,
     )
-    strength: factor(
-        "Strength",
-        "How far each step may move the surface: 0 keeps every detail, 1 leaves only the main planes",
-        default=0.5,
-        max=1.5,
-        soft_max=1.0,
-        active=lambda settings: not settings.use_fidelity,
+    strength: shared.strength(
+        "How far each step may move the surface: 0 keeps every detail, 1 leaves only the main planes"
     )
     sharpness: factor(
         "Sharpness",
@@ -71,8 +54,8 @@ class StylizeSettings(Settings):
         "Vertex group that determines where to stylize, and how strongly. Vertices outside of it do not move",
         section=WHERE,
     )
-    ridge_group: RIDGE_GROUP.but(section=WHERE)
-    avoid_ridges: AVOID_RIDGES.but(section=WHERE)
+    ridge_group: shared.RIDGE_GROUP.but(section=WHERE)
+    avoid_ridges: shared.AVOID_RIDGES.but(section=WHERE)
     output: choice(
         "Result",
         "Where to put the result",
@@ -90,7 +73,7 @@ class StylizeSettings(Settings):
         "Scale the result so that it encloses the same volume as before. For closed meshes in Object Mode",
         section=LAST_STEPS,
     )
-    marks: MARKS.but(section=LAST_STEPS)
+    marks: shared.MARKS.but(section=LAST_STEPS)
     mark_angle: number(
         "Ridge Angle",
         "Minimum angle between the two faces of an edge for it to be marked as a ridge",
@@ -119,17 +102,11 @@ class StylizeSettings(Settings):
         metavar="RATIO",
         implies={"reduce": True},
     )
-    use_fidelity: USE_FIDELITY
-    fidelity: number(
-        "Fidelity",
+    use_fidelity: shared.USE_FIDELITY
+    fidelity: shared.fidelity(
         "Fidelity weight η of the flow (Rowe et al. 2024, eq. 24): larger values stay closer to the surface",
         default=500.0,
-        min=1e-6,
-        max=1e12,
-        soft_min=1.0,
         soft_max=1e8,
-        precision=1,
-        **FIDELITY,
     )
     scale: choice(
         "Unit",
@@ -149,13 +126,13 @@ class StylizeSettings(Settings):
             ),
         ),
         default="max_edge",
-        section=EXPERT,
-        active=lambda settings: settings.use_fidelity,
+        section=shared.EXPERT,
+        active=shared.uses_fidelity,
     )
-    coupling: COUPLING
-    dual: DUAL
-    delaunay: DELAUNAY
-    solver: SOLVER
+    coupling: shared.COUPLING
+    dual: shared.DUAL
+    delaunay: shared.DELAUNAY
+    solver: shared.SOLVER
     tolerance: number(
         "Tolerance",
         "Certified relative duality gap that each step must reach. 0 stops when nothing visible changes",
@@ -163,9 +140,9 @@ class StylizeSettings(Settings):
         min=0.0,
         max=1.0,
         precision=6,
-        section=EXPERT,
+        section=shared.EXPERT,
     )
-    max_iterations: MAX_ITERATIONS
+    max_iterations: shared.MAX_ITERATIONS
 
 
 PRESETS = {

@@ -92,3 +92,16 @@ def select_only(obj: bpy.types.Object, mask: np.ndarray) -> None:
     obj.data.vertices.foreach_set("select", mask)
     bpy.context.tool_settings.mesh_select_mode = (True, False, False)
     bpy.ops.object.mode_set(mode="EDIT")
+
+
+BAD_MESHES = {
+    "no area": ([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]]),
+    "one point": ([[0, 0, 0]] * 4, [[0, 1, 2, 3]]),
+    "three faces at an edge": (
+        [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, -1, 0]],
+        [[0, 1, 2], [0, 1, 3], [0, 1, 4]],
+    ),
+    "both sides": ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 1]]),
+    "loose vertex": ([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [5, 5, 5]], [[0, 1, 2, 3]]),
+}
+"""Vertices and faces that tools must end on with finite numbers, or refuse."""

@@ -52,21 +52,22 @@ class FakeOperator(modal.ModalRun):
 
 
 class FakeContext:
-    """The parts of a context that a modal run uses, with how many timers there are."""
+    """The parts of a context that a modal run uses, with what it showed and how many timers there are."""
 
     def __init__(self):
-        """Begin without timers."""
-        self.window, self.area, self.timers = None, None, 0
+        """Begin with nothing shown."""
+        self.window, self.area = None, None
+        self.timers, self.cursor, self.status = 0, [], None
         self.window_manager = SimpleNamespace(
             event_timer_add=self._add,
             event_timer_remove=self._remove,
             modal_handler_add=lambda _operator: None,
             windows=(),
-            progress_begin=lambda low, high: None,
-            progress_update=lambda value: None,
-            progress_end=lambda: None,
+            progress_begin=lambda low, _high: self.cursor.append(low),
+            progress_update=self.cursor.append,
+            progress_end=lambda: self.cursor.append("end"),
         )
-        self.workspace = SimpleNamespace(status_text_set=lambda draw: None)
+        self.workspace = SimpleNamespace(status_text_set=self._set_status)
 
     def _add(self, _seconds, window):
         self.timers += 1
@@ -75,10 +76,38 @@ class FakeContext:
     def _remove(self, _timer):
         self.timers -= 1
 
+    def _set_status(self, draw):
+        self.status = draw
+
 
 def event(kind, value="PRESS"):
     """What Blender hands to `modal`."""
     return SimpleNamespace(type=kind, value=value)
+
+
+def begin(run):
+    """Begin the modal run of a tool: the operator and its context."""
+    operator, context = FakeOperator(), FakeContext()
+    assert operator.begin_modal(context, run) == {"RUNNING_MODAL"}
+    return operator, context
+
+
+def poll_until(operator, context, seen):
+    """Poll until something is seen, while the run goes on."""
+    end = time.monotonic() + PATIENCE
+    while not seen():
+        assert time.monotonic() < end, "no preview"
+        assert operator.modal(context, event("TIMER")) == {"RUNNING_MODAL"}
+        time.sleep(0.002)
+
+
+def poll_to_the_end(operator, context):
+    """Poll until the operator ends, and say what it returned."""
+    end = time.monotonic() + PATIENCE
+    while (outcome := operator.modal(context, event("TIMER"))) == {"RUNNING_MODAL"}:
+        assert time.monotonic() < end, "the run does not end"
+        time.sleep(0.002)
+    return outcome
 
 
 class Session:
@@ -88,8 +117,7 @@ class Session:
         """Begin it; `RefusedError` as the tool says."""
         tool, kind, given = TOOLS[name]
         self.run = tool(objects, defaults_of(kind, **(given | settings)))
-        self.operator, self.context = FakeOperator(), FakeContext()
-        assert self.operator.begin_modal(self.context, self.run) == {"RUNNING_MODAL"}
+        self.operator, self.context = begin(self.run)
 
     def send(self, kind):
         """Hand over an event."""
@@ -97,11 +125,7 @@ class Session:
 
     def finish(self):
         """Poll until the operator ends, and say what it returned."""
-        end = time.monotonic() + PATIENCE
-        while (outcome := self.send("TIMER")) == {"RUNNING_MODAL"}:
-            assert time.monotonic() < end, "the run does not end"
-            time.sleep(0.002)
-        return outcome
+        return poll_to_the_end(self.operator, self.context)
 
     def check_ended_but_timer(self):
         """Only what the next event takes away is left of the run."""

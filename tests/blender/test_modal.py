@@ -1,7 +1,6 @@
 """The modal run, without a window: events are handed to it one by one."""
 
 import time
-from types import SimpleNamespace
 
 import addon_kit as kit
 import bpy
@@ -10,8 +9,7 @@ import pytest
 from bl_ext.user_default.ridgeform.framework import job, modal
 from bl_ext.user_default.ridgeform.stylize.settings import default_settings
 from bl_ext.user_default.ridgeform.stylize.tool import Stylization
-
-PATIENCE = 60.0
+from modal_kit import PATIENCE, begin, event, poll_to_the_end, poll_until
 
 
 @pytest.fixture(autouse=True)
@@ -21,76 +19,13 @@ def none_left():
     assert modal._running == []
 
 
-class FakeOperator(modal.ModalRun):
-    """What Blender would make of the mixin, with its reports kept."""
-
-    def __init__(self):
-        """Begin without reports."""
-        self.reports = []
-
-    def report(self, level, message):
-        """Keep a report."""
-        self.reports.append((level, message))
-
-    def finished(self, context, run):
-        """Write the result."""
-        run.apply()
-        return {"FINISHED"}
-
-
-class FakeContext:
-    """The parts of a context that a modal run uses, with what it showed."""
-
-    def __init__(self):
-        """Begin with nothing shown."""
-        self.window, self.area = None, None
-        self.timers, self.cursor, self.status = 0, [], None
-        self.window_manager = SimpleNamespace(
-            event_timer_add=self._add, event_timer_remove=self._remove, 
-            modal_handler_add=lambda _operator: None,
-            windows=(),
-            progress_begin=lambda low, high: self.cursor.append(low),
-            progress_update=self.cursor.append, progress_end=lambda: self.cursor.append("end"),
-        )  # fmt: skip
-        self.workspace = SimpleNamespace(status_text_set=self._set_status)
-
-    def _add(self, _seconds, window):
-        self.timers += 1
-        return "timer"
-
-    def _remove(self, _timer):
-        self.timers -= 1
-
-    def _set_status(self, draw):
-        self.status = draw
-
-
-def event(kind, value="PRESS"):
-    return SimpleNamespace(type=kind, value=value)
-
-
 def start(obj, steps=2000):
     """A run that would take long, begun, with at least one step previewed."""
     before = kit.coordinates(obj)
     run = Stylization([obj], default_settings(steps=steps, use_fidelity=True, fidelity=5000.0))
-    operator, context = FakeOperator(), FakeContext()
-    assert operator.begin_modal(context, run) == {"RUNNING_MODAL"}
-    end = time.monotonic() + PATIENCE
-    while np.array_equal(kit.coordinates(obj), before):
-        assert time.monotonic() < end, "no preview"
-        assert operator.modal(context, event("TIMER")) == {"RUNNING_MODAL"}
-        time.sleep(0.005)
+    operator, context = begin(run)
+    poll_until(operator, context, lambda: not np.array_equal(kit.coordinates(obj), before))
     return run, operator, context
-
-
-def poll_to_the_end(operator, context):
-    end = time.monotonic() + PATIENCE
-    while True:
-        assert time.monotonic() < end, "the run does not end"
-        result = operator.modal(context, event("TIMER"))
-        if result != {"RUNNING_MODAL"}:
-            return result
-        time.sleep(0.005)
 
 
 def test_what_events_mean():
@@ -121,8 +56,7 @@ def test_cancel_in_edit_mode_restores_every_bit():
     before = kit.coordinates(obj)
     kit.select_only(obj, np.ones(len(before), bool))
     run = Stylization([obj], default_settings(steps=2000, use_fidelity=True, fidelity=5000.0))
-    operator, context = FakeOperator(), FakeContext()
-    operator.begin_modal(context, run)
+    operator, context = begin(run)
     end = time.monotonic() + PATIENCE
     while not run.preview():
         assert time.monotonic() < end, "no preview"
@@ -155,8 +89,7 @@ def test_the_end_of_the_run_is_the_end_of_the_operator():
     obj = kit.bumpy_box()
     before = kit.coordinates(obj)
     run = Stylization([obj], default_settings(steps=2))
-    operator, context = FakeOperator(), FakeContext()
-    operator.begin_modal(context, run)
+    operator, context = begin(run)
     assert poll_to_the_end(operator, context) == {"FINISHED"}
     after = kit.coordinates(obj)
     kit.set_coordinates(obj, before)
@@ -205,4 +138,4 @@ def test_a_deleted_object_ends_the_run():
     bpy.data.objects.remove(obj)
     assert poll_to_the_end(operator, context) == {"CANCELLED"}
     assert not run.job.is_running
-    assert operator.reports[-1][0] == {"ERROR"}
+    assert operator.reports[-1][0] == "ERROR"

@@ -18,7 +18,7 @@ from bl_ext.user_default.ridgeform.attributes.settings import (
 from bl_ext.user_default.ridgeform.blender.attribute_names import SHOWN
 from bl_ext.user_default.ridgeform.framework import modal
 from bl_ext.user_default.ridgeform.framework.settings import defaults_of
-from test_modal import FakeContext, event, poll_to_the_end
+from modal_kit import begin, event, poll_to_the_end
 
 TOOLS = {
     "denoise": (Denoising, DenoiseSettings, {"sharpness": 1.0}),
@@ -26,18 +26,6 @@ TOOLS = {
     "modes": (VibrationModes, ModesSettings, {"count": 200}),
 }
 LONG = {"tolerance": 1e-8, "display": "VIEWPORT"}
-
-
-class FakeOperator(modal.ModalRun):
-    """What Blender would make of the mixin, with its reports kept."""
-
-    def __init__(self):
-        """Begin without reports."""
-        self.reports = []
-
-    def report(self, level, message):
-        """Keep a report."""
-        self.reports.append((level, message))
 
 
 def heated_box(cuts=40):
@@ -56,8 +44,7 @@ def start(obj, tool, **changes):
     """A run that takes a while, begun and seen at work."""
     kind, settings, options = TOOLS[tool]
     run = kind([obj], defaults_of(settings, **(options | LONG | changes)))
-    operator, context = FakeOperator(), FakeContext()
-    assert operator.begin_modal(context, run) == {"RUNNING_MODAL"}
+    operator, context = begin(run)
     return run, operator, context
 
 
@@ -71,7 +58,7 @@ def test_cancel_leaves_everything_as_it_was(tool):
     assert not run.job.is_running
     assert names(obj) == before
     assert context.timers == 0
-    assert operator.reports == [({"INFO"}, "Canceled: everything is as it was")]
+    assert operator.reports == [("INFO", "Canceled: everything is as it was")]
 
 
 @pytest.mark.parametrize("tool", list(TOOLS))
@@ -82,7 +69,7 @@ def test_a_run_to_the_end_writes_and_reports(tool):
     made = {"denoise": "heat_denoised", "interpolate": "heat_interpolated", "modes": "ridgeform_mode_2"}[tool]
     assert {made, SHOWN} <= set(names(obj))
     ((level, message),) = operator.reports
-    assert level == {"INFO"}
+    assert level == "INFO"
     assert '"Box"' in message
 
 
@@ -114,7 +101,7 @@ def test_a_failed_run_is_an_error_and_writes_nothing():
     _, operator, context = start(obj, "modes", count=10_000)
     assert poll_to_the_end(operator, context) == {"CANCELLED"}
     ((level, message),) = operator.reports
-    assert level == {"ERROR"}
+    assert level == "ERROR"
     assert "count" in message
     assert names(obj) == before
     assert bpy.context.mode == "OBJECT"

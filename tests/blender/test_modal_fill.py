@@ -1,7 +1,5 @@
 """The modal run of Fill Holes: the preview touches no mesh, Esc leaves every bit, Enter keeps."""
 
-import time
-
 import addon_kit as kit
 import bpy
 import hole_kit
@@ -11,7 +9,7 @@ from bl_ext.user_default.ridgeform.framework import job, modal
 from bl_ext.user_default.ridgeform.framework.settings import defaults_of
 from bl_ext.user_default.ridgeform.holes.settings import HoleSettings
 from bl_ext.user_default.ridgeform.holes.tool import HoleFilling
-from test_modal import PATIENCE, FakeContext, FakeOperator, event, poll_to_the_end
+from modal_kit import begin, event, poll_to_the_end, poll_until
 
 
 @pytest.fixture(autouse=True)
@@ -23,13 +21,9 @@ def none_left():
 
 def start(obj, previewed=True):
     run = HoleFilling([obj], defaults_of(HoleSettings, iterations=200, edge_length=0.02))
-    operator, context = FakeOperator(), FakeContext()
-    assert operator.begin_modal(context, run) == {"RUNNING_MODAL"}
-    end = time.monotonic() + PATIENCE
-    while previewed and run._overlay.n_triangles == 0:
-        assert time.monotonic() < end, "no preview"
-        assert operator.modal(context, event("TIMER")) == {"RUNNING_MODAL"}
-        time.sleep(0.002)
+    operator, context = begin(run)
+    if previewed:
+        poll_until(operator, context, lambda: run._overlay.n_triangles > 0)
     return run, operator, context
 
 
@@ -98,8 +92,7 @@ def test_the_end_of_the_run_is_what_execute_gives():
     obj = hole_kit.box()
     settings = {"iterations": 200, "edge_length": 0.05}
     run = HoleFilling([obj], defaults_of(HoleSettings, **settings))
-    operator, context = FakeOperator(), FakeContext()
-    operator.begin_modal(context, run)
+    operator, context = begin(run)
     assert poll_to_the_end(operator, context) == {"FINISHED"}
     kit.empty_scene()
     # The run above is over; the object of the same shape takes its place.

@@ -159,17 +159,7 @@ def test_what_each_tool_needs():
     assert bpy.ops.ridgeform.interpolate_attribute.poll()
 
 
-@pytest.mark.parametrize(
-    ("vertices", "faces"),
-    [
-        ([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]]),
-        ([[0, 0, 0]] * 4, [[0, 1, 2, 3]]),
-        ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, -1, 0]], [[0, 1, 2], [0, 1, 3], [0, 1, 4]]),
-        ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 1]]),
-        ([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [5, 5, 5]], [[0, 1, 2, 3]]),
-    ],
-    ids=["no area", "one point", "three faces at an edge", "both sides", "loose vertex"],
-)
+@pytest.mark.parametrize(("vertices", "faces"), kit.BAD_MESHES.values(), ids=kit.BAD_MESHES)
 @pytest.mark.parametrize("operator", ["denoise_attribute", "interpolate_attribute"])
 def test_bad_meshes_end_finite_or_refused(operator, vertices, faces):
     obj = kit.add_object("Bad", vertices, faces)

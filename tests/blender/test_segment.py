@@ -11,8 +11,7 @@ from bl_ext.user_default.ridgeform.framework.settings import defaults_of
 from bl_ext.user_default.ridgeform.segments import layers, slots, tool
 from bl_ext.user_default.ridgeform.segments.settings import SegmentSettings, segment_options
 from known_shapes import shapes
-from test_modal import FakeContext, event, poll_to_the_end
-from test_modal_attributes import FakeOperator
+from modal_kit import begin, event, poll_to_the_end
 
 SIDES = 6
 
@@ -339,14 +338,13 @@ def test_split_seams_are_one_surface():
 
 def test_escape_leaves_everything_and_enter_keeps_what_is_reached():
     obj, _ = cube(n=40)
-    operator, context = FakeOperator(), FakeContext()
     run = tool.Segmenting([obj], defaults_of(SegmentSettings, length_weight=0.45))
-    operator.begin_modal(context, run)
+    operator, context = begin(run)
     assert operator.modal(context, event("ESC")) == {"CANCELLED"}
     assert layers.SEGMENT not in obj.data.attributes
     assert len(bpy.data.materials) == 0
     run = tool.Segmenting([obj], defaults_of(SegmentSettings, length_weight=0.45))
-    operator.begin_modal(context, run)
+    operator, context = begin(run)
     operator.modal(context, event("RET"))
     assert poll_to_the_end(operator, context) == {"FINISHED"}
     assert run.summary[0]["status"] == "stopped"

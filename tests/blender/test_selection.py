@@ -129,17 +129,7 @@ def test_unknown_group_and_empty_mask():
     assert "No vertex" in refused(strength_group="none")
 
 
-@pytest.mark.parametrize(
-    ("vertices", "faces"),
-    [
-        ([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]]),
-        ([[0, 0, 0]] * 4, [[0, 1, 2, 3]]),
-        ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, -1, 0]], [[0, 1, 2], [0, 1, 3], [0, 1, 4]]),
-        ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 1]]),
-        ([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [5, 5, 5]], [[0, 1, 2, 3]]),
-    ],
-    ids=["no area", "one point", "three faces at an edge", "both sides", "loose vertex"],
-)
+@pytest.mark.parametrize(("vertices", "faces"), kit.BAD_MESHES.values(), ids=kit.BAD_MESHES)
 def test_bad_meshes_end_finite_or_refused(vertices, faces):
     obj = kit.add_object("Bad", vertices, faces)
     before = kit.coordinates(obj)

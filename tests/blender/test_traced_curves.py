@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 from bl_ext.user_default.ridgeform.diffusion import bezier, curves_io
-from test_diffusion_curves import (
+from curve_kit import (
     BLUE,
     CELLS,
     RED,
