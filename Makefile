@@ -3,7 +3,7 @@ PYTHON ?= python3
 RUN = @$(PYTHON) scripts/setup_env.py
 
 .PHONY: help demo test test-all-blenders lint workflows notices advisories bench bench-holes bench-segments \
-	bench-memory bench-limits bench-growth extension wheel release sizes docs fixtures pictures gallery
+	bench-memory bench-limits bench-growth bench-latency fuzz extension wheel release sizes docs fixtures pictures gallery
 
 help:
 	@echo "make demo        stylize a real scan in Blender, without a window: out/demo.png, out/demo.blend"
@@ -20,6 +20,8 @@ help:
 	@echo "make bench-memory  what calls take beside what is said of them: docs/reliability.md"
 	@echo "make bench-limits  every call under caps on memory: docs/reliability.md"
 	@echo "make bench-growth  how time grows with what a file has many of: docs/reliability.md"
+	@echo "make bench-latency   how soon every tool hears a wish to stop: docs/reliability.md"
+	@echo "make fuzz        random calls of wheel and core for MINUTES=10"
 	@echo "make wheel       build the Python wheel"
 	@echo "make extension   build and check the Blender extension: .ridgeform/extension/"
 	@echo "                 WHEELS=folder: with wheels built elsewhere, for other platforms too"
@@ -65,6 +67,13 @@ bench-segments:
 bench-memory bench-limits bench-growth: wheel
 	@PYTHONPATH=.ridgeform/wheel-site .ridgeform/py311/bin/python \
 		benchmarks/$(subst bench-growth,growth,$(subst bench-limits,limits,$(subst bench-memory,peaks,$@))).py --write $(ARGS)
+
+bench-latency:
+	$(RUN) scripts/build_wheel.py
+	PYTHONPATH=.ridgeform/wheel-site:tests .ridgeform/py311/bin/python benchmarks/latency.py $(ARGS)
+
+fuzz:
+	$(RUN) scripts/fuzz.py $(or $(MINUTES),10)
 
 extension:
 	$(RUN) scripts/build_extension.py $(if $(WHEELS),--wheels $(WHEELS))

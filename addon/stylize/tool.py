@@ -179,6 +179,11 @@ def _write_result(part: FlowPart, settings: object) -> None:
         part.warnings.append(
             f"the shape collapsed, step {result.iterations} is kept: use less strength or fewer steps"
         )
+    elif result.status == "diverged":
+        part.warnings.append(
+            f"a step led far away from the shape, step {result.iterations} is kept: "
+            "its triangles are too uneven; merge vertices by distance or remesh first"
+        )
     elif result.status == "converged":
         part.warnings.append(f"nothing moved after step {result.iterations}")
     coordinates = part.merged(result.vertices)

@@ -228,3 +228,12 @@ def test_a_wide_hole_across_an_edge_has_no_folds():
     filled = ridgeform.fill_holes(without(vertices, faces, [side, 0.1, side], 2.0))
     new = np.asarray(filled.new_vertices)
     assert np.minimum(side - new[:, 0], side - new[:, 2]).max() < 1e-9
+
+
+def test_a_hole_named_twice_is_filled_by_neither():
+    vertices, faces = shapes.icosphere(2)
+    mesh = ridgeform.Mesh(vertices, faces[1:])
+    (rim,) = ridgeform.boundary_loops(mesh)
+    for loops in ([0, 0], [0, rim], [rim, np.roll(rim, 1)[::-1]]):
+        with pytest.raises(ridgeform.ArgumentError, match="loops: entries 0 and 1 are the same hole"):
+            ridgeform.fill_holes(mesh, loops=loops)

@@ -35,6 +35,9 @@ pub enum Error {
         /// How many vertices a mesh may have that fits; 0 if not known.
         fits: usize,
     },
+    /// No thread could be started to work on.
+    #[error(transparent)]
+    Threads(#[from] ThreadsError),
     /// The caller asked to stop through [`crate::Progress::cancel`]; nothing is returned.
     #[error("cancelled")]
     Cancelled,
@@ -45,6 +48,14 @@ impl Error {
     pub fn argument(name: &'static str, problem: impl Into<String>) -> Self {
         Self::Argument { name, problem: problem.into() }
     }
+}
+
+/// The system gives no thread to work on.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("no thread could be started: {reason}; end other programs, or raise the limit of processes (ulimit -u)")]
+pub struct ThreadsError {
+    /// What the system said.
+    pub reason: String,
 }
 
 /// What is wrong with a mesh.
@@ -66,6 +77,12 @@ pub enum MeshError {
     NonFiniteVertex {
         /// The vertex.
         vertex: usize,
+    },
+    /// Coordinates so large that the length of an edge between them is past the largest number.
+    #[error("face {face} has an edge too long for a number; scale the mesh down")]
+    TooLarge {
+        /// The face.
+        face: usize,
     },
     /// An edge length is NaN, infinite or negative.
     #[error("face {face} has an edge length that is negative or not finite; pass lengths >= 0")]
@@ -175,6 +192,15 @@ pub enum SolveError {
         /// The limit in bytes that was given; without one the system refused.
         limit: Option<usize>,
     },
+    /// What was to be computed is past the largest number.
+    #[error("{what} would be too large for a number; scale the mesh or the values to a size around 1")]
+    NoNumber {
+        /// What it is.
+        what: &'static str,
+    },
+    /// Rounding leaves no correct digit of the answer.
+    #[error("the sizes of the triangles differ so much that rounding leaves nothing of the answer; remove the largest and the smallest, or remesh")]
+    Uneven,
     /// The constraints contradict each other or the problem has no unique solution.
     #[error("the problem has no solution: {reason}")]
     Infeasible {

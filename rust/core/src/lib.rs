@@ -14,7 +14,9 @@ pub mod remesh;
 #[doc(hidden)]
 pub mod shapes;
 pub mod solve;
+pub mod threads;
 pub mod tools;
+pub mod unit;
 
 pub use error::{Error, Result};
 pub use progress::Progress;

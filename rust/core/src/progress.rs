@@ -1,8 +1,10 @@
 //! Cancelling, finishing early and watching a running call from another thread.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, TryLockError};
+use std::time::{Duration, Instant};
 
+use crate::unit::Unit;
 use crate::{Error, Result};
 
 /// What a running call last said of itself.
@@ -23,17 +25,21 @@ pub struct Report {
 /// Vertices and faces that a running call has made so far.
 pub type Surface = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
+/// How long a watcher waits for the state: it is held for less than a millisecond, or since a fork, and then forever.
+const PATIENCE: Duration = Duration::from_secs(1);
+
 #[derive(Debug, Default)]
 struct State {
     report: Report,
-    snapshot: Option<Vec<[f64; 3]>>,
-    surface: Option<Surface>,
+    snapshot: Option<Arc<[[f64; 3]]>>,
+    surface: Option<Arc<Surface>>,
 }
 
 #[derive(Debug, Default)]
 struct Wishes {
     cancel: AtomicBool,
     finish: AtomicBool,
+    asked: AtomicU64,
 }
 
 /// A handle shared between a running call and whoever watches it; clones share one state.
@@ -41,6 +47,8 @@ struct Wishes {
 pub struct Progress {
     wishes: Arc<Wishes>,
     state: Arc<Mutex<State>>,
+    /// What the coordinates are measured in that are published through this handle.
+    unit: Unit,
 }
 
 impl Progress {
@@ -53,7 +61,13 @@ impl Progress {
     /// A handle for a part of the call: it hears the same wishes, and what is published through it nobody sees.
     #[must_use]
     pub fn quiet(&self) -> Self {
-        Self { wishes: Arc::clone(&self.wishes), state: Arc::default() }
+        Self { wishes: Arc::clone(&self.wishes), state: Arc::default(), unit: self.unit }
+    }
+
+    /// The handle for a part of the call that measures coordinates in `unit`.
+    #[must_use]
+    pub fn in_unit(&self, unit: Unit) -> Self {
+        Self { unit: self.unit.times(unit), ..self.clone() }
     }
 
     /// Ask the running call to stop and return [`Error::Cancelled`].
@@ -69,13 +83,26 @@ impl Progress {
     /// Whether [`Progress::cancel`] was called.
     #[must_use]
     pub fn is_cancelled(&self) -> bool {
+        self.wishes.asked.fetch_add(1, Ordering::Relaxed);
         self.wishes.cancel.load(Ordering::Relaxed)
+    }
+
+    /// Whether to leave what is being done: the call is to be cancelled, or to finish with what there is.
+    #[must_use]
+    pub fn is_stopping(&self) -> bool {
+        self.is_cancelled() || self.is_finishing()
     }
 
     /// Whether [`Progress::finish`] was called.
     #[must_use]
     pub fn is_finishing(&self) -> bool {
         self.wishes.finish.load(Ordering::Relaxed)
+    }
+
+    /// How often the call has asked whether to stop: between two questions it hears nothing.
+    #[must_use]
+    pub fn n_asked(&self) -> u64 {
+        self.wishes.asked.load(Ordering::Relaxed)
     }
 
     /// # Errors
@@ -90,39 +117,68 @@ impl Progress {
 
     /// Publish where the call stands.
     pub fn report(&self, report: Report) {
-        self.state().report = report;
+        self.with(|state| state.report = report);
     }
 
     /// What the call last published.
     #[must_use]
     pub fn last_report(&self) -> Report {
-        self.state().report.clone()
+        self.with(|state| state.report.clone()).unwrap_or_default()
     }
 
     /// Publish the vertices after a finished flow step.
     pub fn set_snapshot(&self, vertices: &[[f64; 3]]) {
-        self.state().snapshot = Some(vertices.to_vec());
+        let vertices = vertices.iter().map(|p| p.map(|x| self.unit.restore(x))).collect();
+        self.with(|state| state.snapshot = Some(vertices));
     }
 
     /// The vertices after the last finished flow step.
     #[must_use]
-    pub fn snapshot(&self) -> Option<Vec<[f64; 3]>> {
-        self.state().snapshot.clone()
+    pub fn snapshot(&self) -> Option<Arc<[[f64; 3]]>> {
+        self.with(|state| state.snapshot.clone()).flatten()
     }
 
     /// Publish the faces that the call has made so far, with vertices of their own.
-    pub fn set_surface(&self, vertices: Vec<[f64; 3]>, faces: Vec<[u32; 3]>) {
-        self.state().surface = Some((vertices, faces));
+    pub fn set_surface(&self, mut vertices: Vec<[f64; 3]>, faces: Vec<[u32; 3]>) {
+        self.unit.restore_all(vertices.iter_mut().flatten());
+        let surface = Arc::new((vertices, faces));
+        self.with(|state| state.surface = Some(surface));
     }
 
     /// The faces that the call had made when it last said so.
     #[must_use]
-    pub fn surface(&self) -> Option<Surface> {
-        self.state().surface.clone()
+    pub fn surface(&self) -> Option<Arc<Surface>> {
+        self.with(|state| state.surface.clone()).flatten()
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
-        // A poisoned lock only means that a watcher panicked while reading: the state itself is plain data.
-        self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+    /// Reads or writes the state; `None` where a fork left it locked by a thread that is not in this process.
+    fn with<T>(&self, access: impl FnOnce(&mut State) -> T) -> Option<T> {
+        let start = Instant::now();
+        loop {
+            match self.state.try_lock() {
+                Ok(mut state) => return Some(access(&mut state)),
+                // A watcher panicked while reading: the state itself is plain data.
+                Err(TryLockError::Poisoned(poisoned)) => return Some(access(&mut poisoned.into_inner())),
+                Err(TryLockError::WouldBlock) if start.elapsed() > PATIENCE => return None,
+                Err(TryLockError::WouldBlock) => std::thread::yield_now(),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_state_that_is_never_released_is_given_up() {
+        let progress = Progress::new();
+        progress.set_snapshot(&[[1.0, 2.0, 3.0]]);
+        assert_eq!(progress.snapshot().as_deref(), Some(&[[1.0, 2.0, 3.0]][..]));
+        let watcher = progress.clone();
+        let held = progress.state.lock();
+        assert_eq!(std::thread::spawn(move || watcher.snapshot()).join().ok(), Some(None));
+        drop(held);
+        assert!(progress.snapshot().is_some());
     }
 }

@@ -11,6 +11,9 @@ interpreter lock, report to a `Progress`, and hear Ctrl-C. Every failure is a `R
 Source: Rowe, Jacobson and Stein, Sharpening and Sparsifying with Surface Hessians, SIGGRAPH Asia 2024.
 """
 
+from types import BuiltinFunctionType
+
+from ._arguments import named
 from ._native import (
     DiffusionCurves,
     Filled,
@@ -93,3 +96,7 @@ __all__ = [
     "vibration_modes",
     "voronoi_mass",
 ]
+
+for _name in __all__:
+    if isinstance(globals()[_name], BuiltinFunctionType):
+        globals()[_name] = named(globals()[_name])

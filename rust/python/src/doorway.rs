@@ -1,8 +1,10 @@
-//! The one way from Python into the core: lock released, Ctrl-C heard, panics and errors turned into exceptions.
+//! The one way from Python into the core: lock released, Ctrl-C heard, threads that
+//! are alive also after a fork, panics and errors turned into exceptions.
 
 use pyo3::prelude::*;
+use ridgeform_core::error::ThreadsError;
 use ridgeform_core::memory::{self, Demand};
-use ridgeform_core::{Progress, Result};
+use ridgeform_core::{threads, Error, Progress, Result};
 
 use crate::errors;
 use crate::watch::{watch, Outcome};
@@ -14,12 +16,14 @@ use crate::watch::{watch, Outcome};
 /// Signal handlers run meanwhile, so Ctrl-C cancels the work and raises `KeyboardInterrupt`.
 pub fn call<T: Send>(py: Python<'_>, progress: &Progress, work: impl FnOnce() -> Result<T> + Send) -> PyResult<T> {
     memory::floor("the call").map_err(|error| errors::exception(py, &error))?;
+    let work = || threads::in_this_process(work);
     let outcome = py.detach(|| watch(progress, work, || Python::attach(|py| py.check_signals().err())));
     match outcome {
         Outcome::Done(Ok(value)) => Ok(value),
         Outcome::Done(Err(error)) => Err(errors::exception(py, &error)),
         Outcome::Panicked(message) => Err(errors::internal(py, &message)),
         Outcome::Interrupted(signal) => Err(signal),
+        Outcome::NotStarted(reason) => Err(errors::exception(py, &Error::Threads(ThreadsError { reason }))),
     }
 }
 

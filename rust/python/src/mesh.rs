@@ -1,6 +1,6 @@
 //! `Mesh`: the core's mesh, made once from arrays, and its `MeshReport`.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, Mutex};
 
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -20,14 +20,14 @@ use crate::{doorway, errors};
 #[pyclass(frozen, module = "ridgeform")]
 pub struct Mesh {
     inner: core::Mesh,
-    /// Made when it is first asked for.
-    report: OnceLock<core::MeshReport>,
+    /// Kept once it was asked for.
+    report: Mutex<Option<Arc<core::MeshReport>>>,
 }
 
 impl Mesh {
     /// Wrap a mesh of the core.
     pub fn new(inner: core::Mesh) -> Self {
-        Self { inner, report: OnceLock::new() }
+        Self { inner, report: Mutex::default() }
     }
 
     /// The core's mesh.
@@ -121,9 +121,16 @@ impl Mesh {
     /// What is unusual about the mesh, a MeshReport.
     #[getter]
     fn report(&self, py: Python<'_>) -> PyResult<MeshReport> {
-        let make = || Ok(self.report.get_or_init(|| core::report(&self.inner)));
+        // Never waited for: a lock held at a fork is not released in the child, and making the report again is cheap.
+        if let Some(report) = self.report.try_lock().ok().and_then(|kept| kept.clone()) {
+            return MeshReport::new(py, &report);
+        }
         let demand = self.inner.demand(Tool::Report);
-        MeshReport::new(py, doorway::call_sized(py, demand, make)?)
+        let report = Arc::new(doorway::call_sized(py, demand, || Ok(core::report(&self.inner)))?);
+        if let Ok(mut kept) = self.report.try_lock() {
+            *kept = Some(Arc::clone(&report));
+        }
+        MeshReport::new(py, &report)
     }
 
     fn __repr__(&self) -> String {

@@ -22,7 +22,7 @@ use crate::{columns, doorway, options};
 pub fn hessian(py: Python<'_>, mesh: &Mesh, dual: &str) -> PyResult<SparseMatrix> {
     let dual = options::dual(py, dual)?;
     let matrix =
-        doorway::call_sized(py, mesh.inner().demand(Tool::Hessian), || Ok(operators::hessian(mesh.inner(), dual)?))?;
+        doorway::call_sized(py, mesh.inner().demand(Tool::Hessian), || operators::hessian(mesh.inner(), dual))?;
     SparseMatrix::new(py, matrix)
 }
 
@@ -82,9 +82,7 @@ pub fn energy(
     let weights = options::weights("face_weights", face_weights, mesh.n_faces(), "face")?;
     let values = columns::read("values", values, mesh.n_vertices(), "vertex")?.columns;
     let demand = mesh.inner().demand(Tool::Energy).with_columns(values.n_columns, false);
-    doorway::call_sized(py, demand, || {
-        operators::EnergyForm::new(energy, mesh.inner(), weights.as_deref(), dual)?.evaluate(&values.data)
-    })
+    doorway::call_sized(py, demand, || operators::energy(energy, mesh.inner(), &values.data, weights.as_deref(), dual))
 }
 
 /// The mixed Voronoi area of every vertex, (n,) float64: the diagonal of the lumped mass matrix; they sum to the total area.
@@ -93,9 +91,7 @@ pub fn energy(
 #[pyfunction]
 pub fn voronoi_mass<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let mesh = mesh.inner();
-    let mass = doorway::call_sized(py, mesh.demand(Tool::Report), || {
-        Ok(operators::voronoi_mass(mesh.connectivity(), mesh.edge_lengths()))
-    })?;
+    let mass = doorway::call_sized(py, mesh.demand(Tool::Report), || operators::mass_of(mesh))?;
     Ok(mass.into_pyarray(py))
 }
 
@@ -106,7 +102,7 @@ pub fn voronoi_mass<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Bound<'py, Py
 pub fn cotangent_laplacian(py: Python<'_>, mesh: &Mesh) -> PyResult<SparseMatrix> {
     let mesh = mesh.inner();
     let matrix = doorway::call_sized(py, mesh.demand(Tool::Laplacian), || {
-        Ok(operators::cotangent_laplacian(mesh.connectivity(), mesh.edge_lengths()))
+        Ok(operators::cotangent_laplacian(mesh.connectivity(), mesh.measured(mesh.unit())?.edge_lengths()))
     })?;
     SparseMatrix::new(py, matrix)
 }
@@ -118,7 +114,10 @@ pub fn cotangent_laplacian(py: Python<'_>, mesh: &Mesh) -> PyResult<SparseMatrix
 pub fn intrinsic_delaunay(py: Python<'_>, mesh: &Mesh) -> PyResult<Mesh> {
     let mesh = mesh.inner();
     let flipped = doorway::call_sized(py, mesh.demand(Tool::Delaunay), || {
-        let (connectivity, lengths, _) = intrinsic::delaunay_flips(mesh.connectivity(), mesh.edge_lengths());
+        let (unit, connectivity) = (mesh.unit(), mesh.connectivity());
+        let (connectivity, mut lengths, _) =
+            intrinsic::delaunay_flips(connectivity, mesh.measured(unit)?.edge_lengths());
+        unit.restore_all(lengths.iter_mut().flatten());
         Ok(core::Mesh::from_connectivity(connectivity, lengths)?)
     })?;
     Ok(Mesh::new(flipped))

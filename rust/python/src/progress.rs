@@ -54,6 +54,12 @@ impl Progress {
         self.inner.last_report().gap
     }
 
+    /// How often the call has asked so far whether to stop; between two questions it does not hear `cancel` and `finish`.
+    #[getter]
+    fn asked(&self) -> u64 {
+        self.inner.n_asked()
+    }
+
     /// Make the running call raise `Cancelled` within one inner iteration; it returns nothing.
     fn cancel(&self) {
         self.inner.cancel();
@@ -72,8 +78,8 @@ impl Progress {
     /// The faces that a call which makes some (`fill_holes`) has made so far: their vertices (k,3) float64 and faces (j,3)
     /// int32 among these, fresh arrays; None before the first.
     fn snapshot_surface<'py>(&self, py: Python<'py>) -> PyResult<Option<Surface<'py>>> {
-        let read = |(vertices, faces): ridgeform_core::progress::Surface| {
-            PyResult::Ok((float_rows(py, &vertices)?, index_rows(py, &faces)?))
+        let read = |surface: std::sync::Arc<ridgeform_core::progress::Surface>| {
+            PyResult::Ok((float_rows(py, &surface.0)?, index_rows(py, &surface.1)?))
         };
         self.inner.surface().map(read).transpose()
     }

@@ -25,7 +25,8 @@ pub struct Stylized {
     /// Numeric factorisations, all steps together.
     factorisations: usize,
     /// "finished" (all steps done), "converged" (nothing moves any more), "collapsed" (the shape has no extent left; its
-    /// last sound step is returned) or "stopped" (`Progress.finish` was called).
+    /// last sound step is returned), "diverged" (a step left the surroundings of the shape: its triangles are too uneven for
+    /// numbers; its last sound step is returned) or "stopped" (`Progress.finish` was called).
     status: &'static str,
 }
 

@@ -19,6 +19,8 @@ pub enum Outcome<T, I> {
     Panicked(String),
     /// `interrupted` gave a reason to stop; the work was cancelled and has ended.
     Interrupted(I),
+    /// The system gave no thread, for this reason.
+    NotStarted(String),
 }
 
 /// Run `work` on a worker thread and ask `interrupted` every [`INTERVAL`] for a reason to stop.
@@ -38,7 +40,7 @@ pub fn watch<T: Send, I>(
             work()
         }) {
             Ok(worker) => worker,
-            Err(error) => return Outcome::Panicked(format!("no thread could be started: {error}")),
+            Err(error) => return Outcome::NotStarted(error.to_string()),
         };
         let mut reason = None;
         while ended.recv_timeout(INTERVAL) == Err(RecvTimeoutError::Timeout) {

@@ -35,6 +35,8 @@ pub struct Hole {
 /// # Errors
 /// [`MeshError::NoPositions`].
 pub fn find_holes(mesh: &Mesh) -> Result<Vec<Hole>> {
+    let measured = mesh.measured(mesh.unit())?;
+    let mesh = measured.as_ref();
     let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
     let connectivity = mesh.connectivity();
     let halfedges: HashMap<[u32; 2], usize> =

@@ -1,5 +1,8 @@
 //! A dense matrix of a few columns: one column a function on the vertices.
 
+use std::borrow::Cow;
+
+use crate::unit::Unit;
 use crate::{Error, Result};
 
 /// A dense `n_rows × n_columns` matrix, stored column by column.
@@ -42,6 +45,15 @@ impl Columns {
             return Err(Error::argument("values", format!("has {} columns, points need 3", self.n_columns)));
         }
         Ok((0..self.n_rows).map(|i| std::array::from_fn(|axis| self.column(axis)[i])).collect())
+    }
+
+    /// The entries measured in `unit`.
+    #[must_use]
+    pub fn measured(&self, unit: Unit) -> Cow<'_, Self> {
+        match unit.measure_all(&self.data) {
+            Cow::Borrowed(_) => Cow::Borrowed(self),
+            Cow::Owned(data) => Cow::Owned(Self { data, ..*self }),
+        }
     }
 
     /// Column `c`.

@@ -6,6 +6,7 @@ mod cut;
 mod edge_table;
 mod flip;
 pub mod invariants;
+mod measured;
 pub(crate) mod partition;
 mod report;
 pub mod triangle;
@@ -21,6 +22,7 @@ pub use report::{report, MeshReport};
 
 use crate::error::MeshError;
 use crate::memory::{Demand, Tool};
+use crate::unit::Unit;
 
 /// Two lengths of one edge may differ by this part of the longer one; lengths that were stored in single precision do.
 const LENGTH_TOLERANCE: f64 = 1e-6;
@@ -36,14 +38,19 @@ pub struct Mesh {
 /// The edge lengths of `faces`, one row a face, column `i` opposite corner `i`.
 #[must_use]
 pub fn edge_lengths(faces: &[[u32; 3]], positions: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    // In the mesh's own unit: the square of a length is a number where the length is one.
+    let unit = Unit::of(faces.iter().flatten().flat_map(|&v| positions[v as usize]));
     let distance = |a: u32, b: u32| {
         let (mut p, mut q) = (positions[a as usize], positions[b as usize]);
         // Both faces of an edge must get the same bits.
         if a > b {
             std::mem::swap(&mut p, &mut q);
         }
+        if !unit.is_one() {
+            (p, q) = (p.map(|x| unit.measure(x)), q.map(|x| unit.measure(x)));
+        }
         let d = [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
-        (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt()
+        unit.restore((d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt())
     };
     faces.iter().map(|&[a, b, c]| [distance(b, c), distance(c, a), distance(a, b)]).collect()
 }
@@ -54,7 +61,8 @@ impl Mesh {
     /// Non-manifold edges, faces without area and unreferenced vertices are accepted.
     ///
     /// # Errors
-    /// [`MeshError::NonFiniteVertex`], [`MeshError::VertexOutOfRange`] and the errors of [`Connectivity::new`].
+    /// [`MeshError::NonFiniteVertex`], [`MeshError::VertexOutOfRange`], [`MeshError::TooLarge`] and the errors of
+    /// [`Connectivity::new`].
     pub fn new(vertices: Vec<[f64; 3]>, faces: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         if let Some(vertex) = vertices.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
             return Err(MeshError::NonFiniteVertex { vertex });
@@ -62,7 +70,7 @@ impl Mesh {
         let connectivity = Connectivity::new(faces, vertices.len())?;
         let edge_lengths = edge_lengths(connectivity.faces(), &vertices);
         if let Some(face) = edge_lengths.iter().position(|l| !l.iter().all(|x| x.is_finite())) {
-            return Err(MeshError::BadEdgeLength { face });
+            return Err(MeshError::TooLarge { face });
         }
         Ok(Self { connectivity, edge_lengths, positions: Some(vertices) })
     }

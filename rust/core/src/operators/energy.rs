@@ -8,6 +8,7 @@ use crate::operators::vertex_weights::of_vertices;
 use crate::operators::{
     curved_hessian_squares, edge_laplacian_rows, laplacian_squares, mixed_hessian_rows, mixed_hessian_squares, Dual,
 };
+use crate::unit::Unit;
 use crate::{Error, Result};
 
 /// What to minimise.
@@ -49,6 +50,16 @@ impl Energy {
     #[must_use]
     pub fn is_quadratic(self) -> bool {
         matches!(self, Self::L2Hessian | Self::L2CurvedHessian | Self::L2Laplacian)
+    }
+
+    /// The unit of the energy where lengths and values are measured in those given.
+    #[must_use]
+    pub fn unit(self, length: Unit, value: Unit) -> Unit {
+        if self.is_quadratic() {
+            value.power(2).times(length.power(-2))
+        } else {
+            value
+        }
     }
 
     /// Whether it needs vertex positions, not only edge lengths.
@@ -126,4 +137,14 @@ impl EnergyForm {
             Ok(terms.map(|(square, weight)| weight * square.sqrt()).sum())
         }
     }
+}
+
+/// The energy of `values` on `mesh`, both of any size: [`EnergyForm::new`] and [`EnergyForm::evaluate`] in their own units.
+///
+/// # Errors
+/// Those of both, and [`crate::error::SolveError::NoNumber`].
+pub fn energy(kind: Energy, mesh: &Mesh, values: &[f64], face_weights: Option<&[f64]>, dual: Dual) -> Result<f64> {
+    let (length, value) = (mesh.unit(), Unit::of(values.iter().copied()));
+    let form = EnergyForm::new(kind, mesh.measured(length)?.as_ref(), face_weights, dual)?;
+    kind.unit(length, value).restore_finite("the energy", form.evaluate(&value.measure_all(values))?)
 }

@@ -15,6 +15,7 @@ use crate::mesh::{triangle, Connectivity, Mesh};
 use crate::operators::dual::DualEdge;
 use crate::operators::hinge::{directions, usable_areas, Hinge};
 use crate::operators::Dual;
+use crate::unit::Unit;
 
 /// A face's block has up to six columns: its corners and the vertices opposite its edges.
 const STENCIL: usize = 6;
@@ -155,8 +156,8 @@ fn face_block(
 ///
 /// # Errors
 /// [`MeshError::ZeroDualEdge`] with circumcentric duals where two circumcentres coincide.
-pub fn hessian(mesh: &Mesh, dual: Dual) -> Result<sprs::CsMat<f64>, MeshError> {
-    let rows = assembled(mesh, dual)?;
+pub fn hessian(mesh: &Mesh, dual: Dual) -> Result<sprs::CsMat<f64>, Error> {
+    let rows = assembled(mesh.measured(mesh.unit())?.as_ref(), dual)?;
     let n_entries = 4 * rows.columns.len();
     let mut indptr = Vec::with_capacity(4 * rows.n_blocks() + 1);
     let mut indices = Vec::with_capacity(n_entries);
@@ -175,6 +176,7 @@ pub fn hessian(mesh: &Mesh, dual: Dual) -> Result<sprs::CsMat<f64>, MeshError> {
     Ok(sprs::CsMat::new((4 * rows.n_blocks(), rows.n_columns), indptr, indices, data))
 }
 
+/// The rows of every face, which have no unit; `mesh` of a size whose powers are numbers.
 pub(super) fn assembled(mesh: &Mesh, dual: Dual) -> Result<BlockRows, MeshError> {
     let pattern = HessianPattern::new(mesh.connectivity());
     pattern.assemble(mesh.connectivity(), mesh.edge_lengths(), dual)
@@ -184,13 +186,17 @@ pub(super) fn assembled(mesh: &Mesh, dual: Dual) -> Result<BlockRows, MeshError>
 /// number a face, jointly over the columns. Degenerate faces have 0.
 ///
 /// # Errors
-/// [`Error::Argument`] if `values` are not whole columns, and the errors of [`hessian`].
+/// [`Error::Argument`] if `values` are not whole columns, [`crate::error::SolveError::NoNumber`], and the errors of
+/// [`hessian`].
 pub fn hessian_norm(mesh: &Mesh, values: &[f64], dual: Dual) -> Result<Vec<f64>, Error> {
-    let rows = assembled(mesh, dual)?;
-    let mut norms: Vec<f64> = rows.block_squares(values)?.into_iter().map(f64::sqrt).collect();
+    let (length, value) = (mesh.unit(), Unit::of(values.iter().copied()));
+    let unit = value.times(length.power(-2));
+    let mesh = mesh.measured(length)?;
+    let rows = assembled(&mesh, dual)?;
+    let mut norms: Vec<f64> = rows.block_squares(&value.measure_all(values))?.into_iter().map(f64::sqrt).collect();
     for (norm, &l) in norms.iter_mut().zip(mesh.edge_lengths()) {
         if *norm > 0.0 {
-            *norm /= triangle::area(l);
+            *norm = unit.restore_finite("the Hessian", *norm / triangle::area(l))?;
         }
     }
     Ok(norms)

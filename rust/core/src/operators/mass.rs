@@ -1,6 +1,7 @@
 //! The lumped mass matrix.
 
-use crate::mesh::{triangle, Connectivity};
+use crate::mesh::{triangle, Connectivity, Mesh};
+use crate::Result;
 
 /// The mixed Voronoi area of every vertex (Meyer et al. 2003), `n` values that sum to the total area.
 ///
@@ -15,6 +16,19 @@ pub fn voronoi_mass(connectivity: &Connectivity, lengths: &[[f64; 3]]) -> Vec<f6
         }
     }
     mass
+}
+
+/// [`voronoi_mass`] of a mesh of any size.
+///
+/// # Errors
+/// [`crate::error::SolveError::NoNumber`] where an area is past the largest number.
+pub fn mass_of(mesh: &Mesh) -> Result<Vec<f64>> {
+    let unit = mesh.unit();
+    let mut mass = voronoi_mass(mesh.connectivity(), mesh.measured(unit)?.edge_lengths());
+    for area in &mut mass {
+        *area = unit.power(2).restore_finite("an area", *area)?;
+    }
+    Ok(mass)
 }
 
 /// The three corners' parts of a triangle's area.

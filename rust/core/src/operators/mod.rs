@@ -16,12 +16,12 @@ mod vertex_weights;
 
 pub use curved_hessian::curved_hessian_squares;
 pub use edge_laplacian::edge_laplacian_rows;
-pub use energy::{Energy, EnergyForm};
+pub use energy::{energy, Energy, EnergyForm};
 pub use face_laplacian::{face_laplacian, face_laplacian_weights};
 pub use hessian::{hessian, hessian_norm, HessianPattern};
 pub(crate) use hinge::Hinge;
 pub use laplacian::{cotangent_laplacian, laplacian_squares};
-pub use mass::voronoi_mass;
+pub use mass::{mass_of, voronoi_mass};
 pub use mixed_hessian::{mixed_hessian_rows, mixed_hessian_squares};
 pub use mollification::{mollify, MOLLIFICATION_MARGIN};
 

@@ -8,6 +8,7 @@ use crate::mesh::vector::{dot, norm, quality};
 use crate::remesh::curves::Role;
 use crate::remesh::remesher::Remesher;
 use crate::remesh::{guard, EditableMesh};
+use crate::Progress;
 
 /// Edges whose faces turn by more than this (40 degrees) carry shape and stay, unless one of the faces is a sliver.
 const RIDGE_COSINE: f64 = 0.766;
@@ -17,9 +18,12 @@ const WORTH: f64 = 1.1;
 
 /// Flips edges where that brings the valences of the four vertices closer to regular: 6 inside, on a border one more than
 /// the number of 60-degree triangles that fit there (4 on a straight one). Of two equal choices the better triangles.
-pub(crate) fn equalise_valences(remesher: &mut Remesher) {
+pub(crate) fn equalise_valences(remesher: &mut Remesher, progress: &Progress) {
     let targets = target_valences(remesher);
     for [a, b] in remesher.mesh.edges() {
+        if progress.is_stopping() {
+            return;
+        }
         if !remesher.is_free(a, b) {
             continue;
         }

@@ -65,6 +65,20 @@ pub struct Remeshed {
 /// positive or asks for more than 50 million faces, for a mask of the wrong length and an angle outside of 0 to π;
 /// [`Error::Cancelled`].
 pub fn remesh(mesh: &Mesh, options: &RemeshOptions, progress: &Progress) -> Result<Remeshed> {
+    let original = mesh.positions().ok_or(MeshError::NoPositions)?;
+    let unit = mesh.unit();
+    let edge_length = options.edge_length.map(|length| unit.measure(length));
+    let mut found =
+        in_its_unit(mesh.measured(unit)?.as_ref(), &RemeshOptions { edge_length, ..options.clone() }, progress)?;
+    for (vertex, origin) in found.vertices.iter_mut().zip(&found.origin) {
+        *vertex = origin.map_or_else(|| vertex.map(|x| unit.restore(x)), |v| original[v as usize]);
+    }
+    found.edge_length = options.edge_length.unwrap_or_else(|| unit.restore(found.edge_length));
+    Ok(found)
+}
+
+/// [`remesh`] of a mesh whose size is sane.
+fn in_its_unit(mesh: &Mesh, options: &RemeshOptions, progress: &Progress) -> Result<Remeshed> {
     let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
     let fixed = options.fixed.clone().unwrap_or_else(|| vec![false; positions.len()]);
     if fixed.len() != positions.len() {
@@ -106,11 +120,11 @@ fn admit(mesh: &Mesh, area: f64, edge_length: f64) -> Result<()> {
     Ok(())
 }
 
-/// The passes, `iterations` times, then the removal of slivers. Returns the number of rounds done. The mesh is to have about
-/// `most` faces at most.
+/// The passes, `iterations` times, then the removal of slivers. Returns the number of whole rounds done; every pass leaves a
+/// mesh at every moment, and stops in the middle when the caller wishes to. The mesh is to have about `most` faces at most.
 pub(crate) fn run(remesher: &mut Remesher, iterations: usize, most: usize, progress: &Progress) -> Result<usize> {
+    progress.check()?;
     for iteration in 0..iterations {
-        progress.check()?;
         if progress.is_finishing() {
             return Ok(iteration);
         }
@@ -121,15 +135,17 @@ pub(crate) fn run(remesher: &mut Remesher, iterations: usize, most: usize, progr
             (remesher.mesh.corners(face), face.iter().map(|&v| remesher.sizing.at(v)).sum::<f64>() / 3.0)
         };
         let to_add = budget::faces_to_add(remesher.mesh.faces().map(wanted), most);
-        split_long_edges(remesher, to_add);
+        split_long_edges(remesher, to_add, progress);
+        collapse_short_edges(remesher, progress);
+        equalise_valences(remesher, progress);
+        relax_and_project(remesher, progress);
         progress.check()?;
-        collapse_short_edges(remesher);
-        progress.check()?;
-        equalise_valences(remesher);
-        relax_and_project(remesher);
+        if progress.is_finishing() {
+            return Ok(iteration);
+        }
     }
     if iterations > 0 {
-        remove_slivers(remesher);
+        remove_slivers(remesher, progress);
     }
     progress.check()?;
     Ok(iterations)

@@ -6,6 +6,7 @@ use crate::mesh::vector::{add, between, dot, norm, scale, sub, unit, Point};
 use crate::remesh::curves::Role;
 use crate::remesh::guard;
 use crate::remesh::remesher::Remesher;
+use crate::Progress;
 
 /// Where a whole step would fold a face, these parts of it are tried.
 const STEPS: [f64; 3] = [1.0, 0.5, 0.25];
@@ -13,7 +14,7 @@ const STEPS: [f64; 3] = [1.0, 0.5, 0.25];
 /// Moves every free vertex in its tangent plane to the centre of its neighbours, weighted by the area around them over that
 /// wanted (Botsch and Kobbelt 2004, with their weights for a graded mesh), then to the closest point of the surface; a vertex
 /// on a curve to the middle between its neighbours on it, and to the closest point of the curve.
-pub(crate) fn relax_and_project(remesher: &mut Remesher) {
+pub(crate) fn relax_and_project(remesher: &mut Remesher, progress: &Progress) {
     let n = remesher.mesh.n_vertices() as u32;
     let weights: Vec<f64> = (0..n)
         .into_par_iter()
@@ -22,8 +23,14 @@ pub(crate) fn relax_and_project(remesher: &mut Remesher) {
             area / remesher.sizing.at(v).powi(2)
         })
         .collect();
-    let targets: Vec<Option<(Point, u32)>> = (0..n).into_par_iter().map(|v| target(remesher, &weights, v)).collect();
+    let targets: Vec<Option<(Point, u32)>> = (0..n)
+        .into_par_iter()
+        .map(|v| if progress.is_stopping() { None } else { target(remesher, &weights, v) })
+        .collect();
     for (v, target) in (0..n).zip(targets) {
+        if progress.is_stopping() {
+            return;
+        }
         let Some((target, near)) = target else { continue };
         let start = remesher.mesh.position(v);
         let allowed = STEPS.iter().map(|&step| between(start, target, step));

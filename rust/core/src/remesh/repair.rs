@@ -5,6 +5,7 @@ use crate::remesh::flips::gain;
 use crate::remesh::guard::{self, SLIVER};
 use crate::remesh::relax::relax_and_project;
 use crate::remesh::remesher::Remesher;
+use crate::Progress;
 
 /// A repair can make another one possible; hardly any takes more.
 const ROUNDS: usize = 5;
@@ -14,7 +15,7 @@ const LONGEST: f64 = 2.0;
 
 /// Removes faces thinner than [`SLIVER`], the thinnest first: by flipping an edge if that makes better faces, else by
 /// collapsing the shortest edge; what is left after that is moved again. Next to fixed vertices some may have to stay.
-pub(crate) fn remove_slivers(remesher: &mut Remesher) {
+pub(crate) fn remove_slivers(remesher: &mut Remesher, progress: &Progress) {
     for _ in 0..ROUNDS {
         let mut slivers: Vec<(f64, u32)> = remesher
             .mesh
@@ -27,9 +28,12 @@ pub(crate) fn remove_slivers(remesher: &mut Remesher) {
         }
         slivers.sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
         for (_, f) in slivers {
+            if progress.is_stopping() {
+                return;
+            }
             remove(remesher, f);
         }
-        relax_and_project(remesher);
+        relax_and_project(remesher, progress);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Splitting long edges.
 
 use crate::remesh::remesher::Remesher;
+use crate::Progress;
 
 /// Edges longer than this times their target are split: each half is then as far below the target as the whole was above
 /// it (Botsch and Kobbelt 2004).
@@ -13,7 +14,7 @@ const ROUNDS: usize = 10;
 ///
 /// At most `most` faces are added, the longest edges first: what then is still long was asked to be shorter than the surface has
 /// room for.
-pub(crate) fn split_long_edges(remesher: &mut Remesher, most: usize) {
+pub(crate) fn split_long_edges(remesher: &mut Remesher, most: usize, progress: &Progress) {
     let limit = remesher.mesh.n_faces().saturating_add(most);
     for _ in 0..ROUNDS {
         let mut long: Vec<(f64, [u32; 2])> = remesher
@@ -30,7 +31,7 @@ pub(crate) fn split_long_edges(remesher: &mut Remesher, most: usize) {
         }
         long.sort_unstable_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
         for (_, [a, b]) in long {
-            if remesher.mesh.n_faces() >= limit {
+            if remesher.mesh.n_faces() >= limit || progress.is_stopping() {
                 return;
             }
             remesher.split(a, b);

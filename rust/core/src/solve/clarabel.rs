@@ -2,14 +2,19 @@
 //!
 //! Variables `(u, s)`, a cone `s_b ≥ ‖(H u + c)_b‖` of `1 + BLOCK·k` entries per block, `2a` in the quadratic term.
 
+use std::panic::resume_unwind;
+use std::sync::mpsc::{channel, RecvTimeoutError};
+use std::thread::Builder;
+use std::time::Duration;
+
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT, SupportedConeT::SecondOrderConeT,
-    SupportedConeT::ZeroConeT,
+    DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
+    SupportedConeT::SecondOrderConeT, SupportedConeT::ZeroConeT,
 };
 
 use crate::block_rows::BLOCK;
-use crate::error::SolveError;
+use crate::error::{SolveError, ThreadsError};
 use crate::progress::Progress;
 use crate::solve::certificate::{bound_along_ray, DualPoint};
 use crate::solve::cones::{norm, scaled, Block};
@@ -24,6 +29,9 @@ pub const QDLDL_BELOW: usize = 20_000;
 /// Clarabel's tolerance as a part of the gap asked for. The certificate is made of exactly feasible points and comes out up
 /// to 20 times larger than Clarabel's own gap (measured on a dozen problems).
 const MARGIN: f64 = 0.01;
+
+/// How long Clarabel is left alone between two looks at what the caller wishes.
+const LISTENING: Duration = Duration::from_millis(50);
 
 /// Solves the reduced problem with Clarabel and the factorisation called `method`.
 ///
@@ -48,15 +56,11 @@ pub fn minimise<const K: usize>(
         max_threads: 1,
         ..DefaultSettings::default()
     };
-    let failed = |e: &dyn std::fmt::Debug| SolveError::Factorisation { reason: format!("Clarabel refused it: {e:?}") };
-    let mut solver =
-        DefaultSolver::new(&program.quadratic, &program.linear, &program.rows, &program.right, &program.cones, options)
-            .map_err(|e| failed(&e))?;
-    let watch = progress.clone();
-    solver.set_termination_callback(move |_: &_| watch.is_cancelled() || watch.is_finishing());
-    solver.solve();
-    progress.check()?;
-    let found = &solver.solution;
+    let Some((program, found)) = solve_apart(program, options, reduced.constraints.is_none(), progress)? else {
+        // Nothing was reached yet: the point to start from, and what is certain of it.
+        let q = vec![[[0.0; K]; BLOCK]; reduced.n_blocks()];
+        return Ok(certified(reduced, reduced.target.clone(), &q, &[], 0, Status::Stopped));
+    };
     let status = match found.status {
         SolverStatus::Solved => Status::Solved,
         SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
@@ -85,6 +89,51 @@ pub fn minimise<const K: usize>(
         outcome.status = if reached { Status::Solved } else { Status::Inaccurate };
     }
     Ok(outcome)
+}
+
+/// Runs Clarabel on a thread of its own: it hears wishes between iterations only, one of which takes seconds on large problems.
+/// When the caller wishes to stop, this one is done; the thread ends with the iteration that it is in.
+///
+/// `None` where the caller wishes to finish and there is nothing yet; with `may_leave` that is not waited for.
+fn solve_apart<const K: usize>(
+    program: Program<K>,
+    options: DefaultSettings<f64>,
+    may_leave: bool,
+    progress: &Progress,
+) -> Result<Option<(Program<K>, DefaultSolution<f64>)>> {
+    let failed = |reason: String| Error::Solve(SolveError::Factorisation { reason });
+    let watch = progress.clone();
+    let (send, receive) = channel();
+    let work = move || {
+        let Program { quadratic, linear, rows, right, cones, .. } = &program;
+        let found = DefaultSolver::new(quadratic, linear, rows, right, cones, options).map(|mut solver| {
+            solver.set_termination_callback(move |_: &_| watch.is_cancelled() || watch.is_finishing());
+            solver.solve();
+            solver.solution
+        });
+        // Nobody listens any more after a wish to stop.
+        let _ = send.send(found.map(|found| (program, found)).map_err(|e| format!("Clarabel refused it: {e:?}")));
+    };
+    let thread = Builder::new().name("clarabel".into()).spawn(work);
+    let thread = thread.map_err(|e| Error::Threads(ThreadsError { reason: e.to_string() }))?;
+    loop {
+        match receive.recv_timeout(LISTENING) {
+            Ok(found) => {
+                progress.check()?;
+                return found.map(Some).map_err(failed);
+            }
+            Err(RecvTimeoutError::Timeout) => {
+                progress.check()?;
+                if may_leave && progress.is_finishing() {
+                    return Ok(None);
+                }
+            }
+            Err(RecvTimeoutError::Disconnected) => match thread.join() {
+                Err(panic) => resume_unwind(panic),
+                Ok(()) => return Err(failed("Clarabel ended without an answer".into())),
+            },
+        }
+    }
 }
 
 fn certified<const K: usize>(

@@ -124,9 +124,11 @@ pub struct Solution {
     pub objective: f64,
     /// A lower bound on the objective of every feasible point.
     pub dual_objective: f64,
+    /// What counts as an objective of zero: a millionth of the objective at the target, or what rounding alone makes of it.
+    pub floor: f64,
     /// `(objective − dual_objective) / scale`, computed from the point that is returned; `scale` is the objective, or
-    /// where that is larger, a millionth of the objective at the target or what rounding alone makes of it, so that the
-    /// gap has no unit and an affine solution does not divide by zero.
+    /// where that is larger, `floor`, so that the gap has no unit and an affine solution does not divide by zero. Not
+    /// below 0: where rounding lifts the bound above the objective, the two are equal as far as can be told.
     pub gap: f64,
     /// Iterations, summed over separate columns.
     pub iterations: usize,
@@ -187,6 +189,30 @@ impl Problem<'_> {
     #[must_use]
     pub fn gap_scale(objective: f64, floor: f64) -> f64 {
         objective.abs().max(floor).max(f64::MIN_POSITIVE)
+    }
+
+    /// The objective at `values`, from the whole operator: what a solution claims, computed from what it hands out. The energy
+    /// is ½ Σ w ‖(H u)_b‖² where `quadratic`.
+    #[must_use]
+    pub fn objective(&self, values: &Columns, quadratic: bool) -> f64 {
+        let block = |(b, weight): (usize, &f64)| {
+            let squares = (0..values.n_columns).map(|c| {
+                let row = self.operator.block_times(b, values.column(c));
+                row.iter().map(|x| x * x).sum::<f64>()
+            });
+            weight
+                * match self.coupling {
+                    _ if quadratic => 0.5 * squares.sum::<f64>(),
+                    Coupling::Joint => squares.sum::<f64>().sqrt(),
+                    Coupling::Separate => squares.map(f64::sqrt).sum(),
+                }
+        };
+        let energy: f64 = self.weights.iter().enumerate().map(block).sum();
+        let distance = |c: usize| {
+            let pairs = values.column(c).iter().zip(self.target.column(c)).zip(&self.fidelity);
+            pairs.filter(|(_, a)| **a > 0.0).map(|((x, t), a)| a * (x - t) * (x - t)).sum::<f64>()
+        };
+        energy + (0..values.n_columns).map(distance).sum::<f64>()
     }
 }
 

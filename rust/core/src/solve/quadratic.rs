@@ -63,6 +63,7 @@ pub fn minimise(problem: &Problem<'_>, settings: &Settings, progress: &Progress)
         values,
         objective: total.objective,
         dual_objective: total.objective - total.decrease,
+        floor: total.floor,
         gap,
         iterations: total.steps,
         factorisations: newton.cholesky.n_factorisations(),

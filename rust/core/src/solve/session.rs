@@ -238,10 +238,11 @@ impl Total {
 
     fn into_solution(self) -> Solution {
         Solution {
-            gap: (self.primal - self.dual) / Problem::gap_scale(self.primal, self.floor),
+            gap: ((self.primal - self.dual) / Problem::gap_scale(self.primal, self.floor)).max(0.0),
             values: self.values,
             objective: self.primal,
             dual_objective: self.dual,
+            floor: self.floor,
             iterations: self.iterations,
             factorisations: self.factorisations,
             status: self.status,

@@ -5,6 +5,7 @@ use crate::linear::Columns;
 use crate::mesh::{Connectivity, Mesh};
 use crate::progress::Progress;
 use crate::solve::Solution;
+use crate::unit::Unit;
 use crate::{Error, Result};
 
 /// `min_u E(u)` with `u` given at the vertices `indices`: row `r` of `values` belongs to `indices[r]`, `E` is the energy of the
@@ -32,8 +33,10 @@ pub fn interpolate(
     let k = values.n_columns;
     let mut target = Columns::zeros(n, k);
     for c in 0..k {
-        let mean = values.column(c).iter().sum::<f64>() / indices.len() as f64;
-        target.column_mut(c).fill(mean);
+        // In the values' own unit: a sum of the largest numbers is none.
+        let unit = Unit::of(values.column(c).iter().copied());
+        let mean = values.column(c).iter().map(|x| unit.measure(*x)).sum::<f64>() / indices.len() as f64;
+        target.column_mut(c).fill(unit.restore(mean));
     }
     for (row, &i) in indices.iter().enumerate() {
         if i >= n {

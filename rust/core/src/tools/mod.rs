@@ -1,6 +1,7 @@
 //! What a user asks for, one file each: scattered data interpolation, denoising, vibration modes,
 //! stylization, segmentation, diffusion curves.
 
+pub(crate) mod answer;
 mod denoise;
 mod diffusion_curves;
 mod energy_options;

@@ -36,7 +36,7 @@ pub struct Modes {
     /// One mode a column, orthonormal with respect to the Voronoi mass (of the flipped mesh, where edges were), with ascending energies. The entry of largest magnitude
     /// (the first of those that are equal to 1e-6) is positive. Vertices without mass have 0.
     pub values: Columns,
-    /// The energy of each mode.
+    /// The energy of each mode; infinite where it is past the largest number.
     pub energies: Vec<f64>,
     /// `Solved`, `Inaccurate` where a problem in between missed its tolerance, or `Stopped` with fewer modes than asked for.
     pub status: Status,
@@ -57,7 +57,9 @@ pub fn vibration_modes(mesh: &Mesh, count: usize, options: &ModeOptions, progres
     let settings = Settings { announce: false, ..options.solve.settings()? };
     options.energy.check_solver(options.solve.solver)?;
     mesh.demand(Tool::Modes).with_columns(1, options.solve.solver.is_clarabel()).admit(options.solve.memory_limit)?;
-    let (mesh, form) = options.energy.on(mesh)?;
+    let length = mesh.unit();
+    let measured = mesh.measured(length)?;
+    let (mesh, form) = options.energy.on(&measured)?;
     let whole = voronoi_mass(mesh.connectivity(), mesh.edge_lengths());
     let unseen = unseen(&mesh, &form);
     // A vertex that costs no energy would be a mode of its own.
@@ -77,7 +79,14 @@ pub fn vibration_modes(mesh: &Mesh, count: usize, options: &ModeOptions, progres
         if let Some(unseen) = &unseen {
             modes = sequence.extended(&modes, unseen, &whole)?;
         }
-        sequence.finished(&modes, status)
+        let mut found = sequence.finished(&modes, status)?;
+        // The square of a mode times an area is 1.
+        let value = length.power(-1);
+        for x in &mut found.values.data {
+            *x = value.restore_finite("a mode", *x)?;
+        }
+        form.energy.unit(length, value).restore_all(&mut found.energies);
+        Ok(found)
     })
 }
 

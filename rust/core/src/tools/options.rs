@@ -1,7 +1,7 @@
 //! What every tool can be told about the solver and the machine.
 
 use crate::solve::{Settings, Solver};
-use crate::{Error, Result};
+use crate::{threads, Error, Result};
 
 /// Which solver, how exact, how long, on how many threads.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,7 +15,7 @@ pub struct SolveOptions {
     /// The most bytes that the factor of the linear system may take, the larger part of all memory; any that the system
     /// gives where `None`. Clarabel does not know it.
     pub memory_limit: Option<usize>,
-    /// Threads to use; all where `None`. The result does not depend on it.
+    /// Threads to use, of those that the machine has; all where `None`. The result does not depend on it.
     pub threads: Option<usize>,
 }
 
@@ -49,15 +49,11 @@ impl SolveOptions {
     /// Runs `work` on the number of threads asked for.
     ///
     /// # Errors
-    /// What `work` returns, or [`Error::Argument`] when the threads cannot be started.
+    /// What `work` returns, or [`Error::Threads`] when none can be started.
     pub fn run<T: Send>(&self, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
         match self.threads {
             None => work(),
-            Some(n) => rayon::ThreadPoolBuilder::new()
-                .num_threads(n)
-                .build()
-                .map_err(|e| Error::argument("threads", format!("cannot start {n} threads: {e}")))?
-                .install(work),
+            Some(n) => threads::on(n, work),
         }
     }
 }

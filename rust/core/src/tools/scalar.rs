@@ -2,6 +2,7 @@
 
 use sprs::CsMat;
 
+use super::answer;
 use super::options::check_range;
 use super::sharpness::{block_norms, sharpened_weights};
 use super::unseen::{extend, unseen};
@@ -12,6 +13,7 @@ use crate::mesh::{triangle, Mesh};
 use crate::operators::{voronoi_mass, Energy};
 use crate::progress::{Progress, Report};
 use crate::solve::{quadratic, solve, Coupling, Problem, Settings, Solution};
+use crate::unit::Unit;
 use crate::{Error, Result};
 
 /// Reweighted rounds after the first solution: the weights hardly change after the third.
@@ -65,20 +67,37 @@ impl ScalarProblem<'_> {
         }
         options.energy.check_solver(options.solve.solver)?;
         let demand = self.demand();
-        let (mesh, form) = options.energy.on(self.mesh)?;
+        let right = options.linear_constraints.iter().flat_map(|(_, right)| &right.data);
+        let value = Unit::of(self.target.data.iter().chain(right).copied());
+        let length = self.mesh.unit();
+        let energy = kind.unit(length, value);
+        let fidelity = value.power(2).times(length.power(2)).times(energy.power(-1)).restore(self.fidelity);
+        if self.fidelity > 0.0 && !fidelity.is_normal() {
+            let problem = format!(
+                "is {:e}; on a mesh and with values of this size that weighs {}; scale them to a size around 1",
+                self.fidelity,
+                if fidelity > 1.0 { "all there is" } else { "nothing" }
+            );
+            return Err(Error::argument("fidelity", problem));
+        }
+        let measured = self.mesh.measured(length)?;
+        let (mesh, form) = options.energy.on(&measured)?;
         let mass = voronoi_mass(mesh.connectivity(), mesh.edge_lengths());
         // With a fidelity or constraints, what the energy does not see is theirs.
-        let mut open = unseen(&mesh, &form).filter(|_| self.fidelity == 0.0 && options.linear_constraints.is_none());
+        let mut open = unseen(&mesh, &form).filter(|_| fidelity == 0.0 && options.linear_constraints.is_none());
         if let Some(open) = &mut open {
             open.iter_mut().zip(&self.fixed).for_each(|(open, fixed)| *open &= !fixed);
         }
         let mut problem = Problem {
             operator: &form.operator,
             weights: form.weights.clone(),
-            fidelity: mass.iter().map(|m| self.fidelity * m).collect(),
-            target: self.target,
+            fidelity: mass.iter().map(|m| fidelity * m).collect(),
+            target: self.target.measured(value).into_owned(),
             fixed: self.fixed,
-            linear_constraints: options.linear_constraints.clone(),
+            linear_constraints: options
+                .linear_constraints
+                .as_ref()
+                .map(|(a, b)| (a.clone(), b.measured(value).into_owned())),
             coupling: options.coupling,
         };
         options.solve.run(|| {
@@ -91,6 +110,8 @@ impl ScalarProblem<'_> {
             if let Some(open) = open {
                 extend(&mesh, &open, &mut solution.values, progress)?;
             }
+            answer::settle(&mut solution, &problem, kind.is_quadratic(), &settings)?;
+            answer::restore(&mut solution, &problem.fixed, &self.target, value, energy)?;
             Ok(solution)
         })
     }

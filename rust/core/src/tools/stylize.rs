@@ -1,5 +1,6 @@
 //! The flow towards piecewise flat shapes (Rowe et al. 2024, eq. (24)), with sharpness.
 
+use super::answer::Surroundings;
 use super::options::{check_range, check_weights};
 use super::scale::{extent, Scale};
 use super::sharpness::{block_norms, sharpened_weights};
@@ -13,6 +14,7 @@ use crate::mesh::{edge_lengths, triangle, Connectivity, Mesh};
 use crate::operators::{mollify, voronoi_mass, Dual, HessianPattern};
 use crate::progress::{Progress, Report};
 use crate::solve::{solve, Coupling, Problem, Session, Settings, Solution, Solver};
+use crate::unit::Unit;
 use crate::{Error, Result};
 
 /// A step that moves the vertices by less than this part of the shape's size (root mean square) moves nothing.
@@ -75,6 +77,9 @@ pub enum FlowStatus {
     Converged,
     /// The shape has shrunk to (almost) nothing; the last sound step is returned.
     Collapsed,
+    /// A step led out of the surroundings of the shape, as rounding does on triangles that are too uneven; the last sound
+    /// step is returned.
+    Diverged,
     /// The caller asked to finish early.
     Stopped,
 }
@@ -87,6 +92,7 @@ impl FlowStatus {
             Self::Finished => "finished",
             Self::Converged => "converged",
             Self::Collapsed => "collapsed",
+            Self::Diverged => "diverged",
             Self::Stopped => "stopped",
         }
     }
@@ -118,16 +124,26 @@ pub struct Stylized {
 /// [`MeshError::NoPositions`], [`MeshError::NoFaces`], arguments of the wrong shape or range, and the errors of the
 /// solver. Never a result that is not finite.
 pub fn stylize(mesh: &Mesh, options: &StylizeOptions, progress: &Progress) -> Result<Stylized> {
-    let start = mesh.positions().ok_or(MeshError::NoPositions)?;
+    let original = mesh.positions().ok_or(MeshError::NoPositions)?;
     check(mesh, options)?;
     let settings = Settings { announce: false, ..options.solve.settings()? };
     let n_columns = if options.coupling == Coupling::Joint { 3 } else { 1 };
-    options.solve.run(|| {
-        mesh.demand(Tool::Stylize)
+    let unit = mesh.unit();
+    let measured = mesh.measured(unit)?;
+    let start = measured.positions().ok_or(MeshError::NoPositions)?;
+    let progress = progress.in_unit(unit);
+    let mut result = options.solve.run(|| {
+        measured
+            .demand(Tool::Stylize)
             .with_columns(n_columns, options.solve.solver.is_clarabel())
             .admit(options.solve.memory_limit)?;
-        Flow::new(mesh, start, options)?.run(&settings, progress)
-    })
+        Flow::new(&measured, start, unit, options)?.run(&settings, &progress)
+    })?;
+    unit.restore_points(&mut result.vertices, start, original);
+    for energy in &mut result.energy {
+        *energy = unit.restore_finite("the energy", *energy)?;
+    }
+    Ok(result)
 }
 
 fn check(mesh: &Mesh, options: &StylizeOptions) -> Result<()> {
@@ -154,6 +170,8 @@ fn check(mesh: &Mesh, options: &StylizeOptions) -> Result<()> {
 struct Flow<'a> {
     options: &'a StylizeOptions,
     connectivity: &'a Connectivity,
+    scale: Scale,
+    around: Surroundings,
     points: Vec<[f64; 3]>,
     base: Vec<f64>,
     pattern: HessianPattern,
@@ -175,16 +193,24 @@ struct Step {
 }
 
 impl<'a> Flow<'a> {
-    fn new(mesh: &'a Mesh, start: &[[f64; 3]], options: &'a StylizeOptions) -> Result<Self> {
+    /// The flow of `mesh`, measured in `unit`, from `start`.
+    fn new(mesh: &'a Mesh, start: &[[f64; 3]], unit: Unit, options: &'a StylizeOptions) -> Result<Self> {
         let connectivity = mesh.connectivity();
         let base = options.ridge_weights.clone().unwrap_or_else(|| vec![1.0; connectivity.n_faces()]);
         let (size, area) = extent(connectivity, start);
         if size <= 0.0 {
             return Err(MeshError::NoFaces.into());
         }
+        let corners = connectivity.faces().iter().flatten();
+        let scale = match options.scale {
+            Scale::Length(length) => Scale::Length(unit.measure(length)),
+            relative => relative,
+        };
         Ok(Self {
             options,
             connectivity,
+            scale,
+            around: Surroundings::of(corners.map(|&v| &start[v as usize])),
             points: start.to_vec(),
             base,
             pattern: HessianPattern::new(connectivity),
@@ -218,6 +244,10 @@ impl<'a> Flow<'a> {
                 break;
             }
             let moved = solution.values.to_points()?;
+            if !self.is_near(&moved) || !solution.gap.is_finite() {
+                self.result.status = FlowStatus::Diverged;
+                break;
+            }
             if self.has_collapsed(&moved) {
                 self.result.status = FlowStatus::Collapsed;
                 break;
@@ -246,16 +276,19 @@ impl<'a> Flow<'a> {
         Ok(self.result)
     }
 
+    fn is_near(&self, moved: &[[f64; 3]]) -> bool {
+        self.around.hold(self.connectivity.faces().iter().flatten().map(|&v| &moved[v as usize]))
+    }
+
     fn has_collapsed(&self, moved: &[[f64; 3]]) -> bool {
         let (size, area) = extent(self.connectivity, moved);
-        let sound = size >= COLLAPSED * self.size && area >= 0.1 * COLLAPSED * self.area;
-        !sound || !moved.iter().flatten().all(|x| x.is_finite())
+        !(size >= COLLAPSED * self.size && area >= 0.1 * COLLAPSED * self.area)
     }
 
     /// Operator, mass and unit of the shape as it is now.
     fn prepare(&mut self) -> Result<Step> {
         let mut lengths = edge_lengths(self.connectivity.faces(), &self.points);
-        let unit = self.options.scale.unit(self.connectivity, &self.points, &lengths);
+        let unit = self.scale.unit(self.connectivity, &self.points, &lengths);
         let flipped;
         let mut base = self.base.clone();
         let (connectivity, pattern) = if self.options.delaunay {

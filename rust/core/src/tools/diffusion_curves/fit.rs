@@ -76,12 +76,18 @@ impl Task<'_> {
         let data = self.colors.data.iter().zip(&taken.data).map(|(t, u)| t - u).collect();
         let mut descent = reading.given_back(Columns { data, ..taken });
         harmonic.transposed(&mut descent, progress)?;
-        let bounds: Vec<[f64; 2]> = (0..taken.n_columns).map(|c| range(self.colors.column(c))).collect();
+        let bounds: Vec<[f64; 2]> = (0..taken.n_columns).map(|c| self.range(c)).collect();
         bounded::minimise(&mut fit.values, &descent, &bounds, FIT_LIMITS, |columns| {
             harmonic.extend(columns, progress)?;
             *columns = reading.given_back(reading.taken(columns));
             harmonic.transposed(columns, progress)
         })
+    }
+
+    /// The range of a channel of the data on the surface; vertices without faces do not count.
+    fn range(&self, c: usize) -> [f64; 2] {
+        let data = self.colors.column(c);
+        range(self.cut.vertices.iter().map(|&v| &data[v as usize]))
     }
 
     /// The mean of the data of every piece, in the row of its root.
@@ -93,7 +99,7 @@ impl Task<'_> {
         let mut means = Columns::zeros(n, self.colors.n_columns);
         for c in 0..self.colors.n_columns {
             let data = self.colors.column(c);
-            let [least, most] = range(data);
+            let [least, most] = self.range(c);
             let sums = means.column_mut(c);
             for (i, &r) in root.iter().enumerate() {
                 sums[r] += fit.weights[i] * data[self.cut.vertices[i] as usize];
@@ -201,6 +207,6 @@ pub(super) fn pieces(cut: &CutMesh) -> Partition {
     roots
 }
 
-fn range(column: &[f64]) -> [f64; 2] {
-    column.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], &x| [least.min(x), most.max(x)])
+fn range<'x>(column: impl IntoIterator<Item = &'x f64>) -> [f64; 2] {
+    column.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], &x| [least.min(x), most.max(x)])
 }

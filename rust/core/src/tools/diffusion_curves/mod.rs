@@ -34,6 +34,7 @@ use crate::memory::Tool;
 use crate::mesh::{triangle, CutMesh, EdgeTable, Mesh};
 use crate::operators::voronoi_mass;
 use crate::progress::{Progress, Report};
+use crate::unit::Unit;
 use crate::{Error, Result};
 use borders::Borders;
 use chains::{border_edges, chain};
@@ -91,6 +92,24 @@ pub struct DiffusionCurves {
 /// # Errors
 /// Arguments of the wrong shape or range, a mesh without faces, [`Error::Cancelled`].
 pub fn diffusion_curves(
+    mesh: &Mesh,
+    colors: &Columns,
+    labels: &[i32],
+    options: &DiffusionCurvesOptions,
+    progress: &Progress,
+) -> Result<DiffusionCurves> {
+    let unit = Unit::of(colors.data.iter().copied());
+    let measured = DiffusionCurvesOptions { color_error: unit.measure(options.color_error), ..*options };
+    let mesh = mesh.measured(mesh.unit())?;
+    let mut found = in_their_unit(&mesh, colors.measured(unit).as_ref(), labels, &measured, progress)?;
+    found.error = unit.power(2).restore_finite("the error", found.error)?;
+    found.curves.restore(unit);
+    found.redrawn.restore(unit);
+    Ok(found)
+}
+
+/// [`diffusion_curves`] of colours and a mesh whose sizes are sane.
+fn in_their_unit(
     mesh: &Mesh,
     colors: &Columns,
     labels: &[i32],

@@ -7,6 +7,7 @@ use crate::linear::Columns;
 use crate::memory::Tool;
 use crate::mesh::{Connectivity, CutMesh, EdgeTable, Mesh};
 use crate::progress::{Progress, Report};
+use crate::unit::Unit;
 use crate::{Error, Result};
 
 /// Colours on both sides of edges of a mesh, and at single vertices.
@@ -58,6 +59,15 @@ pub fn redraw(
     curves.check(connectivity)?;
     check_sides(connectivity, sides)?;
     mesh.demand(Tool::Redraw).admit(None)?;
+    let unit = Unit::of(curves.colors().copied());
+    if !unit.is_one() {
+        let mut measured = curves.clone();
+        measured.restore(unit.power(-1));
+        let mut redrawn = redraw(mesh, &measured, sides, progress)?;
+        redrawn.restore(unit);
+        return Ok(redrawn);
+    }
+    let mesh = mesh.measured(mesh.unit())?;
     progress.report(Report { stage: "diffusing".into(), ..Report::default() });
     let table = EdgeTable::new(connectivity);
     let cut = CutMesh::new(connectivity, &table, &curves.cuts(connectivity, &table)?);
@@ -69,7 +79,23 @@ pub fn redraw(
     conditions.solve(connectivity, &cut, &mut harmonic, sides, progress)
 }
 
+impl Redrawn {
+    /// The colours back in the unit that they came in.
+    pub(super) fn restore(&mut self, unit: Unit) {
+        unit.restore_all(self.colors.data.iter_mut().chain(&mut self.corners));
+    }
+}
+
 impl ColoredCurves {
+    fn colors(&self) -> impl Iterator<Item = &f64> {
+        self.left.iter().chain(&self.right).chain(&self.point_colors)
+    }
+
+    /// The colours back in the unit that they came in.
+    pub(super) fn restore(&mut self, unit: Unit) {
+        unit.restore_all(self.left.iter_mut().chain(&mut self.right).chain(&mut self.point_colors));
+    }
+
     fn check(&self, connectivity: &Connectivity) -> Result<()> {
         if self.n_channels == 0 {
             return Err(Error::argument("left", "has no channels; pass at least one number a colour"));

@@ -13,6 +13,7 @@ use crate::memory::Tool;
 use crate::mesh::Mesh;
 use crate::progress::{Progress, Report};
 use crate::tools::{segment, SegmentOptions};
+use crate::unit::Unit;
 use crate::Result;
 
 /// The region of each face by the colours at the vertices (n × c): what [`segment`] finds, its borders moved by [`follow_colors`].
@@ -39,10 +40,11 @@ pub fn color_regions(
     check_fidelity(fidelity)?;
     mesh.demand(Tool::DiffusionCurves).admit(options.solve.memory_limit)?;
     let groups = Groups::new(groups, connectivity.n_faces())?;
-    let original = Paint { mesh, colors, fidelity, progress };
+    let (mesh, colors) = (mesh.measured(mesh.unit())?, colors.measured(Unit::of(colors.data.iter().copied())));
+    let original = Paint { mesh: &mesh, colors: &colors, fidelity, progress };
     let sharp = sharpened(&original);
     let paint = Paint { colors: &sharp, ..original };
-    let mut labels = segment(mesh, Some(&sharp), options, progress)?.labels;
+    let mut labels = segment(&mesh, Some(&sharp), options, progress)?.labels;
     groups.unify(&mut labels);
     let report = |stage: &str, fraction| {
         progress.report(Report { fraction, stage: stage.into(), ..Report::default() });

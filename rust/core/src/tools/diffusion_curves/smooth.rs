@@ -18,7 +18,10 @@ use crate::{Error, Result};
 /// # Errors
 /// [`MeshError::NoPositions`]; [`Error::Argument`] for vertices that do not exist.
 pub fn smooth_curves(mesh: &Mesh, edges: &[[u32; 2]]) -> Result<Vec<[Point; 2]>> {
-    let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
+    let original = mesh.positions().ok_or(MeshError::NoPositions)?;
+    let unit = mesh.unit();
+    let measured = mesh.measured(unit)?;
+    let positions = measured.positions().ok_or(MeshError::NoPositions)?;
     let connectivity = mesh.connectivity();
     if let Some(v) = edges.iter().flatten().find(|&&v| v as usize >= positions.len()) {
         return Err(Error::argument("edges", format!("vertex {v} does not exist: there are {}", positions.len())));
@@ -65,6 +68,7 @@ pub fn smooth_curves(mesh: &Mesh, edges: &[[u32; 2]]) -> Result<Vec<[Point; 2]>>
             *place = tree.closest(*place, None, |_| true).map_or(*place, |closest| closest.point);
         }
     }
+    unit.restore_points(&mut places, positions, original);
     Ok(edges.iter().map(|edge| edge.map(|v| places[v as usize])).collect())
 }
 

@@ -8,6 +8,7 @@ use crate::memory::Tool;
 use crate::mesh::vector::{add, distance, dot, scale, sub, Point};
 use crate::mesh::{Connectivity, EdgeTable, Mesh};
 use crate::remesh::closest::ClosestPoint;
+use crate::unit::Unit;
 use crate::{Error, Result};
 
 /// A path along the edges of a mesh that follows a line of points.
@@ -36,6 +37,13 @@ pub fn trace_curves(mesh: &Mesh, curves: &[(Vec<Point>, bool)]) -> Result<Vec<Tr
         return Err(MeshError::NoFaces.into());
     }
     mesh.demand(Tool::Curves).admit(None)?;
+    let unit = Unit::of(positions.iter().chain(curves.iter().flat_map(|(points, _)| points)).flatten().copied());
+    if !unit.is_one() {
+        let measured = |(points, closed): &(Vec<Point>, bool)| {
+            (points.iter().map(|p| p.map(|x| unit.measure(x))).collect(), *closed)
+        };
+        return trace_curves(mesh.measured(unit)?.as_ref(), &curves.iter().map(measured).collect::<Vec<_>>());
+    }
     let faces = connectivity.faces();
     let tree = ClosestPoint::new(faces.iter().map(|face| face.map(|v| positions[v as usize])).collect());
     let snapped = |p: Point| {

@@ -1,6 +1,6 @@
 //! Which holes to fill, and their first patches.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use super::FillHolesOptions;
 use crate::error::{MeshError, Refusal};
@@ -39,7 +39,25 @@ pub(super) fn choose(mesh: &Mesh, options: &FillHolesOptions) -> Result<Vec<Chos
             Ok((hole.vertices.clone(), hole.refusal))
         }
     };
-    choices.iter().map(choose).collect()
+    let chosen = choices.iter().map(choose).collect::<Result<Vec<_>>>()?;
+    refuse_repeats(&chosen)?;
+    Ok(chosen)
+}
+
+/// Refuses loops that run along one boundary edge: it has room for one more face only.
+fn refuse_repeats(chosen: &[Chosen]) -> Result<()> {
+    let mut first = HashMap::new();
+    for (entry, (vertices, _)) in chosen.iter().enumerate() {
+        for (&a, &b) in vertices.iter().zip(vertices.iter().cycle().skip(1)) {
+            let earlier = *first.entry([a.min(b), a.max(b)]).or_insert(entry);
+            if earlier != entry {
+                let problem =
+                    format!("entries {earlier} and {entry} are the same hole, or share an edge; give each hole once");
+                return Err(Error::argument("loops", problem));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The patch of every loop, given the faces `at` them; an empty one for those that cannot be filled, which is noted. Vertices that

@@ -34,6 +34,7 @@ pub use choice::LoopChoice;
 
 use std::collections::HashSet;
 
+use super::answer::{self, Surroundings};
 use super::options::check_range;
 use super::{Scale, SolveOptions};
 use crate::error::{MeshError, Refusal};
@@ -174,7 +175,31 @@ pub struct Filled {
 pub fn fill_holes(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) -> Result<Filled> {
     check(options)?;
     options.solve.settings()?;
-    options.solve.run(|| fill(mesh, options, progress))
+    let unit = mesh.unit();
+    let mesh = mesh.measured(unit)?;
+    let options = FillHolesOptions {
+        edge_length: options.edge_length.map(|length| unit.measure(length)),
+        scale: match options.scale {
+            Scale::Length(length) => Scale::Length(unit.measure(length)),
+            relative => relative,
+        },
+        ..options.clone()
+    };
+    let mut filled = options.solve.run(|| fill(&mesh, &options, &progress.in_unit(unit)))?;
+    let around = Surroundings::of(
+        filled.holes.iter().flat_map(|hole| &hole.boundary).filter_map(|&v| Some(&mesh.positions()?[v as usize])),
+    );
+    if !around.hold(&filled.vertices) || filled.holes.iter().any(|hole| !hole.gap.is_finite()) {
+        return Err(answer::refused());
+    }
+    for hole in &mut filled.holes {
+        hole.gap = hole.gap.max(0.0);
+        for energy in &mut hole.energy {
+            *energy = unit.restore_finite("the energy", *energy)?;
+        }
+    }
+    unit.restore_all(filled.vertices.iter_mut().flatten());
+    Ok(filled)
 }
 
 /// What filling all holes of a mesh takes: that of the longest, since they follow each other.

@@ -159,7 +159,7 @@ pub(super) mod tests {
         let at = faces_at(&mesh, std::slice::from_ref(&hole)).unwrap();
         let near = Neighbourhoods::new(mesh.connectivity(), &at);
         let n = mesh.connectivity().n_vertices() as u32;
-        Region::new(&mesh, &near, &patch, n, super::super::RINGS, &HashSet::new()).unwrap()
+        Region::new(&mesh, &near, &patch, n, super::super::constants::REGION_RINGS, &HashSet::new()).unwrap()
     }
 
     #[test]

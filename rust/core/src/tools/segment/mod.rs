@@ -38,6 +38,8 @@ use crate::memory::Tool;
 use crate::mesh::Mesh;
 use crate::progress::Progress;
 use crate::solve::{Settings, Status};
+use crate::tools::answer;
+use crate::unit::Unit;
 use crate::Result;
 use constants::{BEND, LEAST_EPSILON};
 use exact::coarse_planes;
@@ -90,17 +92,27 @@ pub fn segment(
     options.check(mesh, values)?;
     let settings = Settings { announce: false, ..options.solve.settings()? };
     let n_columns = values.map_or(3, |values| values.n_columns);
-    options.solve.run(|| {
+    let length = mesh.unit();
+    let value = values.map_or(length, |values| Unit::of(values.data.iter().copied()));
+    let mesh = mesh.measured(length)?;
+    let values = values.map(|values| values.measured(value));
+    let mut found = options.solve.run(|| {
         mesh.demand(Tool::Segment)
             .with_columns(n_columns, options.solve.solver.is_clarabel())
             .admit(options.solve.memory_limit)?;
         match &options.faces {
-            None => whole(mesh, values, options, &settings, progress),
-            Some(faces) => part::segment_part(mesh, values, faces, options, |mesh, values, options| {
+            None => whole(&mesh, values.as_deref(), options, &settings, progress),
+            Some(faces) => part::segment_part(&mesh, values.as_deref(), faces, options, |mesh, values, options| {
                 whole(mesh, values, options, &settings, progress)
             }),
         }
-    })
+    })?;
+    value.restore_all(found.values.data.iter_mut());
+    found.noise = value.restore(found.noise);
+    if !found.values.data.iter().all(|x| x.is_finite()) {
+        return Err(answer::refused());
+    }
+    Ok(found)
 }
 
 /// Segments all faces.

@@ -1,0 +1,33 @@
+"""Names the argument in errors about types: the native module leaves the name in a note."""
+
+import functools
+import re
+from collections.abc import Callable
+
+from .errors import ArgumentError
+
+NOTE = re.compile(r"while processing '(\w+)'")
+
+
+def named(function: Callable) -> Callable:
+    """`function`, with errors about the type of an argument that begin with its name, as all others do.
+
+    Raises TypeError for a wrong type, ArgumentError for a whole number that no machine word holds.
+    """
+
+    @functools.wraps(function)
+    def call(*positional, **keywords):
+        try:
+            return function(*positional, **keywords)
+        except (TypeError, OverflowError) as error:
+            found = NOTE.fullmatch(getattr(error, "__notes__", [""])[-1])
+            if found is None:
+                raise
+            name, problem = found[1], error
+        # Outside of the handler: the error that it stands for would only say the same again.
+        if isinstance(problem, OverflowError):
+            raise ArgumentError(f"{name}: the number is too large")
+        raise TypeError(f"{name}: {problem}")
+
+    call.__module__ = "ridgeform"
+    return call

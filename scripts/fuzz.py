@@ -1,0 +1,88 @@
+"""Fuzz the wheel and the core: random calls for some minutes, and what holds of every answer.
+
+    python scripts/setup_env.py scripts/fuzz.py MINUTES [core | wheel]
+
+The kept seeds come first, then ones that no run had before. A fault of the wheel is shown as small as can be
+and its seed is added to `tests/fuzz/seeds.txt`; seeds of the core are shown, for
+`rust/core/tests/fuzz_seeds.txt`. The tests run what is kept there.
+"""
+
+import collections
+import json
+import os
+import subprocess
+import sys
+import time
+
+from build_wheel import build_wheel
+from setup_env import environments
+from workspace import ROOT, WHEEL_SITE
+
+SEEDS = ROOT / "tests/fuzz/seeds.txt"
+BATCH = 200
+# No batch takes a minute: one that takes ten hangs.
+PATIENCE = 600
+
+
+def batch(python: str, seed: int) -> tuple[dict[str, int], str]:
+    """How the calls of a batch ended; what went wrong, or nothing."""
+    command = [python, "-m", "fuzz.worker", str(seed), str(BATCH)]
+    paths = os.pathsep.join([str(WHEEL_SITE), str(ROOT / "tests")])
+    environment = {**os.environ, "PYTHONPATH": paths, "RAYON_NUM_THREADS": "1"}
+    try:
+        done = subprocess.run(
+            command, env=environment, capture_output=True, text=True, timeout=PATIENCE, check=False
+        )
+    except subprocess.TimeoutExpired as hang:
+        return {}, f"no answer after {hang.timeout} s"
+    if done.returncode != 0:
+        return {}, f"exit code {done.returncode}\n{done.stdout}{done.stderr}"
+    return json.loads(done.stdout.splitlines()[-1])["ends"], ""
+
+
+def wheel(python: str, minutes: float) -> int:
+    """Batches until the time is over; the number of faults."""
+    kept = [int(line) for line in SEEDS.read_text(encoding="utf-8").split()]
+    end = time.monotonic() + 60 * minutes
+    # Seconds since 1970, so that no run repeats another one's seeds.
+    fresh = int(time.time()) * 1000
+    ends: collections.Counter[str] = collections.Counter()
+    faults = 0
+    while kept or time.monotonic() < end:
+        seed, known = (kept.pop(0), True) if kept else (fresh, False)
+        fresh += not known
+        found, fault = batch(python, seed)
+        ends.update(found)
+        if fault:
+            faults += 1
+            print(f"seed {seed}: {fault}", flush=True)
+            if not known:
+                with SEEDS.open("a", encoding="utf-8") as file:
+                    file.write(f"{seed}\n")
+    print(f"wheel: {ends.total()} calls, {faults} faults: {dict(ends.most_common())}", flush=True)
+    return faults
+
+
+def core(minutes: float) -> int:
+    """The same of the core; the number of faults."""
+    command = ["cargo", "test", "--release", "--locked", "--quiet", "-p", "ridgeform-core", "--test", "fuzz"]
+    environment = {**os.environ, "RIDGEFORM_FUZZ_SECONDS": str(round(60 * minutes))}
+    done = subprocess.run([*command, "--", "--nocapture"], cwd=ROOT, env=environment, check=False)
+    return int(done.returncode != 0)
+
+
+def main(arguments: list[str]) -> None:
+    """Half of the time for each, or all for one."""
+    minutes = float(arguments[0]) if arguments else 1.0
+    parts = arguments[1:] or ["wheel", "core"]
+    faults = 0
+    if "wheel" in parts:
+        build_wheel()
+        faults += wheel(next(iter(environments().values())), minutes / len(parts))
+    if "core" in parts:
+        faults += core(minutes / len(parts))
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

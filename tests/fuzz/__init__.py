@@ -1,0 +1,1 @@
+"""Structured fuzzing of the wheel: meshes that nobody modeled, and what holds of every answer."""
