@@ -243,3 +243,71 @@ def test_a_flow_finished_before_it_began_is_the_input():
     result = flow(progress)
     assert (result.status, result.iterations) == ("stopped", 0)
     np.testing.assert_array_equal(result.vertices, sphere(5).vertices)
+
+
+# A call, and how often it asks at least whether to stop: once for each piece of work that takes time.
+QUESTIONS = {
+    "an edge of each round of remeshing": (
+        lambda progress: ridgeform.remesh(sphere(3), iterations=3, progress=progress),
+        3 * 1920,
+    ),
+    "a column": (
+        lambda progress: ridgeform.denoise(
+            sphere(2), np.eye(162, 50), fidelity=1.0, coupling="separate", progress=progress
+        ),
+        50,
+    ),
+    "a column of a quadratic energy": (
+        lambda progress: ridgeform.denoise(
+            sphere(2), np.eye(162, 50), fidelity=1.0, energy="l2_laplacian", progress=progress
+        ),
+        50,
+    ),
+    "an iteration of each step": (
+        lambda progress: ridgeform.stylize(sphere(3), iterations=5, tolerance=1e-6, progress=progress),
+        5 * 10,
+    ),
+    "an iteration of Clarabel": (
+        lambda progress: ridgeform.denoise(
+            sphere(3), sphere(3).vertices, fidelity=1e3, solver="clarabel", progress=progress
+        ),
+        5,
+    ),
+}
+
+
+@pytest.mark.parametrize("piece", QUESTIONS)
+def test_calls_ask_whether_to_stop_for(piece):
+    call, least = QUESTIONS[piece]
+    progress = ridgeform.Progress()
+    assert progress.asked == 0
+    call(progress)
+    assert progress.asked >= least
+
+
+def test_remeshing_finished_in_the_middle_is_a_mesh():
+    running = Running(lambda progress: ridgeform.remesh(sphere(6), iterations=50, progress=progress))
+    running.until(lambda progress: progress.asked > 50_000)
+    running.progress.finish()
+    assert running.end() < PATIENCE
+    result = running.result
+    assert result.status == "stopped"
+    assert np.isfinite(result.vertices).all()
+    assert ridgeform.Mesh(result.vertices, result.faces).report.nonmanifold_edges.size == 0
+
+
+def test_clarabel_is_left_while_it_computes():
+    """Neither wish waits for an iteration; one of these takes seconds."""
+    mesh = sphere(6)
+    for wish in ("cancel", "finish"):
+        running = Running(
+            lambda progress: ridgeform.stylize(mesh, solver="clarabel", iterations=1, progress=progress)
+        )
+        running.until(lambda progress: progress.asked > 2)
+        asked = running.progress.asked
+        getattr(running.progress, wish)()
+        running.end()
+        assert running.progress.asked <= asked + 6
+        assert isinstance(running.error, ridgeform.Cancelled) == (wish == "cancel")
+        if wish == "finish":
+            np.testing.assert_array_equal(running.result.vertices, mesh.vertices)

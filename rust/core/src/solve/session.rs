@@ -98,6 +98,7 @@ impl Session {
         let mut total = Total::new(problem, method);
         let call = Call { method, settings, progress };
         for (g, columns) in groups.iter().enumerate() {
+            progress.check()?;
             let warm = if fits { stored.get(g) } else { None };
             match columns.len() {
                 1 => self.group::<1>(problem, columns, warm, &call, &mut total)?,
