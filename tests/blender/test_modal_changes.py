@@ -3,11 +3,11 @@
 import time
 
 import addon_kit as kit
-import bmesh
 import bpy
 import modal_kit
 import pytest
 from bl_ext.user_default.ridgeform.framework import modal
+from mesh_changes import CHANGES, HARMLESS
 from modal_kit import Session, open_box, state
 
 
@@ -16,74 +16,6 @@ def none_left():
     """No run is left over."""
     yield
     assert modal._running == []
-
-
-def add_vertices(obj):
-    obj.data.vertices.add(7)
-
-
-def delete_faces(obj):
-    edited = bmesh.new()
-    edited.from_mesh(obj.data)
-    edited.faces.ensure_lookup_table()
-    bmesh.ops.delete(edited, geom=edited.faces[:3], context="FACES")
-    edited.to_mesh(obj.data)
-    edited.free()
-
-
-def flip_faces(obj):
-    obj.data.flip_normals()
-
-
-def move_vertices(obj):
-    obj.data.vertices[5].co.x += 1.0
-
-
-def add_layer(obj):
-    obj.data.attributes.new("new", "FLOAT", "POINT")
-
-
-def remove_layers(obj):
-    obj.data.attributes.remove(obj.data.attributes["heat"])
-    obj.data.color_attributes.remove(obj.data.color_attributes["paint"])
-
-
-def add_keys(obj):
-    obj.shape_key_add(name="Basis")
-    obj.shape_key_add(name="Later")
-
-
-def remove_group(obj):
-    obj.vertex_groups.remove(obj.vertex_groups[0])
-
-
-def unlink(obj):
-    for collection in obj.users_collection:
-        collection.objects.unlink(obj)
-
-
-def replace_mesh(obj):
-    obj.data = obj.data.copy()
-
-
-def switch_mode(obj):
-    bpy.context.view_layer.objects.active = obj
-    bpy.ops.object.mode_set(mode="EDIT")
-
-
-CHANGES = [
-    add_vertices,
-    delete_faces,
-    flip_faces,
-    move_vertices,
-    add_layer,
-    remove_layers,
-    add_keys,
-    remove_group,
-    unlink,
-    replace_mesh,
-    switch_mode,
-]
 
 
 @pytest.mark.parametrize("change", CHANGES, ids=lambda change: change.__name__)
@@ -135,27 +67,13 @@ def wait_for_preview(session, obj):
         time.sleep(0.002)
 
 
-def hide(obj):
-    obj.hide_viewport = True
-    obj.hide_set(True)
-
-
-def rename(obj):
-    obj.name = obj.data.name = "Another"
-
-
-def deselect(obj):
-    obj.select_set(False)
-    bpy.context.view_layer.objects.active = None
-
-
 def edit_another(_obj):
     other = kit.bumpy_box("Another", cuts=1)
     bpy.context.view_layer.objects.active = other
     bpy.ops.object.mode_set(mode="EDIT")
 
 
-@pytest.mark.parametrize("change", [hide, rename, deselect, edit_another], ids=lambda change: change.__name__)
+@pytest.mark.parametrize("change", [*HARMLESS, edit_another], ids=lambda change: change.__name__)
 @pytest.mark.parametrize("tool", modal_kit.TOOLS)
 def test_what_does_not_concern_the_mesh_does_not_stop_the_run(tool, change):
     obj = open_box()

@@ -1,0 +1,319 @@
+"""Random sequences of what a user, a script and a second window do, over all tools, as a state machine.
+
+After every step: no mesh that `validate()` would correct, no run left over, finite coordinates; a tool that
+refuses leaves everything as it is, Esc gives everything back, and undo and redo return every bit.
+"""
+
+import contextlib
+import json
+import os
+import random
+from pathlib import Path
+
+import addon_kit as kit
+import bpy
+import modal_kit
+import numpy as np
+from bl_ext.user_default.ridgeform.blender import selection
+from bl_ext.user_default.ridgeform.framework import modal
+from bl_ext.user_default.ridgeform.framework.run import RefusedError
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
+from mesh_changes import CHANGES, HARMLESS, delete
+from sequence_meshes import KINDS, NAMES
+
+OPERATORS = sorted(name for name in dir(bpy.ops.ridgeform) if not name.endswith(("_svg", "_preset_add")))
+WORDS = ["", "heat", "paint", "group", "Key", "nothing of this name"]
+BOUNDS = {"steps": 4, "count": 6, "max_iterations": 300, "bands": 8}
+"""What makes a call long is bounded: sequences are to be many."""
+MODES = ["OBJECT", "EDIT", "SCULPT", "WEIGHT_PAINT", "VERTEX_PAINT"]
+MOST = 4
+"""Objects at a time."""
+ALL_CHANGES = (
+    *CHANGES,
+    *HARMLESS,
+    delete,
+    *(lambda obj, name=name: setattr(obj, "name", name) for name in NAMES),
+)
+TRAIL = os.environ.get("RIDGEFORM_FUZZ_TRAIL")
+counts = {"sequences": 0, "steps": 0, "operators": 0, "runs": 0, "finished": 0, "changes": 0, "undos": 0}
+"""How much was done in this process."""
+
+
+def drawn_settings(operator, choice):
+    """Some properties of an operator at random: numbers that a slider gives, all choices of enums."""
+    properties = [
+        each
+        for each in getattr(bpy.ops.ridgeform, operator).get_rna_type().properties
+        if not each.is_readonly and not each.is_hidden and each.identifier != "rna_type"
+    ]
+    settings = {}
+    for each in choice.sample(properties, min(len(properties), choice.randrange(4))):
+        if each.type == "BOOLEAN":
+            settings[each.identifier] = choice.random() < 0.5
+        elif each.type == "INT":
+            high = min(each.soft_max, BOUNDS.get(each.identifier, 30))
+            settings[each.identifier] = choice.randint(each.soft_min, max(high, each.soft_min))
+        elif each.type == "FLOAT":
+            settings[each.identifier] = choice.uniform(each.soft_min, each.soft_max)
+        elif each.type == "ENUM":
+            names = [item.identifier for item in each.enum_items]
+            many = {name for name in names if choice.random() < 0.4}
+            settings[each.identifier] = many if each.is_enum_flag else choice.choice(names)
+        elif each.type == "STRING":
+            settings[each.identifier] = choice.choice(WORDS)
+    return {"steps": 3, **settings} if operator == "stylize" else settings
+
+
+def note(*words):
+    """Keep what is done next, since a crash leaves no traceback of the steps before."""
+    if TRAIL:
+        with Path(TRAIL).open("a", encoding="utf-8") as stream:
+            print(json.dumps(words), file=stream)
+
+
+class Sequences(RuleBasedStateMachine):
+    """One sequence."""
+
+    def __init__(self):
+        """Begin with nothing."""
+        super().__init__()
+        self.session, self.at_start = None, None
+        self.steps, self.place = [], 0
+
+    @initialize(kind=st.sampled_from(list(KINDS)))
+    def begin(self, kind):
+        """An empty file with one object."""
+        kit.empty_scene()
+        bpy.context.preferences.edit.use_global_undo = True
+        counts["sequences"] += 1
+        note("begin")
+        self._restart()
+        self.add(kind)
+
+    # What a user does.
+
+    @precondition(lambda self: len(meshes()) < MOST and bpy.context.mode == "OBJECT")
+    @rule(kind=st.sampled_from(list(KINDS)))
+    def add(self, kind):
+        """Add an object."""
+        note("add", kind)
+        KINDS[kind]()
+        self._push()
+
+    @precondition(lambda self: meshes() and bpy.context.mode == "OBJECT")
+    @rule(mask=st.integers(1, 2**MOST - 1), active=st.integers(0, MOST - 1))
+    def select(self, mask, active):
+        """Select some objects."""
+        note("select", mask, active)
+        for index, obj in enumerate(meshes()):
+            obj.select_set(bool(mask >> index & 1))
+        bpy.context.view_layer.objects.active = meshes()[active % len(meshes())]
+        self._push()
+
+    @precondition(lambda self: bpy.context.object is not None and bpy.ops.object.mode_set.poll())
+    @rule(mode=st.sampled_from(MODES))
+    def switch(self, mode):
+        """Switch the mode."""
+        note("switch", mode)
+        bpy.ops.object.mode_set(mode=mode)
+        self._push()
+
+    @precondition(lambda self: bpy.context.mode == "EDIT_MESH" and self.session is None)
+    @rule(seed=st.integers(0, 99), all_of=st.booleans())
+    def select_vertices(self, seed, all_of):
+        """Select all or some vertices in Edit Mode."""
+        note("select_vertices", seed, all_of)
+        bpy.ops.mesh.select_all(action="SELECT" if all_of else "DESELECT")
+        if not all_of:
+            bpy.ops.mesh.select_random(ratio=0.5, seed=seed)
+
+    @rule(operator=st.sampled_from(OPERATORS), seed=st.integers(0, 2**32))
+    def operate(self, operator, seed):
+        """Run an operator at once."""
+        note("operate", operator, seed)
+        before = self._everything()
+        call = getattr(bpy.ops.ridgeform, operator)
+        if not call.poll():
+            return
+        counts["operators"] += 1
+        try:
+            outcome = call(**drawn_settings(operator, random.Random(seed)))
+        except RuntimeError as refusal:
+            assert str(refusal).startswith("Error: "), refusal
+            assert "Traceback" not in str(refusal), refusal
+            assert "Stopped: " not in str(refusal), refusal
+            outcome = {"CANCELLED"}
+        counts["finished"] += outcome == {"FINISHED"}
+        if outcome == {"CANCELLED"} and before is not None and self.session is None:
+            assert self._everything() == before, f"{operator} changed what it refused"
+        self._push()
+
+    # A run while Blender goes on drawing.
+
+    @precondition(lambda self: self.session is None and meshes() and bpy.context.mode in selection.MODES)
+    @rule(tool=st.sampled_from(list(modal_kit.TOOLS)), long=st.booleans())
+    def begin_run(self, tool, long):
+        """Begin a run on what is selected."""
+        note("begin_run", tool, long)
+        kind = modal_kit.TOOLS[tool][0]
+        chosen = selection.usable(selection.mesh_objects(bpy.context), kind.needs)
+        self.at_start = self._everything()
+        try:
+            self.session = modal_kit.Session(
+                tool, chosen.objects, **({"steps": 200} if long and tool == "stylize" else {})
+            )
+        except RefusedError:
+            assert self._everything() == self.at_start
+        else:
+            counts["runs"] += 1
+
+    @precondition(lambda self: self.session is not None)
+    @rule(key=st.sampled_from(["TIMER", "TIMER", "ESC", "RET", "MIDDLEMOUSE"]))
+    def send(self, key):
+        """Hand an event to the run."""
+        note("send", key)
+        outcome = self.session.send(key)
+        if outcome <= {"FINISHED", "CANCELLED"}:
+            if key == "ESC" and self.at_start is not None:
+                assert self._everything() == self.at_start, "Esc did not give everything back"
+            self._end()
+
+    @precondition(lambda self: self.session is not None)
+    @rule()
+    def finish(self):
+        """Wait for the end of the run."""
+        note("finish")
+        counts["finished"] += self.session.finish() == {"FINISHED"}
+        self._end()
+
+    # What scripts, timers and other windows do, also while a run is on.
+
+    @precondition(lambda self: meshes() and bpy.context.mode == "OBJECT")
+    @rule(change=st.sampled_from(ALL_CHANGES), index=st.integers(0, MOST - 1))
+    def change(self, change, index):
+        """Change a mesh by another hand."""
+        self._change(change, index)
+        self._push()
+
+    @precondition(lambda self: self.session is None and meshes() and bpy.context.mode in selection.MODES)
+    @rule(
+        tool=st.sampled_from(list(modal_kit.TOOLS)),
+        polls=st.integers(0, 3),
+        change=st.sampled_from((None, *ALL_CHANGES)),
+        index=st.integers(0, MOST - 1),
+        key=st.sampled_from(["TIMER", "ESC", "RET"]),
+    )
+    def run_with_a_change(self, tool, polls, change, index, key):
+        """A run from beginning to end, with a change in the middle."""
+        self.begin_run(tool, True)
+        for _ in range(polls):
+            if self.session is not None:
+                self.send("TIMER")
+        if self.session is not None and change is not None and meshes():
+            self.at_start = None
+            self._change(change, index)
+        if self.session is not None:
+            self.send(key)
+        if self.session is not None:
+            self.finish()
+
+    def _change(self, change, index):
+        counts["changes"] += 1
+        note("_change", ALL_CHANGES.index(change), index)
+        # There may be no such layer, no vertex, or the mode cannot be switched.
+        with contextlib.suppress(KeyError, IndexError, RuntimeError):
+            change(meshes()[index % len(meshes())])
+
+    @rule(forth=st.booleans())
+    def undo(self, forth):
+        """Undo or redo, and compare every bit."""
+        note("undo", forth)
+        target = self.place + (1 if forth else -1)
+        if bpy.context.mode != "OBJECT" or not 0 <= target < len(self.steps):
+            return
+        counts["undos"] += 1
+        bpy.ops.ed.redo() if forth else bpy.ops.ed.undo()
+        self.place = target
+        self.at_start = None
+        assert everything() == self.steps[target], "redo" if forth else "undo"
+        self._end_if_gone()
+
+    @rule()
+    def open_file(self):
+        """Begin a new file."""
+        note("open_file")
+        kit.empty_scene()
+        bpy.context.preferences.edit.use_global_undo = True
+        self._restart()
+        self._end_if_gone()
+
+    # What is always true.
+
+    @invariant()
+    def meshes_are_sound(self):
+        """No mesh is one that Blender would correct, and no coordinate is lost."""
+        counts["steps"] += 1
+        for obj in meshes():
+            if obj.mode == "EDIT":
+                continue
+            copy = obj.data.copy()
+            corrected = copy.validate()
+            bpy.data.meshes.remove(copy)
+            assert not corrected, obj.name
+            assert np.isfinite(kit.coordinates(obj)).all(), obj.name
+
+    @invariant()
+    def no_run_is_left_over(self):
+        """A run is there as long as its operator."""
+        if self.session is None:
+            assert modal._running == []
+
+    def teardown(self):
+        """End the run."""
+        if self.session is not None:
+            self.session.send("ESC")
+            self.session.check_ended()
+
+    def _push(self):
+        """An undo step, in Object Mode; while a run is on Blender makes none."""
+        if self.session is None and bpy.context.mode == "OBJECT":
+            bpy.ops.ed.undo_push(message=str(self.place))
+            self.steps = [*self.steps[: self.place + 1], everything()]
+            self.place = len(self.steps) - 1
+        if self.session is not None:
+            self.at_start = None
+
+    def _restart(self):
+        self.at_start = None
+        bpy.ops.ed.undo_push(message="start")
+        self.steps, self.place = [everything()], 0
+
+    def _end(self):
+        self.session.check_ended()
+        self.session = None
+        self._push()
+
+    def _end_if_gone(self):
+        if self.session is not None and self.session.run not in modal._running:
+            assert self.session.send("TIMER") == {"CANCELLED"}
+            self.session.check_ended()
+            self.session = None
+
+    def _everything(self):
+        return everything() if bpy.context.mode == "OBJECT" else None
+
+
+def meshes():
+    """The mesh objects of the view layer."""
+    return [obj for obj in bpy.context.view_layer.objects if obj.type == "MESH"]
+
+
+def everything():
+    """All that tools could change, of all objects."""
+    found = {
+        obj.name: obj.mode if obj.mode == "EDIT" else modal_kit.state(obj)
+        for obj in bpy.data.objects
+        if obj.type == "MESH"
+    }
+    return found, sorted(obj.name for obj in bpy.data.objects), sorted(bpy.context.view_layer.objects.keys())
