@@ -5,6 +5,7 @@ refuses leaves everything as it is, Esc gives everything back, and undo and redo
 """
 
 import contextlib
+import functools
 import json
 import os
 import random
@@ -18,7 +19,7 @@ from bl_ext.user_default.ridgeform.blender import selection
 from bl_ext.user_default.ridgeform.framework import modal
 from bl_ext.user_default.ridgeform.framework.run import RefusedError
 from hypothesis import strategies as st
-from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
+from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule
 from mesh_changes import CHANGES, HARMLESS, delete
 from sequence_meshes import KINDS, NAMES
 
@@ -72,6 +73,24 @@ def note(*words):
             print(json.dumps(words), file=stream)
 
 
+def only_if(condition):
+    """A rule that does nothing unless a condition holds.
+
+    Not as a precondition: that would decide which rules can be drawn, and whether a run is still on depends
+    on the moment.
+    """
+
+    def guarded(step):
+        @functools.wraps(step)
+        def checked(self, *args, **kwargs):
+            if condition(self):
+                step(self, *args, **kwargs)
+
+        return checked
+
+    return guarded
+
+
 class Sequences(RuleBasedStateMachine):
     """One sequence."""
 
@@ -93,16 +112,16 @@ class Sequences(RuleBasedStateMachine):
 
     # What a user does.
 
-    @precondition(lambda self: len(meshes()) < MOST and bpy.context.mode == "OBJECT")
     @rule(kind=st.sampled_from(list(KINDS)))
+    @only_if(lambda self: len(meshes()) < MOST and bpy.context.mode == "OBJECT")
     def add(self, kind):
         """Add an object."""
         note("add", kind)
         KINDS[kind]()
         self._push()
 
-    @precondition(lambda self: meshes() and bpy.context.mode == "OBJECT")
     @rule(mask=st.integers(1, 2**MOST - 1), active=st.integers(0, MOST - 1))
+    @only_if(lambda self: meshes() and bpy.context.mode == "OBJECT")
     def select(self, mask, active):
         """Select some objects."""
         note("select", mask, active)
@@ -111,16 +130,16 @@ class Sequences(RuleBasedStateMachine):
         bpy.context.view_layer.objects.active = meshes()[active % len(meshes())]
         self._push()
 
-    @precondition(lambda self: bpy.context.object is not None and bpy.ops.object.mode_set.poll())
     @rule(mode=st.sampled_from(MODES))
+    @only_if(lambda self: bpy.context.object is not None and bpy.ops.object.mode_set.poll())
     def switch(self, mode):
         """Switch the mode."""
         note("switch", mode)
         bpy.ops.object.mode_set(mode=mode)
         self._push()
 
-    @precondition(lambda self: bpy.context.mode == "EDIT_MESH" and self.session is None)
     @rule(seed=st.integers(0, 99), all_of=st.booleans())
+    @only_if(lambda self: bpy.context.mode == "EDIT_MESH" and self.session is None)
     def select_vertices(self, seed, all_of):
         """Select all or some vertices in Edit Mode."""
         note("select_vertices", seed, all_of)
@@ -151,8 +170,8 @@ class Sequences(RuleBasedStateMachine):
 
     # A run while Blender goes on drawing.
 
-    @precondition(lambda self: self.session is None and meshes() and bpy.context.mode in selection.MODES)
     @rule(tool=st.sampled_from(list(modal_kit.TOOLS)), long=st.booleans())
+    @only_if(lambda self: self.session is None and meshes() and bpy.context.mode in selection.MODES)
     def begin_run(self, tool, long):
         """Begin a run on what is selected."""
         note("begin_run", tool, long)
@@ -168,8 +187,8 @@ class Sequences(RuleBasedStateMachine):
         else:
             counts["runs"] += 1
 
-    @precondition(lambda self: self.session is not None)
     @rule(key=st.sampled_from(["TIMER", "TIMER", "ESC", "RET", "MIDDLEMOUSE"]))
+    @only_if(lambda self: self.session is not None)
     def send(self, key):
         """Hand an event to the run."""
         note("send", key)
@@ -179,8 +198,8 @@ class Sequences(RuleBasedStateMachine):
                 assert self._everything() == self.at_start, "Esc did not give everything back"
             self._end()
 
-    @precondition(lambda self: self.session is not None)
     @rule()
+    @only_if(lambda self: self.session is not None)
     def finish(self):
         """Wait for the end of the run."""
         note("finish")
@@ -189,14 +208,13 @@ class Sequences(RuleBasedStateMachine):
 
     # What scripts, timers and other windows do, also while a run is on.
 
-    @precondition(lambda self: meshes() and bpy.context.mode == "OBJECT")
     @rule(change=st.sampled_from(ALL_CHANGES), index=st.integers(0, MOST - 1))
+    @only_if(lambda self: meshes() and bpy.context.mode == "OBJECT")
     def change(self, change, index):
         """Change a mesh by another hand."""
         self._change(change, index)
         self._push()
 
-    @precondition(lambda self: self.session is None and meshes() and bpy.context.mode in selection.MODES)
     @rule(
         tool=st.sampled_from(list(modal_kit.TOOLS)),
         polls=st.integers(0, 3),
@@ -204,6 +222,7 @@ class Sequences(RuleBasedStateMachine):
         index=st.integers(0, MOST - 1),
         key=st.sampled_from(["TIMER", "ESC", "RET"]),
     )
+    @only_if(lambda self: self.session is None and meshes() and bpy.context.mode in selection.MODES)
     def run_with_a_change(self, tool, polls, change, index, key):
         """A run from beginning to end, with a change in the middle."""
         self.begin_run(tool, True)
@@ -239,10 +258,12 @@ class Sequences(RuleBasedStateMachine):
         assert everything() == self.steps[target], "redo" if forth else "undo"
         self._end_if_gone()
 
-    @rule()
-    def open_file(self):
-        """Begin a new file."""
-        note("open_file")
+    @rule(chance=st.integers(0, 3))
+    def open_file(self, chance):
+        """Begin a new file, now and then."""
+        if chance:
+            return
+        note("open_file", chance)
         kit.empty_scene()
         bpy.context.preferences.edit.use_global_undo = True
         self._restart()

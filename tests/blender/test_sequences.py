@@ -14,7 +14,7 @@ from sequences import Sequences, counts
 
 SEED = int(os.environ.get("RIDGEFORM_FUZZ_SEED", "1"))
 COUNT = int(os.environ.get("RIDGEFORM_FUZZ_COUNT", "40"))
-STEPS = 25
+STEPS = 40
 
 
 def test_no_sequence_ends_in_a_fault():

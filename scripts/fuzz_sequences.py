@@ -1,0 +1,90 @@
+"""Random sequences of operators, modes, undo, and edits in Blender, for some minutes.
+
+    python scripts/setup_env.py scripts/fuzz_sequences.py MINUTES [SEED]
+
+Each batch is a process of its own with a seed of its own, from SEED on (by default one that no run had
+before), in every Blender here in turn. What a batch that fails printed, and the steps that led there, stay in
+`out/fuzz/`.
+"""
+
+import collections
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from build_extension import build_extension, extension_here
+from setup_env import PYTHONS, environments
+from workspace import OUT, ROOT
+
+RESULTS = OUT / "fuzz"
+BATCH = 50
+"""Sequences in a process: about a minute."""
+PATIENCE = 1800
+"""Seconds after which a batch hangs."""
+
+
+def batch(python: Path, extension: Path, seed: int, stem: Path) -> tuple[dict[str, int], str]:
+    """How much was done in a batch; what went wrong, or nothing."""
+    log, counts, trail = (stem.with_suffix(suffix) for suffix in (".log", ".json", ".trail"))
+    environment = os.environ | {
+        "RIDGEFORM_EXTENSION": str(extension),
+        "PYTHONPATH": "",
+        "RIDGEFORM_FUZZ_SEED": str(seed),
+        "RIDGEFORM_FUZZ_COUNT": str(BATCH),
+        "RIDGEFORM_FUZZ_COUNTS": str(counts),
+        "RIDGEFORM_FUZZ_TRAIL": str(trail),
+    }
+    command = [str(python), "-m", "pytest", "-q", "-x", "tests/blender/test_sequences.py"]
+    for old in (counts, trail):
+        old.unlink(missing_ok=True)
+    with log.open("w", encoding="utf-8") as stream:
+        try:
+            code = subprocess.run(
+                command,
+                cwd=ROOT,
+                env=environment,
+                stdout=stream,
+                stderr=stream,
+                timeout=PATIENCE,
+                check=False,
+            ).returncode
+        except subprocess.TimeoutExpired:
+            return {}, f"no answer after {PATIENCE} s, see {log.relative_to(ROOT)}"
+    done = json.loads(counts.read_text(encoding="utf-8")) if counts.is_file() else {}
+    if code != 0:
+        return done, f"exit code {code}, see {log.relative_to(ROOT)}"
+    for left in (log, counts, trail):
+        left.unlink(missing_ok=True)
+    return done, ""
+
+
+def sequences(minutes: float, seed: int | None = None) -> int:
+    """Batches until the time is over; the number of faults."""
+    RESULTS.mkdir(parents=True, exist_ok=True)
+    extension = extension_here(build_extension())
+    found = environments()
+    # Seconds since 1970, so that no run repeats another one's seeds.
+    seed = int(time.time()) if seed is None else seed
+    end = time.monotonic() + 60 * minutes
+    total: dict[str, collections.Counter[str]] = {version: collections.Counter() for version in found}
+    faults = 0
+    while time.monotonic() < end:
+        for version, python in found.items():
+            done, fault = batch(python, extension, seed, RESULTS / f"sequences-{version}-{seed}")
+            total[version].update(done)
+            if fault:
+                faults += 1
+                print(f"Blender {PYTHONS[version]}, seed {seed}: {fault}", flush=True)
+        seed += 1
+    for version, counts in total.items():
+        print(f"sequences in Blender {PYTHONS[version]}: {dict(counts)}", flush=True)
+    print(f"sequences: {faults} faults", flush=True)
+    return faults
+
+
+if __name__ == "__main__":
+    words = sys.argv[1:]
+    sys.exit(1 if sequences(float(words[0]), *map(int, words[1:])) else 0)
