@@ -20,6 +20,17 @@ def flush_edit_mode(obj: bpy.types.Object) -> None:
         obj.update_from_editmode()
 
 
+def is_out_of_reach(obj: bpy.types.Object) -> bool:
+    """Whether `object_mode` would leave the mesh of an object in Edit Mode.
+
+    Scripts can hide what is edited, or make another object the active one.
+    """
+    active = bpy.context.object
+    visible = active is not None and active.visible_get() and obj.visible_get()
+    reached = bpy.context.mode == "EDIT_MESH" and obj.mode == "EDIT" and visible
+    return obj.data.is_editmode and not reached
+
+
 @contextlib.contextmanager
 def object_mode() -> Iterator[None]:
     """Leave Edit Mode for all objects that are in it, and come back: much cannot be read or made there."""

@@ -24,7 +24,7 @@ class MeshState:
         """Take the state that the mesh of an object has now, in the mode that it is in."""
         self._object = obj
         self._name = obj.name
-        self._mode = obj.mode
+        self._mode = _mode(obj)
         self._mesh = obj.data.as_pointer()
         self._counts = _counts(obj.data)
         self._layout = _layout(obj)
@@ -51,10 +51,12 @@ class MeshState:
 
     def _differences(self, thorough: bool) -> Iterator[str]:
         obj = self._object
-        if obj.mode != self._mode:
+        if _mode(obj) != self._mode:
             yield "its mode was switched"
         if obj.data is None or obj.data.as_pointer() != self._mesh:
             yield "it has another mesh"
+        if mesh_io.is_out_of_reach(obj):
+            yield "it was hidden or is no longer active, in Edit Mode"
         if not obj.data.is_editable:
             yield "it cannot be edited any more"
         for what, count in _counts(obj.data).items():
@@ -79,6 +81,11 @@ def _same(arrays: list[np.ndarray], others: list[np.ndarray]) -> bool:
     return len(arrays) == len(others) and all(
         np.array_equal(a.view(np.uint32), b.view(np.uint32)) for a, b in pairs
     )
+
+
+def _mode(obj: bpy.types.Object) -> object:
+    # A mesh is in Edit Mode for all objects that share it.
+    return obj.mode, obj.data is not None and obj.data.is_editmode
 
 
 def _counts(mesh: bpy.types.Mesh) -> dict[str, int]:

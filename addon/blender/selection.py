@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 
 import bpy
 
+from . import mesh_io
+
 MODES = ("OBJECT", "EDIT_MESH")
 
 
@@ -38,6 +40,10 @@ def reason_against(obj: bpy.types.Object, needs: Needs = MOVES) -> str | None:
         (mesh.library, f'"{name}" is linked from another file: make its mesh local first'),
         (mesh.override_library, f'"{name}" has overridden mesh data: make its mesh local first'),
         (not mesh.is_editable, f'"{name}" cannot be edited'),
+        (
+            mesh_io.is_out_of_reach(obj),
+            f'"{name}" is in Edit Mode, but hidden or not active: show it, and leave Edit Mode',
+        ),
         (
             needs.coordinates and any(modifier.type == "MULTIRES" for modifier in obj.modifiers),
             f'"{name}" has a Multiresolution modifier: apply it first',

@@ -241,7 +241,7 @@ class Sequences(RuleBasedStateMachine):
         counts["changes"] += 1
         note("_change", ALL_CHANGES.index(change), index)
         # There may be no such layer, no vertex, or the mode cannot be switched.
-        with contextlib.suppress(KeyError, IndexError, RuntimeError):
+        with contextlib.suppress(KeyError, IndexError, RuntimeError, ValueError):
             change(meshes()[index % len(meshes())])
 
     @rule(forth=st.booleans())
