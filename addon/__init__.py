@@ -2,7 +2,10 @@
 """Ridgeform: piecewise flat meshes with crisp ridges, in Blender."""
 
 from . import registry
-from .framework import wheel
+from .framework import job, wheel
+
+__all__ = ("job", "register", "unregister")
+"""`job` for scripts: `bl_ext.user_default.ridgeform.job.last_summary()` says what the last run did."""
 
 
 def register() -> None:

@@ -58,7 +58,7 @@ def main() -> None:
 
 def summary() -> dict[str, object]:
     """What the add-on says of its last run."""
-    job = importlib.import_module(f"{EXTENSION}.job")
+    job = importlib.import_module(EXTENSION).job
     (entry,) = job.last_summary()
     return entry
 

@@ -71,13 +71,19 @@ def triangle_faces(mesh: bpy.types.Mesh) -> np.ndarray:
 
 def edges(mesh: bpy.types.Mesh) -> np.ndarray:
     """The edges (k, 2) int32."""
-    ends = np.empty(2 * len(mesh.edges), np.int32)
-    attribute = mesh.attributes.get(".edge_verts")
+    ends = np.empty((len(mesh.edges), 2), np.int32)
+    return _read(mesh.attributes.get(".edge_verts"), "value", mesh.edges, "vertices", ends)
+
+
+def _read(
+    attribute: bpy.types.Attribute | None, key: str, items: object, slower: str, values: np.ndarray
+) -> np.ndarray:
+    """Fill rows of values from an attribute, or from its items by a slower way where there is none."""
     if attribute is None:
-        mesh.edges.foreach_get("vertices", ends)
+        items.foreach_get(slower, values.ravel())
     else:
-        attribute.data.foreach_get("value", ends)
-    return ends.reshape(-1, 2)
+        attribute.data.foreach_get(key, values.ravel())
+    return values
 
 
 def face_corners(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -177,13 +183,8 @@ def open_coordinates(obj: bpy.types.Object) -> Coordinates:
 
 def positions(mesh: bpy.types.Mesh) -> np.ndarray:
     """The positions (n, 3) float32 of the vertices, in Edit Mode by a slower way."""
-    values = np.empty(3 * len(mesh.vertices), np.float32)
-    attribute = mesh.attributes.get("position")
-    if attribute is None:
-        mesh.vertices.foreach_get("co", values)
-    else:
-        attribute.data.foreach_get("vector", values)
-    return values.reshape(-1, 3)
+    values = np.empty((len(mesh.vertices), 3), np.float32)
+    return _read(mesh.attributes.get("position"), "vector", mesh.vertices, "co", values)
 
 
 def _write_positions(mesh: bpy.types.Mesh, coordinates: np.ndarray) -> None:

@@ -215,6 +215,13 @@ def test_wrong_wheel_is_refused(monkeypatch):
         addon.framework.wheel.check_version()
 
 
+def test_scripts_ask_the_add_on_itself_what_the_last_run_did():
+    kit.bumpy_box()
+    bpy.ops.ridgeform.stylize(steps=2)
+    assert addon.job.last_summary() == job.last_summary()
+    assert addon.job.last_summary()[0]["steps"] == 2
+
+
 def test_more_strength_means_less_fidelity():
     values = [fidelity_of(strength) for strength in (0.0, 0.25, 0.5, 0.75, 1.0)]
     assert values == sorted(values, reverse=True)
