@@ -42,6 +42,16 @@ for hole in ridgeform.find_holes(open_mesh):
 filled = ridgeform.fill_holes(open_mesh)
 print(len(filled.new_faces), [hole.status for hole in filled.holes])
 
+# %% weld
+soup = vertices[faces].reshape(-1, 3)  # as STL files have it: three vertices of its own for every triangle
+joined, joined_faces, index = ridgeform.weld(soup, np.arange(len(soup)).reshape(-1, 3))
+print(len(soup), len(joined), np.array_equal(joined_faces, index.reshape(-1, 3)))
+
+# %% orient
+turned = np.where(random.random((len(faces), 1)) < 0.1, faces[:, [0, 2, 1]], faces)
+oriented, flipped = ridgeform.orient(turned)
+print(flipped.sum(), np.array_equal(oriented, faces))
+
 # %% denoise
 noisy = np.abs(y) + random.normal(scale=0.05, size=len(y))
 smooth = ridgeform.denoise(mesh, noisy, fidelity=1e3)

@@ -9,7 +9,9 @@ from workspace import ROOT, WHEEL_SITE
 
 EXAMPLES = ROOT / "examples/api.py"
 GROUPS = {
-    "Meshes": ("Mesh", "MeshReport", "find_holes", "Hole", "boundary_loops", "remesh", "Remeshed"),
+    "Meshes": (
+        "Mesh", "MeshReport", "find_holes", "Hole", "boundary_loops", "weld", "orient", "remesh", "Remeshed",
+    ),
     "Shapes": ("stylize", "Stylized", "fill_holes", "Filled", "FilledHole", "segment", "Segmentation"),
     "Functions on surfaces": ("denoise", "interpolate", "vibration_modes", "Solution"),
     "Diffusion curves": (

@@ -85,7 +85,9 @@ class AttributeRun(Run):
         surface = surface_of(obj)
         triangles = mesh_io.triangles(obj.data)
         surface.face_weights = painted_ridges(obj, self.settings, triangles, surface.weld)
-        return self.pose(obj, source, surface)
+        part = self.pose(obj, source, surface)
+        part.warnings += surface.weld.notes
+        return part
 
     @abstractmethod
     def pose(self, obj: bpy.types.Object, source: PointValues, surface: Surface) -> AttributePart:

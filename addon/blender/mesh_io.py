@@ -101,12 +101,6 @@ def corner_edges(mesh: bpy.types.Mesh) -> np.ndarray:
     return _corner_array(mesh, ".corner_edge", "edge_index")
 
 
-def border_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
-    """The vertices (k,) of the edges with one face, ascending."""
-    used = np.bincount(corner_edges(mesh), minlength=len(mesh.edges))
-    return np.unique(edges(mesh)[used == 1])
-
-
 def _face_starts(mesh: bpy.types.Mesh) -> np.ndarray:
     if len(mesh.loops) == 3 * len(mesh.polygons):
         return np.arange(0, len(mesh.loops), 3, dtype=np.int32)

@@ -2,12 +2,14 @@
 """Treating the two sides of a split seam as one surface while computing.
 
 Formats that store a vertex once per normal or UV (glTF, PLY), and the Edge Split modifier, leave open
-borders whose vertices lie in the same place. Computed as they are, the surface would tear open along them.
+borders whose vertices lie in the same place, up to rounding. Computed as they are, the surface would tear
+open along them. What is one place, and which faces are turned over, the wheel says.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
+import ridgeform
 
 
 @dataclass
@@ -22,6 +24,8 @@ class Weld:
     """The welded triangles (l, 3), those that kept three different vertices."""
     kept: np.ndarray
     """Which triangles (m,) bool of the mesh these are."""
+    notes: list[str] = field(default_factory=list)
+    """What a modeler should know of it."""
 
     def of(self, vertices: np.ndarray) -> np.ndarray:
         """The welded vertices of an array of vertices; the array itself if none were welded."""
@@ -42,28 +46,43 @@ class Weld:
         return np.bincount(self.vertex, weights=values, minlength=len(self.first))
 
 
-def weld_seams(coordinates: np.ndarray, triangles: np.ndarray, border: np.ndarray | None = None) -> Weld:
-    """Weld vertices on open borders whose coordinates (n, 3) are equal; all others keep their order.
-
-    `border` (b,) are the vertices on open borders, if they are known.
-    """
-    n = len(coordinates)
-    vertex = first = np.arange(n)
-    border = _border_vertices(triangles, n) if border is None else border
-    if len(border):
-        # Adding 0 turns -0 into 0, which is the same place.
-        _, found, place = np.unique(coordinates[border] + 0.0, axis=0, return_index=True, return_inverse=True)
-        if len(found) < len(border):
-            representative = np.arange(n)
-            representative[border] = border[found[place.ravel()]]
-            first, vertex = np.unique(representative, return_inverse=True)
-    welded = triangles.astype(np.int32, copy=False)
-    if len(first) < n:
-        welded = vertex[triangles].astype(np.int32)
+def weld_seams(coordinates: np.ndarray, triangles: np.ndarray) -> Weld:
+    """Weld vertices on open borders whose coordinates (n, 3) are equal up to rounding; others stay."""
+    _, welded, vertex = ridgeform.weld(coordinates, triangles)
+    n_welded = int(vertex.max(initial=-1)) + 1
+    first = np.empty(n_welded, np.int64)
+    # The last one that is written stays: so the first.
+    first[vertex[::-1]] = np.arange(len(vertex))[::-1]
     # Column by column: NumPy takes ten times as long along an axis of three.
     a, b, c = welded.T
     kept = (a != b) & (b != c) & (c != a)
     return Weld(vertex, first, welded if kept.all() else welded[kept], kept)
+
+
+def seam_note(coordinates: np.ndarray, weld: Weld) -> str | None:
+    """What a modeler should know of sides of seams that are not quite equal, if there are any."""
+    apart = (coordinates != coordinates[weld.first][weld.vertex]).any(axis=1)
+    if not apart.any():
+        return None
+    count = int(apart.sum())
+    what = "1 vertex lies" if count == 1 else f"{count} vertices lie"
+    return f"{what} where others do, up to rounding, and went with them (Merge by Distance makes them one)"
+
+
+def flip_note(weld: Weld, faces: np.ndarray) -> str | None:
+    """What a modeler should know of faces that are turned against their neighbors, if there are any.
+
+    `faces` (l,) is the face of each welded triangle.
+    """
+    _, flipped = ridgeform.orient(weld.triangles)
+    count = len(np.unique(faces[flipped]))
+    if count == 0:
+        return None
+    what = "1 face is" if count == 1 else f"{count} faces are"
+    return (
+        f"{what} turned against the faces around and went as if turned back "
+        "(Mesh ▸ Normals ▸ Recalculate Outside does that)"
+    )
 
 
 def connected_parts(triangles: np.ndarray, n_vertices: int) -> np.ndarray:
@@ -79,11 +98,3 @@ def connected_parts(triangles: np.ndarray, n_vertices: int) -> np.ndarray:
         if np.array_equal(joined, label):
             return label
         label = joined[label]
-
-
-def _border_vertices(triangles: np.ndarray, n_vertices: int) -> np.ndarray:
-    ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2).astype(np.int64)
-    ends.sort(axis=1)
-    edge, count = np.unique(ends[:, 0] * n_vertices + ends[:, 1], return_counts=True)
-    border = edge[count == 1]
-    return np.unique(np.concatenate([border // n_vertices, border % n_vertices]))

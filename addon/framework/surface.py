@@ -9,7 +9,7 @@ import ridgeform
 
 from ..blender import mesh_io
 from ..blender.refusals import RefusedError
-from ..blender.welding import Weld, weld_seams
+from ..blender.welding import Weld, flip_note, seam_note, weld_seams
 from .shared_settings import ridge_weights_of
 
 
@@ -48,7 +48,10 @@ def welded(
             f'Vertex {broken[0]} of "{obj.name}" has a coordinate that is not a finite number '
             f"({len(broken)} in all): delete or move it"
         )
-    return weld_seams(coordinates, triangles, mesh_io.border_vertices(obj.data)), triangles
+    weld = weld_seams(coordinates, triangles)
+    notes = (seam_note(coordinates, weld), flip_note(weld, mesh_io.triangle_faces(obj.data)[weld.kept]))
+    weld.notes = [note for note in notes if note is not None]
+    return weld, triangles
 
 
 def group_weights(obj: bpy.types.Object, name: str) -> np.ndarray:

@@ -28,8 +28,10 @@ class HoleSettings(Settings):
             (
                 "AUTO",
                 "Automatic",
-                "Ridges where some end at the hole, smooth where the mesh around is smooth",
+                "Flat where the mesh stands steeply around a planar rim, as at a missing side of a box or at "
+                "the cut end of a tube, ridges where some end at the hole, and smooth everywhere else",
             ),
+            ("FLAT", "Flat", "In the plane of the rim"),
             ("SHARP", "Sharp", "Flat planes that meet in ridges"),
             ("SMOOTH", "Smooth", "No ridges"),
         ),
@@ -110,10 +112,10 @@ def hole_options(settings: object) -> dict[str, object]:
     """The arguments of `ridgeform.fill_holes` that the settings stand for, the same for every mesh."""
     return {
         "edge_length": settings.edge_length or None,
-        # Without a step of the flow the smooth patch that it starts from is left.
-        "iterations": 0 if settings.shape == "SMOOTH" else settings.iterations,
+        "iterations": settings.iterations,
         "fidelity": settings.fidelity,
-        "sharpness": {"AUTO": "auto", "SMOOTH": 0.0, "SHARP": settings.sharpness}[settings.shape],
+        "shape": settings.shape.lower(),
+        "sharpness": settings.sharpness if settings.shape == "SHARP" else "auto",
         "coupling": settings.coupling,
     }
 

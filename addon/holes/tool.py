@@ -87,7 +87,9 @@ class HoleFilling(Run):
             raise RefusedError(f'No hole of "{obj.name}" was filled: {"; ".join(reasons)}')
         loops = [hole.vertices for hole in chosen]
         source = read_source(obj.data, coordinates, triangles, weld, np.concatenate(loops))
-        part = HolePart(obj, Task(obj.name, None), len(coordinates), reasons, source=source, loops=loops)
+        part = HolePart(
+            obj, Task(obj.name, None), len(coordinates), weld.notes + reasons, source=source, loops=loops
+        )
         part.task.call = partial(_filled, part, mesh, hole_options(self.settings), self.settings.material)
         return part
 

@@ -117,6 +117,7 @@ class Segmenting(Run):
             source=source,
             columns=columns,
         )
+        part.warnings += weld.notes
         return part
 
     def write(self, parts: Sequence[SegmentPart]) -> None:

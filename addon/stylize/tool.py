@@ -145,6 +145,7 @@ def _prepare(obj: bpy.types.Object, settings: object) -> FlowPart:
         options["fixed"] = ~moving
     task = Task(obj.name, partial(_flow, vertices[weld.first], weld.triangles, options))
     part = FlowPart(obj, task, len(vertices), coordinates=coordinates, weld=weld, free=moving[weld.vertex])
+    part.warnings += weld.notes
     scales = np.abs(obj.matrix_world.to_scale())
     if scales.max() > UNEVEN_SCALE * scales.min():
         part.warnings.append(

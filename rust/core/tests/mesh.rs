@@ -58,7 +58,7 @@ fn an_open_cone_has_one_loop_along_its_halfedges() {
 #[test]
 fn a_bow_tie_has_two_loops_and_a_nonmanifold_vertex() {
     let mesh = of_faces(&[[0, 1, 2], [0, 3, 4]]);
-    assert_eq!(loops(&mesh), [[1, 2, 0], [3, 4, 0]]);
+    assert_eq!(loops(&mesh), [[0, 3, 4], [1, 2, 0]]);
     assert_eq!(report(&mesh), MeshReport { nonmanifold_vertices: vec![0], ..clean(1, 2) });
 }
 

@@ -42,6 +42,7 @@ from ._native import (
     intrinsic_delaunay,
     memory_available,
     memory_estimate,
+    orient,
     redraw,
     remesh,
     segment,
@@ -50,6 +51,7 @@ from ._native import (
     trace_curves,
     vibration_modes,
     voronoi_mass,
+    weld,
 )
 from .errors import ArgumentError, Cancelled, MemoryLimitError, MeshError, RidgeformError, SolveError
 
@@ -87,6 +89,7 @@ __all__ = [
     "intrinsic_delaunay",
     "memory_available",
     "memory_estimate",
+    "orient",
     "redraw",
     "remesh",
     "segment",
@@ -95,6 +98,7 @@ __all__ = [
     "trace_curves",
     "vibration_modes",
     "voronoi_mass",
+    "weld",
 ]
 
 for _name in __all__:

@@ -3,7 +3,7 @@
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use ridgeform_core::tools::{self, HoleStatus, LoopChoice, Sharpness};
+use ridgeform_core::tools::{self, HoleStatus, LoopChoice, PatchShape, Sharpness};
 
 use crate::errors::argument;
 use crate::mesh::Mesh;
@@ -33,7 +33,7 @@ pub struct Filled {
     /// What became of every hole that was chosen, a list of FilledHole.
     #[pyo3(get)]
     holes: Vec<Py<FilledHole>>,
-    /// The edges of sharp patches, rim included, that are bent by more than 30 degrees, (k,2) int32, smaller vertex first.
+    /// The edges of sharp and flat patches, rim included, that are bent by more than 30 degrees, (k,2) int32, smaller vertex first.
     #[pyo3(get)]
     ridges: Py<PyArray2<i32>>,
     /// "stopped" (`Progress.finish` was called), "finished" (a hole took all iterations) or "converged" (all patches rest).
@@ -97,7 +97,9 @@ pub struct FilledHole {
     status: &'static str,
     /// Why it was refused, or None.
     reason: Option<String>,
-    /// The sharpness used; 0 where the hole was filled smoothly.
+    /// What the patch looks like: "flat", "smooth" or "sharp"; None where the hole was refused.
+    shape: Option<&'static str>,
+    /// The sharpness used; 0 where the patch is smooth or flat.
     sharpness: f64,
     /// The L1 Hessian energy of the coordinates of patch and surroundings before and after the flow; zeros without one.
     energy: (f64, f64),
@@ -111,26 +113,30 @@ pub struct FilledHole {
 impl FilledHole {
     fn __repr__(&self, py: Python<'_>) -> String {
         let edges = self.boundary.bind(py).as_any().len().unwrap_or(0);
-        let how = if self.sharpness > 0.0 { "sharp" } else { "smooth" };
+        let how = self.shape.unwrap_or("open");
         format!("<ridgeform.FilledHole: {edges} edges, {how}, {} after {} steps>", self.status, self.iterations)
     }
 }
 
 /// Fill holes so that the surface around them goes on, ridges included.
 ///
-/// Every hole is triangulated (Liepa 2003) and remeshed at the resolution of its rim. The patch starts as the smooth one. Where the
+/// Faces are oriented and seams joined first, as `orient` and `weld` do; what comes out is given for the mesh as it was. A planar
+/// rim that the surface meets steeply all round, as the missing side of a box or the cut end of a tube, is closed flat. Every
+/// other hole is triangulated (Liepa 2003) and remeshed at the resolution of its rim. The patch starts as the smooth one. Where the
 /// surface around the hole has ridges, the L1 Hessian flow, edge flips along the ridges and snapping of vertices onto the
 /// planes around them bring the ridges back. Everything outside the patches stays as it is, and costs nothing.
 ///
 /// Parameters
 /// ----------
 /// mesh : Mesh with positions
-/// loops : None for all holes; or a list of indices into `boundary_loops(mesh)`, or of arrays of the vertices around a hole
+/// loops : None for all holes; or a list of indices into `find_holes(mesh)`, or of arrays of the vertices around a hole
 /// max_edges : with loops=None, only holes of at most so many edges
 /// outer : with loops=None, also close the outer borders of open sheets
 /// edge_length : float > 0, of the patches; None continues that of the rim
 /// iterations : steps of the flow at most, ≥ 0; 0 leaves the smooth patch
 /// fidelity : float > 0, how strongly a step holds on to the shape, in the unit that `scale` sets
+/// shape : "auto" (per hole: flat, sharp or smooth), "flat" (in the mean plane of the rim, all but notches in it; as "auto" where that
+///     would overlap itself), "smooth" (no ridges) or "sharp"
 /// sharpness : "auto" (per hole: sharp where there are ridges around it, else smooth), or 0 (the paper's flow, without flips
 ///     and snapping) to 1 (most angular)
 /// coupling : "joint" (independent of the axes) or "separate" (the paper's)
@@ -157,10 +163,10 @@ impl FilledHole {
 /// Rowe et al. 2024, section 7.4.2; Liepa 2003; Botsch and Kobbelt 2004.
 #[pyfunction]
 #[pyo3(signature = (mesh, *, loops=None, max_edges=None, outer=false, edge_length=None, iterations=50, fidelity=50.0,
-    sharpness=None, coupling="joint", scale="max_edge", dual="barycentric", solver="auto", tolerance=None,
+    shape="auto", sharpness=None, coupling="joint", scale="max_edge", dual="barycentric", solver="auto", tolerance=None,
     max_iterations=None, memory_limit=None, threads=None, progress=None),
     text_signature = "(mesh, *, loops=None, max_edges=None, outer=False, edge_length=None, iterations=50, fidelity=50.0, \
-    sharpness='auto', coupling='joint', scale='max_edge', dual='barycentric', solver='auto', tolerance=None, \
+    shape='auto', sharpness='auto', coupling='joint', scale='max_edge', dual='barycentric', solver='auto', tolerance=None, \
     max_iterations=None, memory_limit=None, threads=None, progress=None)")]
 #[allow(clippy::too_many_arguments)]
 pub fn fill_holes(
@@ -172,6 +178,7 @@ pub fn fill_holes(
     edge_length: Option<f64>,
     iterations: i64,
     fidelity: f64,
+    shape: &str,
     sharpness: Option<&Bound<'_, PyAny>>,
     coupling: &str,
     scale: &str,
@@ -190,6 +197,7 @@ pub fn fill_holes(
         edge_length,
         iterations: at_least(py, "iterations", iterations, 0)?,
         fidelity,
+        shape: read_shape(py, shape)?,
         sharpness: read_sharpness(py, sharpness)?,
         coupling: options::coupling(py, coupling)?,
         scale: options::scale(py, scale)?,
@@ -222,12 +230,19 @@ fn filled_hole(py: Python<'_>, hole: &tools::FilledHole) -> PyResult<FilledHole>
     Ok(FilledHole {
         boundary: arrays::index_array(py, &hole.boundary)?.unbind(),
         status: hole.status.name(),
+        shape: reason.is_none().then(|| hole.shape.name()),
         reason,
         sharpness: hole.sharpness,
         energy: hole.energy.into(),
         gap: hole.gap,
         iterations: hole.iterations,
     })
+}
+
+/// `shape=`: one of the words.
+fn read_shape(py: Python<'_>, word: &str) -> PyResult<PatchShape> {
+    let shapes = [PatchShape::Auto, PatchShape::Flat, PatchShape::Smooth, PatchShape::Sharp];
+    options::choice(py, "shape", word, &shapes.map(|shape| (shape.name(), shape)))
 }
 
 /// `sharpness=`: the word "auto" (also the default) or a number.

@@ -29,10 +29,12 @@ impl Hole {
     }
 }
 
-/// All boundary loops, a list of Hole in the order of `boundary_loops`: which are holes, and which of them cannot be filled.
+/// All boundary loops, a list of Hole in the order of `boundary_loops`, then the rims that do not close: which are holes, and which
+/// of them cannot be filled.
 ///
-/// Every open sheet keeps one loop as its outer border: a component whose area vectors add up to more than 0.57 of its
-/// area. A tube has none: its two ends are holes. MeshError for a mesh without positions.
+/// Faces are oriented and seams joined first. A loop is an outer border if the faces along it lie inside it; where they stand too
+/// steeply to say so and the loop is no planar rim that calls for a lid, it is the largest loop of a component whose area
+/// vectors add up to more than 0.57 of its area. A tube has none: its two ends are holes. MeshError for a mesh without positions.
 #[pyfunction]
 pub fn find_holes(py: Python<'_>, mesh: &Mesh) -> PyResult<Vec<Hole>> {
     let holes =

@@ -24,6 +24,7 @@ mod remesh;
 mod segment;
 mod solution;
 mod stylize;
+mod topology;
 mod trace;
 mod watch;
 
@@ -54,6 +55,8 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(operators::intrinsic_delaunay, module)?)?;
     module.add_function(wrap_pyfunction!(operators::boundary_loops, module)?)?;
     module.add_function(wrap_pyfunction!(holes::find_holes, module)?)?;
+    module.add_function(wrap_pyfunction!(topology::weld, module)?)?;
+    module.add_function(wrap_pyfunction!(topology::orient, module)?)?;
     module.add_function(wrap_pyfunction!(denoise::denoise, module)?)?;
     module.add_function(wrap_pyfunction!(interpolate::interpolate, module)?)?;
     module.add_function(wrap_pyfunction!(modes::vibration_modes, module)?)?;

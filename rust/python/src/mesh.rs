@@ -150,6 +150,8 @@ pub struct MeshReport {
     nonmanifold_edges: Py<PyArray2<i32>>,
     /// Those of the non-manifold edges that have two faces, (k,2) int32.
     inconsistent_edges: Py<PyArray2<i32>>,
+    /// Faces turned against the faces around them, (k,) int32; tools take them the other way around, `orient` turns them.
+    flipped_faces: Py<PyArray1<i32>>,
     /// Vertices whose faces do not form one fan, (k,) int32.
     nonmanifold_vertices: Py<PyArray1<i32>>,
     /// Faces without area, (k,) int32.
@@ -168,6 +170,7 @@ impl MeshReport {
             n_boundary_loops: report.n_boundary_loops,
             nonmanifold_edges: index_rows(py, &report.nonmanifold_edges)?.unbind(),
             inconsistent_edges: index_rows(py, &report.inconsistent_edges)?.unbind(),
+            flipped_faces: indices(&report.flipped_faces)?,
             nonmanifold_vertices: indices(&report.nonmanifold_vertices)?,
             degenerate_faces: indices(&report.degenerate_faces)?,
             duplicate_faces: indices(&report.duplicate_faces)?,
@@ -200,7 +203,7 @@ fn making(n_vertices: usize, n_faces: usize) -> Demand {
 }
 
 /// Read faces; indices that the core's type cannot hold are refused here, the others by the core.
-fn read_faces(faces: &Bound<'_, PyAny>, n_vertices: Option<usize>) -> PyResult<Vec<[u32; 3]>> {
+pub fn read_faces(faces: &Bound<'_, PyAny>, n_vertices: Option<usize>) -> PyResult<Vec<[u32; 3]>> {
     let py = faces.py();
     // The two usual types are read where they are: a copy of each kind costs as much as all else here.
     if let Some(array) = plain_rows::<i32, 3>(faces) {

@@ -25,30 +25,56 @@ impl Outline {
     }
 }
 
-/// Refuses the holes in which the whole border of an open sheet lies: a patch would cross it.
+/// Refuses the holes in which the whole border of an open sheet lies: a patch would cross it. Where that border touches the rim at a
+/// vertex the hole is a ring around the sheet, pinched there, and both loops become one.
 ///
 /// `components` is the component of every hole. A sheet is in a hole of another component if its border runs the other way
 /// around, lies near the hole's mean plane, and its centre is inside the hole in the projection onto that plane.
-pub(super) fn refuse_holes_with_islands(holes: &mut [Hole], components: &[Option<usize>], positions: &[Point]) {
+pub(super) fn settle_islands(holes: &mut Vec<Hole>, components: &mut Vec<Option<usize>>, positions: &[Point]) {
     let outlines: Vec<Outline> = holes.iter().map(|hole| Outline::of(&hole.vertices, positions)).collect();
+    let mut joined = vec![false; holes.len()];
     for i in 0..holes.len() {
         if holes[i].is_outer_border || holes[i].refusal.is_some() {
             continue;
         }
         let hole = &outlines[i];
         let (size, normal) = (norm(hole.area), unit(hole.area));
+        let rim = holes[i].vertices.clone();
         let holds = |j: usize| {
             let island = &outlines[j];
             components[i] != components[j]
                 && dot(island.area, normal) < -SPECK * size
                 && norm(island.area) < size
                 && dot(sub(island.centre, hole.centre), normal).abs() < FAR * size.sqrt()
-                && encloses(&holes[i].vertices, positions, normal, island.centre)
+                && encloses(&rim, positions, normal, island.centre)
         };
-        if (0..holes.len()).any(|j| holes[j].is_outer_border && holds(j)) {
-            holes[i].refusal = Some(Refusal::Island);
+        let islands: Vec<usize> =
+            (0..holes.len()).filter(|&j| holes[j].is_outer_border && !joined[j] && holds(j)).collect();
+        for j in islands {
+            let island = std::mem::take(&mut holes[j].vertices);
+            match ring(&holes[i].vertices, &island) {
+                Some(ring) => {
+                    holes[i].vertices = ring;
+                    joined[j] = true;
+                }
+                None => {
+                    holes[j].vertices = island;
+                    holes[i].refusal = Some(Refusal::Island);
+                }
+            }
         }
     }
+    let mut is_left = joined.iter().map(|joined| !joined);
+    holes.retain(|_| is_left.next().unwrap_or(true));
+    let mut is_left = joined.iter().map(|joined| !joined);
+    components.retain(|_| is_left.next().unwrap_or(true));
+}
+
+/// The rim of a hole and the border of an island in it that share a vertex, as one closed walk, which visits that vertex twice.
+fn ring(rim: &[u32], island: &[u32]) -> Option<Vec<u32>> {
+    let (i, j) = (0..rim.len()).find_map(|i| Some((i, island.iter().position(|&v| v == rim[i])?)))?;
+    let turned = |walk: &[u32], from: usize| [&walk[from..], &walk[..from]].concat();
+    Some([turned(rim, i), turned(island, j)].concat())
 }
 
 /// Whether the loop runs around the line through `point` along `normal`: the even-odd rule in the projection.

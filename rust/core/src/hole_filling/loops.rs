@@ -3,16 +3,27 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::components::Components;
-use super::islands::refuse_holes_with_islands;
+use super::islands::settle_islands;
+use super::lids;
+use super::polygon::Polygon;
 use crate::error::{MeshError, Refusal};
-use crate::mesh::vector::{dot, Point};
-use crate::mesh::{boundary_loops, cycle, loop_area_vector, Connectivity, Mesh};
+use crate::mesh::vector::{area_vector, between, distance, dot, norm, sub, unit, Point};
+use crate::mesh::{boundary_walks, cycle, loop_area_vector, Connectivity, Mesh, Working};
 use crate::Result;
+
+/// A loop is the outer border of its surface if the faces along it lie inside it, seen along its area vector: if they show more
+/// than this part of their area there, with the sign of the side that they show. A sheet's border has 1, a hole in a sheet −1, the
+/// end of a tube 0, the border of a bowl of which a third of the sphere is missing 0.5.
+const INSIDE: f64 = 0.5;
+
+/// The sides of a loop lie on each other if its vertices are off its other edges by no more than this part of its length.
+const ON_EACH_OTHER: f64 = 1e-5;
 
 /// A boundary loop and what it is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hole {
-    /// The vertices in the order of [`boundary_loops`].
+    /// The vertices in the order of [`crate::mesh::boundary_loops`]. Where the ring around an island is pinched at a vertex, that vertex is
+    /// there twice.
     pub vertices: Vec<u32>,
     /// Whether this is the outer border of an open sheet, which is filled only if asked for.
     pub is_outer_border: bool,
@@ -20,50 +31,113 @@ pub struct Hole {
     pub refusal: Option<Refusal>,
 }
 
-/// All boundary loops of `mesh`, in the order of [`boundary_loops`], and what each is.
+/// All boundary loops of `mesh`, in the order of [`crate::mesh::boundary_loops`], then the rims that do not close, and what each is.
 ///
-/// Every edge-connected component that is an open sheet keeps one loop: the one with the largest area in the projection
-/// along the component's mean normal. A component is an open sheet if its area vectors add up to more than 0.57 of its area:
-/// they cancel on a closed surface and nearly so on one with holes, also on an open tube, whose ends are both holes; they add up
-/// fully on a flat sheet, with holes or without.
+/// A loop is an outer border if the faces along it lie inside it ([`INSIDE`]). Where these stand too steeply to say so, and the loop is
+/// no planar rim that they meet steeply all round, the whole surface decides: an open sheet, whose area vectors add up to more
+/// than 0.57 of its area, keeps the loop with the largest area in the projection along its mean normal.
 ///
-/// - Holes that touch at a vertex are separate loops, and so are the loops of a rim that touches itself.
+/// - Faces are oriented, and seams joined, first ([`Working`]).
+/// - Holes that touch at a vertex are separate loops, and so are the loops of a rim that touches itself. A ring around an island
+///   that is pinched at a vertex is one.
 /// - The two ends of a tube with a ring missing are two holes, and each gets a lid.
 /// - A hole in which another open sheet lies is refused ([`Refusal::Island`]); [`super::fill_loops`] fills it all the same.
-/// - A rim that ends at a non-manifold edge is no loop and is not listed.
+/// - A rim that ends at a non-manifold edge is no loop and is refused ([`Refusal::OpenRim`]).
 ///
 /// # Errors
 /// [`MeshError::NoPositions`].
 pub fn find_holes(mesh: &Mesh) -> Result<Vec<Hole>> {
+    mesh.positions().ok_or(MeshError::NoPositions)?;
     let measured = mesh.measured(mesh.unit())?;
-    let mesh = measured.as_ref();
+    let working = Working::new(&measured)?;
+    let mut holes = holes_of(working.mesh())?;
+    let seams = working.seam_edges();
+    for hole in &mut holes {
+        let own = |edge: [u32; 2]| seams.get(&edge).map_or_else(|| working.original(edge[0]), |own| own[0]);
+        hole.vertices = cycle(&hole.vertices).map(own).collect();
+    }
+    Ok(holes)
+}
+
+/// [`find_holes`] on a mesh as it is.
+pub(crate) fn holes_of(mesh: &Mesh) -> Result<Vec<Hole>> {
     let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
     let connectivity = mesh.connectivity();
     let halfedges: HashMap<[u32; 2], usize> =
         connectivity.boundary().map(|h| ([connectivity.tail(h), connectivity.head(h)], h)).collect();
-    let loops = boundary_loops(connectivity);
-    let mut components = Components::new(connectivity, positions, &loops);
-    let mut outer: BTreeMap<usize, (f64, usize)> = BTreeMap::new();
-    let (mut holes, mut owners) = (Vec::with_capacity(loops.len()), Vec::with_capacity(loops.len()));
-    for vertices in loops {
-        let along = cycle(&vertices).find_map(|edge| halfedges.get(&edge));
-        let against = || cycle(&vertices).find_map(|[a, b]| halfedges.get(&[b, a]));
-        let owner = along.or_else(against).map(|&h| components.of_face(h / 3));
-        if let Some((owner, normal)) = owner.and_then(|owner| Some((owner, components.sheet_normal(owner)?))) {
-            let size = dot(loop_area_vector(&vertices, positions), normal).abs();
-            if outer.get(&owner).is_none_or(|&(largest, _)| size > largest) {
-                outer.insert(owner, (size, holes.len()));
-            }
-        }
-        owners.push(owner);
+    let walks = boundary_walks(connectivity, Some(positions));
+    let mut components = Components::new(connectivity, positions, &walks.loops);
+    let mut holes: Vec<Hole> = Vec::with_capacity(walks.loops.len() + walks.chains.len());
+    let mut undecided = Vec::new();
+    for vertices in walks.loops {
         let refusal = refusal(&vertices, positions, connectivity, &halfedges);
-        holes.push(Hole { vertices, is_outer_border: false, refusal });
+        let side = if refusal.is_none() { side(&vertices, positions, connectivity, &halfedges) } else { Side::Unknown };
+        if side == Side::Unknown {
+            undecided.push(holes.len());
+        }
+        holes.push(Hole { vertices, is_outer_border: side == Side::Inside, refusal });
+    }
+    let face = |hole: &Hole| {
+        let along = cycle(&hole.vertices).find_map(|edge| halfedges.get(&edge));
+        along.or_else(|| cycle(&hole.vertices).find_map(|[a, b]| halfedges.get(&[b, a]))).map(|&h| h / 3)
+    };
+    let several = holes.len() > 1;
+    let mut owner = |hole: &Hole| face(hole).map(|face| components.of_face(face));
+    let mut owners = vec![None; holes.len()];
+    if !undecided.is_empty() || several && holes.iter().any(|hole| hole.is_outer_border) {
+        owners = holes.iter().map(&mut owner).collect();
+    }
+    let mut outer: BTreeMap<usize, (f64, usize)> = BTreeMap::new();
+    for i in undecided {
+        let Some(number) = owners[i] else { continue };
+        let is_decided = (0..holes.len()).any(|j| holes[j].is_outer_border && owners[j] == owners[i]);
+        let Some(normal) = components.sheet_normal(number).filter(|_| !is_decided) else { continue };
+        let size = dot(loop_area_vector(&holes[i].vertices, positions), normal).abs();
+        if outer.get(&number).is_none_or(|&(largest, _)| size > largest) {
+            outer.insert(number, (size, i));
+        }
     }
     for (_, hole) in outer.into_values() {
         holes[hole].is_outer_border = true;
     }
-    refuse_holes_with_islands(&mut holes, &owners, positions);
+    settle_islands(&mut holes, &mut owners, positions);
+    let open = |vertices| Hole { vertices, is_outer_border: false, refusal: Some(Refusal::OpenRim) };
+    holes.extend(walks.chains.into_iter().map(open));
     Ok(holes)
+}
+
+/// On which side of a loop the faces along it lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Side {
+    Inside,
+    /// Or under it, all round.
+    Outside,
+    Unknown,
+}
+
+fn side(
+    vertices: &[u32],
+    positions: &[Point],
+    connectivity: &Connectivity,
+    halfedges: &HashMap<[u32; 2], usize>,
+) -> Side {
+    let along = unit(loop_area_vector(vertices, positions));
+    let (mut shown, mut area) = (0.0, 0.0);
+    let mut outside = Vec::with_capacity(vertices.len());
+    for edge in cycle(vertices) {
+        let Some(&h) = halfedges.get(&edge) else { return Side::Unknown };
+        let vector = area_vector(connectivity.faces()[h / 3].map(|v| positions[v as usize]));
+        shown += dot(vector, along);
+        area += norm(vector);
+        outside.push(unit(vector));
+    }
+    if shown > INSIDE * area {
+        return Side::Inside;
+    }
+    if shown < -INSIDE * area || lids::normal(&Polygon::around(vertices, positions, outside)).is_some() {
+        return Side::Outside;
+    }
+    Side::Unknown
 }
 
 /// What can be said against a loop at sight.
@@ -82,7 +156,30 @@ fn refusal(
             return Some(Refusal::SingleFace);
         }
     }
-    is_slit(vertices, positions).then_some(Refusal::NoExtent)
+    if is_slit(vertices, positions) {
+        return Some(Refusal::NoExtent);
+    }
+    has_no_width(vertices, positions).then_some(Refusal::TJunction)
+}
+
+/// Whether the two sides of a loop lie on each other: all vertices, but two where the sides meet, on edges that they do not end.
+fn has_no_width(vertices: &[u32], positions: &[Point]) -> bool {
+    let points: Vec<Point> = vertices.iter().map(|&v| positions[v as usize]).collect();
+    let n = points.len();
+    let length: f64 = (0..n).map(|i| distance(points[i], points[(i + 1) % n])).sum();
+    let off = ON_EACH_OTHER * length;
+    if n < 3 || norm(loop_area_vector(vertices, positions)) > off * length {
+        return false;
+    }
+    let is_on = |i: usize| {
+        (0..n).any(|j| {
+            let (a, b) = (points[j], points[(j + 1) % n]);
+            let along = sub(b, a);
+            let t = (dot(sub(points[i], a), along) / dot(along, along).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            j != i && (j + 1) % n != i && distance(between(a, b, t), points[i]) <= off
+        })
+    };
+    (0..n).filter(|&i| !is_on(i)).count() <= 2
 }
 
 /// Whether every vertex but the two at the ends lies where another one does, or all lie on a line.

@@ -17,6 +17,7 @@
 
 mod components;
 mod islands;
+mod lids;
 mod long_loops;
 mod loops;
 mod patch;
@@ -25,6 +26,7 @@ mod refinement;
 mod rims;
 mod triangulation;
 
+pub(crate) use loops::holes_of;
 pub use loops::{find_holes, Hole};
 pub use rims::faces_at;
 
@@ -38,6 +40,18 @@ use rims::Rims;
 /// A rim encloses nothing if its triangulation has less than this part of its squared length in area: rounding alone.
 const NO_EXTENT: f64 = 1e-13;
 
+/// Which holes are closed flat.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Lids {
+    /// None.
+    #[default]
+    Never,
+    /// Those with a planar rim that the surface meets steeply all round: the missing side of a box, the cut end of a tube.
+    Planar,
+    /// All whose rim does not overlap itself in its mean plane.
+    Always,
+}
+
 /// How a hole is filled.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FillOptions {
@@ -50,11 +64,13 @@ pub struct FillOptions {
     pub remesh_iterations: usize,
     /// Where the patch would have more faces than about this many, edges grow with the distance from the rim.
     pub max_faces: usize,
+    /// Which holes are closed flat.
+    pub lids: Lids,
 }
 
 impl Default for FillOptions {
     fn default() -> Self {
-        Self { edge_length: None, refine: true, remesh_iterations: 10, max_faces: 40_000 }
+        Self { edge_length: None, refine: true, remesh_iterations: 10, max_faces: 40_000, lids: Lids::Never }
     }
 }
 
@@ -66,6 +82,10 @@ pub struct Patch {
     /// Vertex triples, oriented as the mesh around. Numbers below the mesh's vertex count are its vertices; new ones
     /// follow, first those of the patches before this one of the same call.
     pub faces: Vec<[u32; 3]>,
+    /// Whether it lies in the mean plane of its rim, but for what closes notches in that.
+    pub is_flat: bool,
+    /// The normal of that plane, to the side that the patch shows, if the surface meets it steeply all round.
+    pub lid_normal: Option<Point>,
 }
 
 /// Fills one hole; see [`fill_loops`].
@@ -126,9 +146,19 @@ fn fill_one(
     let refused = |reason: Refusal| MeshError::Unfillable { vertex, n_edges: rim.len(), reason };
     progress.check()?;
     let polygon = Polygon::new(positions, rim, rims).map_err(refused)?;
+    let n = polygon.len();
+    let number =
+        |local: u32| polygon.vertices.get(local as usize).copied().unwrap_or_else(|| first_new + local - n as u32);
+    let numbered = |faces: Vec<[u32; 3]>| faces.into_iter().map(|face| face.map(number)).collect();
+    let lid_normal = lids::normal(&polygon);
+    if options.lids == Lids::Always || options.lids == Lids::Planar && lid_normal.is_some() {
+        let lid = lids::lid(&polygon, rims, options, options.lids == Lids::Always, progress)?;
+        if let Some((vertices, faces)) = lid {
+            return Ok(Patch { vertices, faces: numbered(faces), is_flat: true, lid_normal });
+        }
+    }
     let flat = long_loops::triangulate(&polygon, rims, progress);
     progress.check()?;
-    let n = polygon.len();
     let points: Vec<Point> = polygon.points.iter().chain(&flat.extra).copied().collect();
     let area: f64 = flat.faces.iter().map(|face| norm(area_vector(face.map(|v| points[v as usize])))).sum();
     let length: f64 = (0..n).map(|i| distance(points[i], points[(i + 1) % n])).sum();
@@ -140,7 +170,5 @@ fn fill_one(
     } else {
         (flat.extra, flat.faces)
     };
-    let number =
-        |local: u32| polygon.vertices.get(local as usize).copied().unwrap_or_else(|| first_new + local - n as u32);
-    Ok(Patch { vertices, faces: faces.into_iter().map(|face| face.map(number)).collect() })
+    Ok(Patch { vertices, faces: numbered(faces), is_flat: false, lid_normal })
 }

@@ -16,11 +16,25 @@ pub(super) struct Polygon {
 }
 
 impl Polygon {
+    /// The polygon of a loop that runs as the halfedges of the faces along it, with the unit normals of these.
+    pub(super) fn around(vertices: &[u32], positions: &[Point], mut outside: Vec<Point>) -> Self {
+        let mut vertices = vertices.to_vec();
+        vertices.reverse();
+        // The edge that starts at a vertex ended there.
+        outside.reverse();
+        let step = 1.min(outside.len());
+        outside.rotate_left(step);
+        let points = vertices.iter().map(|&v| positions[v as usize]).collect();
+        Self { vertices, points, outside }
+    }
+
     /// The polygon of a boundary loop given in either direction.
     pub(super) fn new(positions: &[Point], rim: &[u32], rims: &Rims) -> Result<Self, Refusal> {
         let mut sorted = rim.to_vec();
         sorted.sort_unstable();
-        if rim.len() < 3 || sorted.windows(2).any(|pair| pair[0] == pair[1]) {
+        let mut edges: Vec<[u32; 2]> = cycle(rim).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        edges.sort_unstable();
+        if rim.len() < 3 || edges.windows(2).any(|pair| pair[0] == pair[1]) {
             return Err(Refusal::NotALoop);
         }
         let mut vertices = rim.to_vec();

@@ -7,18 +7,24 @@ mod edge_table;
 mod flip;
 pub mod invariants;
 mod measured;
+pub(crate) mod orientation;
 pub(crate) mod partition;
 mod report;
 pub mod triangle;
 pub mod vector;
+mod welding;
+mod working;
 
-pub use boundary::boundary_loops;
+pub use boundary::{boundary_loops, boundary_walks, Walks};
 pub(crate) use boundary::{cycle, loop_area_vector};
 pub use connectivity::{Connectivity, EdgeKind};
 pub use cut::CutMesh;
 pub use edge_table::EdgeTable;
 pub use flip::Flip;
+pub use orientation::{flipped_faces, orient};
 pub use report::{report, MeshReport};
+pub use welding::Weld;
+pub use working::Working;
 
 use crate::error::MeshError;
 use crate::memory::{Demand, Tool};

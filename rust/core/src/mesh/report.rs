@@ -2,7 +2,7 @@
 
 use crate::mesh::connectivity::{next, previous};
 use crate::mesh::partition::Partition;
-use crate::mesh::{boundary_loops, triangle, Connectivity, EdgeKind, Mesh};
+use crate::mesh::{boundary_loops, flipped_faces, triangle, Connectivity, EdgeKind, Mesh};
 
 /// Counts, and the edges, vertices and faces that are not as on a clean surface. All lists are sorted.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -16,6 +16,8 @@ pub struct MeshReport {
     pub nonmanifold_edges: Vec<[u32; 2]>,
     /// Those of the non-manifold edges that have two faces.
     pub inconsistent_edges: Vec<[u32; 2]>,
+    /// Faces turned against the faces around them ([`crate::mesh::flipped_faces`]); tools take them the other way around.
+    pub flipped_faces: Vec<u32>,
     /// Vertices whose faces form more than one fan.
     pub nonmanifold_vertices: Vec<u32>,
     /// Faces that name a vertex twice or have no area ([`triangle::is_degenerate`]).
@@ -37,6 +39,7 @@ pub fn report(mesh: &Mesh) -> MeshReport {
         n_boundary_loops: boundary_loops(connectivity).len(),
         nonmanifold_edges: edges(connectivity, |kind| matches!(kind, EdgeKind::NonManifold | EdgeKind::Inconsistent)),
         inconsistent_edges: edges(connectivity, |kind| kind == EdgeKind::Inconsistent),
+        flipped_faces: (0..).zip(flipped_faces(connectivity)).filter_map(|(f, flip)| flip.then_some(f)).collect(),
         nonmanifold_vertices: nonmanifold_vertices(connectivity),
         degenerate_faces: degenerate_faces(mesh),
         duplicate_faces: duplicate_faces(connectivity),

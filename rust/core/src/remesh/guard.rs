@@ -84,6 +84,11 @@ pub fn worst_bend(mesh: &EditableMesh) -> f64 {
     least_cosine(mesh, 0..mesh.n_faces() as u32)
 }
 
+/// The least cosine between these faces and their neighbours.
+pub fn worst_bend_of(mesh: &EditableMesh, faces: impl Iterator<Item = u32>) -> f64 {
+    least_cosine(mesh, faces)
+}
+
 /// The least cosine between neighbours among the faces around `vertices` and those next to them.
 fn bend_before(mesh: &EditableMesh, vertices: &[u32]) -> f64 {
     least_cosine(mesh, vertices.iter().flat_map(|&v| mesh.faces_of(v)).copied())

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::options::check_weights;
 use crate::error::MeshError;
 use crate::intrinsic::delaunay_flips_carrying;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Working};
 use crate::operators::{Dual, Energy, EnergyForm};
 use crate::solve::Solver;
 use crate::{Error, Result};
@@ -25,13 +25,14 @@ pub struct EnergyOptions {
 }
 
 impl EnergyOptions {
-    /// The surface to work on and the energy on it.
+    /// The surface to work on, its faces oriented, and the energy on it.
     ///
     /// # Errors
     /// The errors of [`EnergyForm::new`], face weights that are negative or not finite, flips for an energy that needs positions,
     /// and a mesh on which the energy has no terms.
     pub(super) fn on<'a>(&self, mesh: &'a Mesh) -> Result<(Cow<'a, Mesh>, EnergyForm)> {
         check_weights("face_weights", self.face_weights.as_ref(), mesh.connectivity().n_faces(), "face")?;
+        let mesh = Working::unwelded(mesh)?.into_mesh();
         let (mesh, weights) = if self.delaunay {
             if self.kind.is_extrinsic() {
                 let problem =
@@ -43,7 +44,7 @@ impl EnergyOptions {
             let (connectivity, lengths, _) = delaunay_flips_carrying(mesh.connectivity(), mesh.edge_lengths(), carried);
             (Cow::Owned(Mesh::from_connectivity(connectivity, lengths)?), weights.map(Cow::Owned))
         } else {
-            (Cow::Borrowed(mesh), self.face_weights.as_ref().map(Cow::Borrowed))
+            (mesh, self.face_weights.as_ref().map(Cow::Borrowed))
         };
         let form = EnergyForm::new(self.kind, &mesh, weights.as_deref().map(Vec::as_slice), self.dual)?;
         self.refuse_empty(&form)?;

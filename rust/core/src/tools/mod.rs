@@ -24,7 +24,7 @@ pub use diffusion_curves::{
 };
 pub use energy_options::EnergyOptions;
 pub use fill_holes::{
-    fill_holes, filling_demand, FillHolesOptions, Filled, FilledHole, HoleStatus, LoopChoice, Sharpness,
+    fill_holes, filling_demand, FillHolesOptions, Filled, FilledHole, HoleStatus, LoopChoice, PatchShape, Sharpness,
 };
 pub use interpolate::interpolate;
 pub use modes::{vibration_modes, ModeOptions, Modes};

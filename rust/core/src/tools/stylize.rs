@@ -10,7 +10,7 @@ use crate::error::MeshError;
 use crate::intrinsic::delaunay_flips_carrying;
 use crate::linear::Columns;
 use crate::memory::Tool;
-use crate::mesh::{edge_lengths, triangle, Connectivity, Mesh};
+use crate::mesh::{edge_lengths, triangle, Connectivity, Mesh, Working};
 use crate::operators::{mollify, voronoi_mass, Dual, HessianPattern};
 use crate::progress::{Progress, Report};
 use crate::solve::{solve, Coupling, Problem, Session, Settings, Solution, Solver};
@@ -120,30 +120,54 @@ pub struct Stylized {
 /// Each step minimises `Σ_f w_f A_f ‖H_f x‖ + η ‖x − x⁽ⁱ⁾‖²_M` over the coordinates `x`, with operator and mass of the
 /// mesh as it is then. Rowe et al. 2024, eq. (24); the weights are those of [`sharpened_weights`].
 ///
+/// Faces are oriented and seams joined first ([`Working`]): the sides of a seam stay together.
+///
 /// # Errors
 /// [`MeshError::NoPositions`], [`MeshError::NoFaces`], arguments of the wrong shape or range, and the errors of the
 /// solver. Never a result that is not finite.
 pub fn stylize(mesh: &Mesh, options: &StylizeOptions, progress: &Progress) -> Result<Stylized> {
     let original = mesh.positions().ok_or(MeshError::NoPositions)?;
     check(mesh, options)?;
-    let settings = Settings { announce: false, ..options.solve.settings()? };
-    let n_columns = if options.coupling == Coupling::Joint { 3 } else { 1 };
     let unit = mesh.unit();
     let measured = mesh.measured(unit)?;
     let start = measured.positions().ok_or(MeshError::NoPositions)?;
     let progress = progress.in_unit(unit);
-    let mut result = options.solve.run(|| {
-        measured
-            .demand(Tool::Stylize)
-            .with_columns(n_columns, options.solve.solver.is_clarabel())
-            .admit(options.solve.memory_limit)?;
-        Flow::new(&measured, start, unit, options)?.run(&settings, &progress)
-    })?;
+    let working = Working::new(&measured)?;
+    let mut result = if working.is_plain() {
+        flow(&measured, unit, options, None, &progress)?
+    } else {
+        let options = StylizeOptions {
+            fixed: options.fixed.as_ref().map(|fixed| working.any_of(fixed)),
+            strength: options.strength.as_ref().map(|strength| working.least_of(strength)),
+            ..options.clone()
+        };
+        let flowed = flow(working.mesh(), unit, &options, Some(&working), &progress)?;
+        Stylized { vertices: working.positions(&flowed.vertices), ..flowed }
+    };
     unit.restore_points(&mut result.vertices, start, original);
     for energy in &mut result.energy {
         *energy = unit.restore_finite("the energy", *energy)?;
     }
     Ok(result)
+}
+
+/// The flow of a mesh as it is, measured in `unit`; snapshots are given back by `working`.
+pub(super) fn flow(
+    mesh: &Mesh,
+    unit: Unit,
+    options: &StylizeOptions,
+    working: Option<&Working<'_>>,
+    progress: &Progress,
+) -> Result<Stylized> {
+    let start = mesh.positions().ok_or(MeshError::NoPositions)?;
+    let settings = Settings { announce: false, ..options.solve.settings()? };
+    let n_columns = if options.coupling == Coupling::Joint { 3 } else { 1 };
+    options.solve.run(|| {
+        mesh.demand(Tool::Stylize)
+            .with_columns(n_columns, options.solve.solver.is_clarabel())
+            .admit(options.solve.memory_limit)?;
+        Flow::new(mesh, start, unit, options, working)?.run(&settings, progress)
+    })
 }
 
 fn check(mesh: &Mesh, options: &StylizeOptions) -> Result<()> {
@@ -169,6 +193,7 @@ fn check(mesh: &Mesh, options: &StylizeOptions) -> Result<()> {
 
 struct Flow<'a> {
     options: &'a StylizeOptions,
+    working: Option<&'a Working<'a>>,
     connectivity: &'a Connectivity,
     scale: Scale,
     around: Surroundings,
@@ -194,7 +219,13 @@ struct Step {
 
 impl<'a> Flow<'a> {
     /// The flow of `mesh`, measured in `unit`, from `start`.
-    fn new(mesh: &'a Mesh, start: &[[f64; 3]], unit: Unit, options: &'a StylizeOptions) -> Result<Self> {
+    fn new(
+        mesh: &'a Mesh,
+        start: &[[f64; 3]],
+        unit: Unit,
+        options: &'a StylizeOptions,
+        working: Option<&'a Working<'a>>,
+    ) -> Result<Self> {
         let connectivity = mesh.connectivity();
         let base = options.ridge_weights.clone().unwrap_or_else(|| vec![1.0; connectivity.n_faces()]);
         let (size, area) = extent(connectivity, start);
@@ -208,6 +239,7 @@ impl<'a> Flow<'a> {
         };
         Ok(Self {
             options,
+            working,
             connectivity,
             scale,
             around: Surroundings::of(corners.map(|&v| &start[v as usize])),
@@ -260,7 +292,10 @@ impl<'a> Flow<'a> {
             self.result.gap.push(solution.gap);
             self.result.solver_iterations.push(solution.iterations);
             self.result.factorisations += solution.factorisations;
-            progress.set_snapshot(&self.points);
+            match self.working {
+                Some(working) => progress.set_snapshot(&working.positions(&self.points)),
+                None => progress.set_snapshot(&self.points),
+            }
             progress.report(Report {
                 fraction: (done + 1) as f64 / n_steps as f64,
                 stage: "stylizing".into(),

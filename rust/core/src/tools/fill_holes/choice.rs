@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::FillHolesOptions;
 use crate::error::{MeshError, Refusal};
-use crate::hole_filling::{fill_loops_at, find_holes, FillOptions, Patch};
+use crate::hole_filling::{fill_loops_at, holes_of, FillOptions, Patch};
 use crate::mesh::Mesh;
 use crate::progress::Progress;
 use crate::{Error, Result};
@@ -12,7 +12,7 @@ use crate::{Error, Result};
 /// A boundary loop to fill.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum LoopChoice {
-    /// By its place in [`crate::mesh::boundary_loops`].
+    /// By its place in [`crate::hole_filling::find_holes`].
     Index(usize),
     /// By the vertices around it, in either direction.
     Vertices(Vec<u32>),
@@ -24,13 +24,13 @@ pub(super) type Chosen = (Vec<u32>, Option<Refusal>);
 /// The loops that `options` ask for.
 pub(super) fn choose(mesh: &Mesh, options: &FillHolesOptions) -> Result<Vec<Chosen>> {
     let Some(choices) = &options.loops else {
-        let wanted = find_holes(mesh)?.into_iter().filter(|hole| {
+        let wanted = holes_of(mesh)?.into_iter().filter(|hole| {
             (options.outer || !hole.is_outer_border) && options.max_edges.is_none_or(|most| hole.vertices.len() <= most)
         });
         return Ok(wanted.map(|hole| (hole.vertices, hole.refusal)).collect());
     };
     let by_index = choices.iter().any(|choice| matches!(choice, LoopChoice::Index(_)));
-    let holes = if by_index { find_holes(mesh)? } else { Vec::new() };
+    let holes = if by_index { holes_of(mesh)? } else { Vec::new() };
     let choose = |choice: &LoopChoice| match choice {
         LoopChoice::Vertices(vertices) => Ok((vertices.clone(), None)),
         LoopChoice::Index(index) => {

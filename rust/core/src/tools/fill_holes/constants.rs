@@ -165,3 +165,9 @@ pub(super) const RIDGE_STIFFNESS: f64 = 100.0;
 
 /// A ridge that turns by more than this at a vertex (45 degrees) has a corner there.
 pub(super) const RIDGE_CORNER_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+// In order or not.
+
+/// A face of a patch in a rim that calls for a lid faces inwards if it looks against the lid by more than
+/// this (120 degrees): the flanks of a smooth patch, which go on with the surface around, look across it.
+pub(super) const INWARDS: f64 = -0.5;

@@ -7,6 +7,7 @@ use super::FillHolesOptions;
 use crate::mesh::{edge_lengths, Connectivity};
 use crate::progress::Progress;
 use crate::tools::{stylize, Scale, SolveOptions, StylizeOptions};
+use crate::unit::Unit;
 use crate::Result;
 
 /// What a few steps of the flow did.
@@ -48,7 +49,7 @@ pub(super) fn flow(
         },
         ..StylizeOptions::default()
     };
-    let result = stylize(&mesh, &options, &progress.quiet())?;
+    let result = stylize::flow(&mesh, Unit::default(), &options, None, &progress.quiet())?;
     let moved = move_guarded(region, &result.vertices);
     let (first, last) = (result.energy.first(), result.energy.last());
     Ok(Flowed {

@@ -6,7 +6,9 @@
 //! hole ([`parts`]), each a plane or gently bent ([`model`]), are given the faces of the patch ([`assign`]) and go on until they
 //! meet ([`extend`]). Where they do not say how, the cycles go on: vertices snap onto the planes around them and their
 //! intersections ([`snap`]), the patch is remeshed with its ridges kept ([`resample`]). In the end bent parts become smooth
-//! ([`fair`]) and the ridges go on as those around ([`ridge_curves`]). No move folds the surface ([`guard`]).
+//! ([`fair`]) and the ridges go on as those around ([`ridge_curves`]). No move folds the surface ([`guard`]). Planar rims that the
+//! surface meets steeply all round are closed flat without any of this; a patch that came out folded gives way to one that did not
+//! ([`sound`]). All of it is done on an oriented mesh without seams, and given back for the mesh as it was ([`give_back`]).
 
 mod assign;
 mod choice;
@@ -16,6 +18,7 @@ mod extend;
 mod fair;
 mod flips;
 mod flow;
+mod give_back;
 mod guard;
 mod meeting;
 mod model;
@@ -26,6 +29,7 @@ mod resample;
 mod restore;
 mod ridge_curves;
 mod snap;
+mod sound;
 mod start;
 mod surface;
 mod untangle;
@@ -38,10 +42,10 @@ use super::answer::{self, Surroundings};
 use super::options::check_range;
 use super::{Scale, SolveOptions};
 use crate::error::{MeshError, Refusal};
-use crate::hole_filling::{faces_at, FillOptions, Patch};
+use crate::hole_filling::{faces_at, FillOptions, Lids, Patch};
 use crate::memory::{Demand, Tool};
 use crate::mesh::vector::Point;
-use crate::mesh::{boundary_loops, Mesh};
+use crate::mesh::{boundary_loops, Mesh, Working};
 use crate::operators::Dual;
 use crate::progress::{Progress, Report};
 use crate::remesh::budget;
@@ -50,7 +54,8 @@ use crate::{Error, Result};
 use constants::{MARKED_ANGLE, REGION_RINGS};
 use neighbourhoods::Neighbourhoods;
 use region::Region;
-use restore::{restore, Restored};
+use restore::Restored;
+use sound::restored_in_order;
 
 /// How sharp the ridges of patches get.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -60,6 +65,33 @@ pub enum Sharpness {
     Auto,
     /// 0: the flow of the paper, without flips and snapping; towards 1: ever sharper.
     Value(f64),
+}
+
+/// What patches look like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PatchShape {
+    /// Per hole: flat where a planar rim is met steeply all round, sharp where there are ridges around the hole, else smooth.
+    #[default]
+    Auto,
+    /// In the mean plane of the rim; as `Auto` where that would overlap itself.
+    Flat,
+    /// Without ridges.
+    Smooth,
+    /// Flat pieces that meet in ridges.
+    Sharp,
+}
+
+impl PatchShape {
+    /// The name that users see.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Flat => "flat",
+            Self::Smooth => "smooth",
+            Self::Sharp => "sharp",
+        }
+    }
 }
 
 /// How to fill holes.
@@ -77,7 +109,9 @@ pub struct FillHolesOptions {
     pub iterations: usize,
     /// `η`: a larger one moves less per step.
     pub fidelity: f64,
-    /// How sharp.
+    /// What the patches look like.
+    pub shape: PatchShape,
+    /// How sharp those are that are not flat.
     pub sharpness: Sharpness,
     /// Joint norms are invariant under rotations; separate ones are those of the paper.
     pub coupling: Coupling,
@@ -98,6 +132,7 @@ impl Default for FillHolesOptions {
             edge_length: None,
             iterations: 50,
             fidelity: 50.0,
+            shape: PatchShape::Auto,
             sharpness: Sharpness::Auto,
             coupling: Coupling::Joint,
             scale: Scale::MaxEdge,
@@ -140,7 +175,9 @@ pub struct FilledHole {
     pub boundary: Vec<u32>,
     /// How it ended.
     pub status: HoleStatus,
-    /// The sharpness used; 0 where it is smooth.
+    /// What the patch looks like: flat, smooth or sharp; `Auto` where there is none.
+    pub shape: PatchShape,
+    /// The sharpness used; 0 where it is smooth or flat.
     pub sharpness: f64,
     /// `E_H` of the coordinates of the patch and its surroundings, before and after the flow; zeros if there was none.
     pub energy: [f64; 2],
@@ -163,7 +200,7 @@ pub struct Filled {
     pub holes: Vec<FilledHole>,
     /// How the holes ended: stopped if one was, else finished if one was, else converged.
     pub status: HoleStatus,
-    /// The edges of sharp patches that are bent by more than 30 degrees, smaller vertex first, sorted.
+    /// The edges of sharp and flat patches that are bent by more than 30 degrees, smaller vertex first, sorted.
     pub ridges: Vec<[u32; 2]>,
 }
 
@@ -185,7 +222,10 @@ pub fn fill_holes(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) 
         },
         ..options.clone()
     };
-    let mut filled = options.solve.run(|| fill(&mesh, &options, &progress.in_unit(unit)))?;
+    let working = Working::new(&mesh)?;
+    let options = give_back::options_on(&working, &options);
+    let filled = options.solve.run(|| fill(&working, &options, &progress.in_unit(unit)))?;
+    let mut filled = give_back::given_back(filled, &working);
     let around = Surroundings::of(
         filled.holes.iter().flat_map(|hole| &hole.boundary).filter_map(|&v| Some(&mesh.positions()?[v as usize])),
     );
@@ -230,10 +270,16 @@ fn check(options: &FillHolesOptions) -> Result<()> {
     }
 }
 
-fn fill(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) -> Result<Filled> {
+fn fill(working: &Working<'_>, options: &FillHolesOptions, progress: &Progress) -> Result<Filled> {
+    let mesh = working.mesh();
     let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
     report(progress, 0.0, "triangulating", 0, None);
-    let geometry = FillOptions { edge_length: options.edge_length, ..FillOptions::default() };
+    let lids = match options.shape {
+        PatchShape::Auto => Lids::Planar,
+        PatchShape::Flat => Lids::Always,
+        PatchShape::Smooth | PatchShape::Sharp => Lids::Never,
+    };
+    let geometry = FillOptions { edge_length: options.edge_length, lids, ..FillOptions::default() };
     let mut chosen = choice::choose(mesh, options)?;
     let loops: Vec<Vec<u32>> = chosen.iter().map(|(vertices, _)| vertices.clone()).collect();
     demand(mesh, loops.iter().map(Vec::len).max().unwrap_or(0)).admit(options.solve.memory_limit)?;
@@ -259,18 +305,19 @@ fn fill(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) -> Result<
             Some(reason) => Err(reason),
             None => {
                 let watch = |part: f64, steps, energy| report(progress, done + share * part, "filling", steps, energy);
-                Ok(fill_one(mesh, &near, &shared, &patch, from, &mut filled, options, progress, &watch)?)
+                Ok(fill_one(working, &near, &shared, &patch, from, &mut filled, options, progress, &watch)?)
             }
         };
         done += share;
         from += patch.vertices.len() as u32;
         filled.holes.push(match outcome {
-            Ok(Restored { sharpness, status, energy, gap, iterations }) => {
-                FilledHole { boundary, status, sharpness, energy, gap, iterations }
+            Ok(Restored { shape, sharpness, status, energy, gap, iterations }) => {
+                FilledHole { boundary, status, shape, sharpness, energy, gap, iterations }
             }
             Err(reason) => FilledHole {
                 boundary,
                 status: HoleStatus::Refused(reason),
+                shape: PatchShape::Auto,
                 sharpness: 0.0,
                 energy: [0.0; 2],
                 gap: 0.0,
@@ -291,7 +338,7 @@ fn fill(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) -> Result<
 /// Restores one patch and appends it.
 #[allow(clippy::too_many_arguments)]
 fn fill_one(
-    mesh: &Mesh,
+    working: &Working<'_>,
     near: &Neighbourhoods<'_>,
     shared: &HashSet<u32>,
     patch: &Patch,
@@ -301,17 +348,18 @@ fn fill_one(
     progress: &Progress,
     watch: &dyn Fn(f64, usize, Option<f64>),
 ) -> Result<Restored> {
+    let mesh = working.mesh();
     let mut region = Region::new(mesh, near, patch, patches_from, REGION_RINGS, shared)?;
     region.first_new = (mesh.connectivity().n_vertices() + filled.vertices.len()) as u32;
-    let restored = restore(&mut region, options, progress, &mut |region, part, steps, energy| {
+    let restored = restored_in_order(&mut region, patch, options, progress, &mut |region, part, steps, energy| {
         let (vertices, faces, _) = region.patch();
-        progress.set_surface(vertices, faces);
+        progress.set_surface(vertices.into_iter().map(|p| working.place(p)).collect(), faces);
         watch(part, steps, energy);
     })?;
     filled.vertices.extend(region.free().map(|v| region.mesh.position(v)));
     filled.faces.extend(region.patch_faces().map(|(_, face)| face.map(|v| region.global(v))));
     filled.patch.resize(filled.faces.len(), filled.holes.len() as u32);
-    if restored.sharpness > 0.0 {
+    if restored.shape != PatchShape::Smooth {
         filled.ridges.extend(surface::ridges(&region, MARKED_ANGLE));
     }
     Ok(restored)

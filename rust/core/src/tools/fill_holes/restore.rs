@@ -14,7 +14,7 @@ use super::resample::{resample, typical_edge, Kept};
 use super::snap::{snap, Snapping};
 use super::start::smooth;
 use super::surface::total_bend;
-use super::{FillHolesOptions, HoleStatus, Sharpness};
+use super::{FillHolesOptions, HoleStatus, PatchShape, Sharpness};
 use crate::operators::Energy;
 use crate::progress::Progress;
 use crate::remesh::guard::worst_bend;
@@ -22,10 +22,11 @@ use crate::Result;
 
 /// A patch with a bend beyond this (154 degrees) is folded, unless its smooth start or its rim had such a bend: the last one
 /// without is taken.
-const FOLD_COSINE: f64 = -0.9;
+pub(super) const FOLD_COSINE: f64 = -0.9;
 
 /// How one patch ended.
 pub(super) struct Restored {
+    pub shape: PatchShape,
     pub sharpness: f64,
     pub status: HoleStatus,
     pub energy: [f64; 2],
@@ -35,8 +36,15 @@ pub(super) struct Restored {
 
 impl Restored {
     /// The end of a patch that stays smooth.
-    fn smooth() -> Self {
-        Self { sharpness: 0.0, status: HoleStatus::Converged, energy: [0.0; 2], gap: 0.0, iterations: 0 }
+    pub(super) fn smooth() -> Self {
+        Self {
+            shape: PatchShape::Smooth,
+            sharpness: 0.0,
+            status: HoleStatus::Converged,
+            energy: [0.0; 2],
+            gap: 0.0,
+            iterations: 0,
+        }
     }
 }
 
@@ -53,13 +61,15 @@ pub(super) fn restore(
     smooth(region, Energy::L2Laplacian, SMOOTH_ROUNDS, progress)?;
     watch(region, 0.05, 0, None);
     let ridges = ridges_around(region);
-    let sharpness = match options.sharpness {
-        Sharpness::Auto if ridges.is_some() => SHARP,
-        Sharpness::Auto => 0.0,
-        Sharpness::Value(sharpness) => sharpness,
+    let (sharpness, flows) = match (options.shape, options.sharpness) {
+        (PatchShape::Smooth, _) => (0.0, false),
+        (PatchShape::Sharp, Sharpness::Auto) => (SHARP, true),
+        (_, Sharpness::Auto) => (if ridges.is_some() { SHARP } else { 0.0 }, ridges.is_some()),
+        (_, Sharpness::Value(sharpness)) => (sharpness, true),
     };
-    let mut restored = Restored { sharpness, ..Restored::smooth() };
-    if options.sharpness == Sharpness::Auto && sharpness == 0.0 {
+    let shape = if sharpness > 0.0 { PatchShape::Sharp } else { PatchShape::Smooth };
+    let mut restored = Restored { shape, sharpness, ..Restored::smooth() };
+    if !flows {
         return Ok(restored);
     }
     let ridge = RIDGE * ridges.map_or(1.0, |ridges| ridges.least);
@@ -151,7 +161,8 @@ fn form_ridges(
         *region = sound;
     }
     let is_sharp = restored.status != HoleStatus::Stopped && sharpness > 0.0 && cycles > 0;
-    if options.sharpness == Sharpness::Auto && is_sharp && total_bend(region) > MOST_BEND * total_bend(&smooth) {
+    let is_free = options.sharpness == Sharpness::Auto && options.shape != PatchShape::Sharp;
+    if is_free && is_sharp && total_bend(region) > MOST_BEND * total_bend(&smooth) {
         *region = smooth;
         *restored = Restored::smooth();
     }

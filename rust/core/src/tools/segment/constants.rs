@@ -180,3 +180,29 @@ pub(super) const STRAIGHTEN_PASSES: usize = 2;
 
 /// Flow below this part of the largest capacity is rounding.
 pub(super) const FLOW_ROUNDING: f64 = 1e-9;
+
+// Flat sides under little noise.
+
+/// Noise between these parts of a mean edge: below the first the shape is exact, and above the second normals no longer tell.
+pub(super) const FLAT_NOISE: [f64; 2] = [1e-4, 0.1];
+
+/// Normals are averaged over neighbors whose normals differ by about this, in so many rounds: noise of 0.05 of an edge turns
+/// neighbors by 0.15, and a quarter of that is left.
+pub(super) const ALIKE_NORMALS: f64 = 0.35;
+pub(super) const NORMAL_ROUNDS: usize = 3;
+
+/// Faces are of one side if their averaged normals differ by less.
+pub(super) const ONE_SIDE: f64 = 0.2;
+
+/// Sides are clear if they bend by more than this where they meet, but for this part of the length of all borders.
+pub(super) const CLEAR_RIDGE: f64 = 0.6;
+pub(super) const UNCLEAR_SHARE: f64 = 0.02;
+
+/// The corners of a side are off its plane by the noise, by no more than so many times as much: root mean square.
+pub(super) const PLANAR: f64 = 2.0;
+
+/// Sides have so many faces on average; where nearly every face is its own, nothing is said by that they are flat.
+pub(super) const LEAST_MEAN_FACES: usize = 6;
+
+/// Sides of fewer faces that lie on a neighbor's plane are faces whose normals the noise has turned.
+pub(super) const TURNED_SPECK: usize = 3;

@@ -4,7 +4,7 @@
 //! other one is [`watershed`], then merging across borders that bend little ([`crease`], [`merge`]), dividing what lies across a
 //! ridge ([`divide`]), joining what a neighbour explains ([`explain`]), and moving faces at borders
 //! to the segment that they fit best ([`refit`]), or, between curved segments, along creases ([`straighten`]). Sides of a few triangles, which the Hessian cannot see, are told by their planes
-//! ([`exact`]). In any case a [`hierarchy`] of nested segmentations comes with it.
+//! ([`exact`]), those of a few rows under little noise by the normals of their faces ([`flat_sides`]). In any case a [`hierarchy`] of nested segmentations comes with it.
 
 mod constants;
 mod crease;
@@ -14,6 +14,7 @@ mod exact;
 mod explain;
 mod fit;
 mod fitted;
+mod flat_sides;
 mod hierarchy;
 mod indicator;
 mod indicator_step;
@@ -35,7 +36,7 @@ pub use options::{SegmentMethod, SegmentOptions};
 use crate::error::MeshError;
 use crate::linear::Columns;
 use crate::memory::Tool;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Working};
 use crate::progress::Progress;
 use crate::solve::{Settings, Status};
 use crate::tools::answer;
@@ -44,6 +45,7 @@ use crate::Result;
 use constants::{BEND, LEAST_EPSILON};
 use exact::coarse_planes;
 use fitted::{Finished, Fitted};
+use flat_sides::flat_sides;
 use indicator::Functional;
 use noise::noise_level;
 use surface::Surface;
@@ -80,6 +82,8 @@ pub struct Segmentation {
 /// Minimises `α ‖u − u₀‖²_M + Σ_f v_f² ‖(H u)_f‖ + λ ε vᵀ L v + λ/(4ε) ‖1 − v‖²_{M_F}` (Rowe et al. 2024, eq. (41)) in turns over `u` and
 /// `v`, with `ε` halved down, and makes segments from `v`: see [`SegmentMethod`].
 ///
+/// Faces are oriented first, and for a shape its seams joined ([`Working`]).
+///
 /// # Errors
 /// [`MeshError::NoPositions`], [`MeshError::NoFaces`], arguments of the wrong shape or range, [`crate::Error::Cancelled`], and the errors of
 /// the solver.
@@ -90,6 +94,28 @@ pub fn segment(
     progress: &Progress,
 ) -> Result<Segmentation> {
     options.check(mesh, values)?;
+    // The values may differ between the sides of a seam.
+    let working = if values.is_none() { Working::new(mesh)? } else { Working::unwelded(mesh)? };
+    if working.is_plain() {
+        return on(mesh, values, options, progress);
+    }
+    let options = SegmentOptions {
+        edge_weights: options.edge_weights.as_ref().map(|weights| working.corner_rows(weights)),
+        ..options.clone()
+    };
+    let found = on(working.mesh(), values, &options, progress)?;
+    Ok(Segmentation {
+        boundary_edges: found.boundary_edges.iter().map(|edge| edge.map(|v| working.original(v))).collect(),
+        values: match values {
+            None => Columns::from_points(&working.positions(&found.values.to_points()?)),
+            Some(_) => found.values,
+        },
+        ..found
+    })
+}
+
+/// Segments a mesh as it is.
+fn on(mesh: &Mesh, values: Option<&Columns>, options: &SegmentOptions, progress: &Progress) -> Result<Segmentation> {
     let settings = Settings { announce: false, ..options.solve.settings()? };
     let n_columns = values.map_or(3, |values| values.n_columns);
     let length = mesh.unit();
@@ -135,11 +161,13 @@ fn whole(
     let signal = values.map(Normalized::of);
     let start = signal.as_ref().map_or_else(|| Columns::from_points(&surface.positions), |s| s.normalised.clone());
     let plain = values.is_none() && options.fidelity.is_none() && options.method == SegmentMethod::Fitted;
-    let planes = if plain { coarse_planes(&surface, BEND * options.length_weight) } else { None };
+    let exact = if plain { coarse_planes(&surface, BEND * options.length_weight) } else { None };
+    let is_exact = exact.is_some();
     let degrees = values.map_or(1, |v| v.n_columns);
-    let noise = if planes.is_some() { 0.0 } else { noise_level(&surface, &start, degrees) };
+    let noise = if is_exact { 0.0 } else { noise_level(&surface, &start, degrees) };
+    let planes = exact.or_else(|| if plain { flat_sides(&surface, noise) } else { None });
     let mut epsilons = options.epsilons(LEAST_EPSILON * surface.mean_edge);
-    if planes.is_some() {
+    if is_exact {
         epsilons.drain(..epsilons.len() - 1);
     }
     let functional = Functional {
@@ -154,7 +182,7 @@ fn whole(
         solver: options.solve.solver,
         settings: *settings,
     };
-    let found = if planes.is_some() { functional.indicate(progress)? } else { functional.minimise(progress)? };
+    let found = if is_exact { functional.indicate(progress)? } else { functional.minimise(progress)? };
     let fitted = Fitted {
         surface: &surface,
         start: &start,
@@ -169,7 +197,7 @@ fn whole(
     let labels = hierarchy.labels_at(n_segments)?;
     let unscaled = |columns: &Columns| match &signal {
         Some(signal) => signal.restored(columns),
-        None if planes.is_some() => Columns::from_points(positions),
+        None if is_exact => Columns::from_points(positions),
         None => Columns { data: columns.data.iter().map(|x| unit * x).collect(), ..columns.clone() },
     };
     Ok(Segmentation {

@@ -1,0 +1,190 @@
+//! Joining the sides of split seams: vertices on open borders that lie in one place, up to rounding.
+
+use std::collections::HashMap;
+
+use crate::mesh::partition::Partition;
+use crate::mesh::vector::{distance, sub, Point};
+use crate::mesh::Connectivity;
+
+/// The sides of a seam differ by the rounding of its coordinates: files of six digits lose this part of the shape's size.
+const SIX_DIGITS: f64 = 1e-5;
+
+/// Units in the last place by which coordinates of one place may differ: each was rounded once or twice.
+const UNITS: f64 = 4.0;
+
+/// Nothing is joined over more than this part of the shortest border edge there: it would not be rounding.
+const OF_EDGE: f64 = 0.1;
+
+/// Which vertices are one.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Weld {
+    /// The welded vertex of every vertex.
+    pub vertex: Vec<u32>,
+    /// The first vertex of every welded one, ascending: welded vertices keep the order of these.
+    pub first: Vec<u32>,
+}
+
+impl Weld {
+    /// Welds vertices on open borders (edges with one face) whose coordinates differ by no more than `tolerance` each. Without one
+    /// they may differ by the rounding of their coordinates: a hundred-thousandth of the shape's size, as files of six digits have
+    /// it, or four units in the last place (of single precision, where all coordinates have it), but a tenth of the
+    /// shortest border edge there at most. All others stay as they are. Nothing where none are welded.
+    #[must_use]
+    pub fn of_seams(connectivity: &Connectivity, positions: &[Point], tolerance: Option<f64>) -> Option<Self> {
+        let mut reach: HashMap<u32, f64> = HashMap::new();
+        for h in connectivity.boundary() {
+            let (tail, head) = (connectivity.tail(h), connectivity.head(h));
+            let length = distance(positions[tail as usize], positions[head as usize]);
+            for v in [tail, head] {
+                reach.entry(v).and_modify(|least| *least = least.min(OF_EDGE * length)).or_insert(OF_EDGE * length);
+            }
+        }
+        if reach.is_empty() {
+            return None;
+        }
+        let tolerance = match tolerance {
+            Some(tolerance) => {
+                reach.values_mut().for_each(|least| *least = f64::INFINITY);
+                tolerance
+            }
+            None => rounding(reach.keys().map(|&v| positions[v as usize])),
+        };
+        let mut border: Vec<(u32, f64)> = reach.into_iter().map(|(v, least)| (v, least.min(tolerance))).collect();
+        border.sort_unstable_by_key(|&(v, _)| v);
+        let mut partition = Partition::new(positions.len());
+        if !unite_near(&border, positions, tolerance, &mut partition) {
+            return None;
+        }
+        let mut weld = Self { vertex: Vec::with_capacity(positions.len()), first: Vec::new() };
+        for v in 0..positions.len() as u32 {
+            let root = partition.root(v);
+            if root == v {
+                weld.vertex.push(weld.first.len() as u32);
+                weld.first.push(v);
+            } else {
+                // Roots are least elements: theirs is known.
+                weld.vertex.push(weld.vertex[root as usize]);
+            }
+        }
+        Some(weld)
+    }
+
+    /// The faces in welded vertices. One whose corners became one names a vertex twice.
+    #[must_use]
+    pub fn faces(&self, faces: &[[u32; 3]]) -> Vec<[u32; 3]> {
+        faces.iter().map(|face| face.map(|v| self.vertex[v as usize])).collect()
+    }
+
+    /// The entries of the first vertices.
+    #[must_use]
+    pub fn firsts<T: Copy>(&self, entries: &[T]) -> Vec<T> {
+        self.first.iter().map(|&v| entries[v as usize]).collect()
+    }
+}
+
+/// How far apart roundings of one place may be, by the `points` that were rounded: those on borders, so that a closed surface of any
+/// size costs nothing.
+fn rounding(points: impl Iterator<Item = Point>) -> f64 {
+    let (mut low, mut high, mut largest) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], 0.0_f64);
+    let mut is_single = true;
+    for p in points {
+        #[allow(clippy::cast_possible_truncation, clippy::float_cmp)]
+        let single = p.iter().all(|&x| f64::from(x as f32) == x);
+        is_single &= single;
+        for c in 0..3 {
+            low[c] = low[c].min(p[c]);
+            high[c] = high[c].max(p[c]);
+            largest = largest.max(p[c].abs());
+        }
+    }
+    let size = sub(high, low).into_iter().fold(0.0, f64::max);
+    let unit = if is_single { f64::from(f32::EPSILON) } else { f64::EPSILON };
+    (SIX_DIGITS * size).max(UNITS * unit * largest)
+}
+
+/// Unites vertices, each with its own reach, that are no farther apart in any coordinate; returns whether there were any.
+fn unite_near(border: &[(u32, f64)], positions: &[Point], tolerance: f64, partition: &mut Partition) -> bool {
+    let origin = positions[border[0].0 as usize];
+    let width = tolerance.max(f64::MIN_POSITIVE);
+    // Cells as wide as the tolerance: what is near lies in the next one at most. Beyond 2^53 of them cells are not neighbours, but
+    // then coordinates are not told apart either.
+    let cell = |v: u32| sub(positions[v as usize], origin).map(|x| (x / width).floor());
+    let key = |cell: Point| cell.map(|x| (x + 0.0).to_bits());
+    let mut cells: HashMap<[u64; 3], Vec<(u32, f64)>> = HashMap::with_capacity(border.len());
+    let mut any = false;
+    for &(v, reach) in border {
+        let at = cell(v);
+        for step in 0..27 {
+            let near =
+                [at[0] + f64::from(step % 3 - 1), at[1] + f64::from(step / 3 % 3 - 1), at[2] + f64::from(step / 9 - 1)];
+            for &(w, other) in cells.get(&key(near)).into_iter().flatten() {
+                let apart =
+                    sub(positions[v as usize], positions[w as usize]).into_iter().fold(0.0, |a: f64, x| a.max(x.abs()));
+                if apart <= reach.min(other) {
+                    partition.unite(v, w);
+                    any = true;
+                }
+            }
+        }
+        cells.entry(key(at)).or_default().push((v, reach));
+    }
+    any
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::shapes::{self, Random, Shape};
+
+    /// Every triangle with vertices of its own, each coordinate off by up to `rounding`.
+    fn soup(shape: &Shape, rounding: f64) -> Shape {
+        let mut random = Random::new(5);
+        let vertices: Vec<Point> = shape.faces.iter().flatten().map(|&v| shape.vertices[v as usize]).collect();
+        let faces = (0..shape.faces.len() as u32).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect();
+        Shape { vertices, faces }.map(|p| p.map(|x| x + rounding * random.symmetric()))
+    }
+
+    fn welded(shape: &Shape, tolerance: Option<f64>) -> Option<Weld> {
+        let mesh = shape.mesh().unwrap();
+        Weld::of_seams(mesh.connectivity(), mesh.positions().unwrap(), tolerance)
+    }
+
+    #[test]
+    fn a_soup_of_triangles_becomes_the_mesh_that_it_was() {
+        let shape = shapes::icosphere(2);
+        for rounding in [0.0, 1e-7, 1e-6] {
+            for shift in [0.0, 5e5, 1e7] {
+                let soup = soup(&shape, rounding).map(|p| p.map(|x| x + shift));
+                let weld = welded(&soup, None).unwrap();
+                assert_eq!(weld.first.len(), shape.vertices.len(), "{rounding} {shift}");
+                assert!(weld.first.is_sorted());
+                let closed = Connectivity::new(weld.faces(&soup.faces), weld.first.len()).unwrap();
+                assert_eq!(closed.boundary().count(), 0);
+            }
+        }
+    }
+
+    #[test]
+    fn gaps_that_are_no_rounding_stay() {
+        assert_eq!(welded(&soup(&shapes::icosphere(2), 1e-3), None), None);
+        assert!(welded(&soup(&shapes::icosphere(2), 1e-3), Some(2e-3)).is_some());
+        // Inner vertices in one place are two sheets, not a seam.
+        assert_eq!(welded(&shapes::icosphere(1).and(&shapes::icosphere(1)), None), None);
+    }
+
+    #[test]
+    fn fine_details_far_from_the_origin_are_not_rounding() {
+        let tiny = shapes::grid(4, 4).map(|p| p.map(|x| 1e-7 * x));
+        let large = shapes::grid(1, 1).map(|[x, y, z]| [10.0 * x + 5.0, y, z]);
+        assert_eq!(welded(&tiny.and(&large), None), None);
+    }
+
+    #[test]
+    fn single_precision_far_away_is_taken_for_what_it_is() {
+        let shape = shapes::grid(6, 6);
+        let far = soup(&shape, 0.01).map(|p| p.map(|x| f64::from((x + 5e5) as f32)));
+        let weld = welded(&far, None).unwrap();
+        assert_eq!(weld.first.len(), shape.vertices.len());
+    }
+}

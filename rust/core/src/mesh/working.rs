@@ -1,0 +1,254 @@
+//! The mesh that tools compute on: neighbouring faces agree on what is outside, the sides of seams are joined, and the origin is
+//! near. What comes out is given back for the mesh as it was.
+
+use std::borrow::Cow;
+use std::collections::HashMap;
+
+use crate::error::MeshError;
+use crate::mesh::orientation::turned_over;
+use crate::mesh::vector::{add, sub, Point};
+use crate::mesh::{flipped_faces, EdgeKind, Mesh, Weld};
+
+/// A coordinate of all vertices that is so many times as large as the range that they take is measured from one of them: below,
+/// subtracting squares of it loses no more than the last digits.
+const FAR: f64 = 16.0;
+
+/// A mesh made ready to be computed on. The faces are as many and in the order of the mesh's.
+#[derive(Debug, Clone)]
+pub struct Working<'a> {
+    mesh: Cow<'a, Mesh>,
+    /// The mesh's own faces.
+    original: &'a Mesh,
+    weld: Option<Weld>,
+    flipped: Option<Vec<bool>>,
+    origin: Point,
+}
+
+impl<'a> Working<'a> {
+    /// The mesh with its faces oriented ([`flipped_faces`]), its seams joined ([`Weld::of_seams`]) and its origin near; the mesh itself
+    /// where that changes nothing.
+    ///
+    /// # Errors
+    /// None on a mesh that exists.
+    pub fn new(mesh: &'a Mesh) -> Result<Self, MeshError> {
+        let weld = mesh.positions().and_then(|positions| Weld::of_seams(mesh.connectivity(), positions, None));
+        Self::of(mesh, weld)
+    }
+
+    /// The same with the vertices as they are, for functions on them, which may differ between the sides of a seam.
+    ///
+    /// # Errors
+    /// None on a mesh that exists.
+    pub fn unwelded(mesh: &'a Mesh) -> Result<Self, MeshError> {
+        Self::of(mesh, None)
+    }
+
+    fn of(mesh: &'a Mesh, weld: Option<Weld>) -> Result<Self, MeshError> {
+        let origin = mesh.positions().map_or([0.0; 3], far_origin);
+        let mut working = Self { mesh: Cow::Borrowed(mesh), original: mesh, weld, flipped: None, origin };
+        if let (true, Some(positions)) = (working.weld.is_some() || origin != [0.0; 3], mesh.positions()) {
+            let near = |p: &Point| sub(*p, origin);
+            let faces = mesh.connectivity().faces();
+            let (positions, faces): (Vec<Point>, _) = match &working.weld {
+                Some(weld) => (weld.first.iter().map(|&v| near(&positions[v as usize])).collect(), weld.faces(faces)),
+                None => (positions.iter().map(near).collect(), faces.to_vec()),
+            };
+            working.mesh = Cow::Owned(Mesh::new(positions, faces)?);
+        }
+        if working.mesh.connectivity().has_any(&[EdgeKind::Inconsistent]) {
+            let flipped = flipped_faces(working.mesh.connectivity());
+            working.mesh = Cow::Owned(turned(&working.mesh, &flipped)?);
+            working.flipped = Some(flipped);
+        }
+        Ok(working)
+    }
+
+    /// The mesh to compute on.
+    #[must_use]
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// The mesh to compute on, where nothing needs to be given back.
+    #[must_use]
+    pub fn into_mesh(self) -> Cow<'a, Mesh> {
+        self.mesh
+    }
+
+    /// Whether that is the mesh itself.
+    #[must_use]
+    pub fn is_plain(&self) -> bool {
+        matches!(self.mesh, Cow::Borrowed(_))
+    }
+
+    /// Number of vertices of the mesh itself.
+    #[must_use]
+    pub fn n_original(&self) -> usize {
+        self.original.connectivity().n_vertices()
+    }
+
+    /// The vertex here of a vertex of the mesh.
+    #[must_use]
+    pub fn vertex(&self, v: u32) -> u32 {
+        self.weld.as_ref().map_or(v, |weld| weld.vertex[v as usize])
+    }
+
+    /// A vertex of the mesh for the vertex `v` here.
+    #[must_use]
+    pub fn original(&self, v: u32) -> u32 {
+        self.weld.as_ref().map_or(v, |weld| weld.first[v as usize])
+    }
+
+    /// Whether a mask over the mesh's vertices holds for one of those that each vertex here is.
+    #[must_use]
+    pub fn any_of(&self, mask: &[bool]) -> Vec<bool> {
+        let mut any = vec![false; self.mesh.connectivity().n_vertices()];
+        (0..).zip(mask).for_each(|(v, &set)| any[self.vertex(v) as usize] |= set);
+        any
+    }
+
+    /// The least of the values of the mesh's vertices that each vertex here is.
+    #[must_use]
+    pub fn least_of(&self, values: &[f64]) -> Vec<f64> {
+        let mut least = vec![f64::INFINITY; self.mesh.connectivity().n_vertices()];
+        (0..).zip(values).for_each(|(v, &x)| {
+            let entry = &mut least[self.vertex(v) as usize];
+            *entry = entry.min(x);
+        });
+        least
+    }
+
+    /// One row a face, column `i` of the edge opposite corner `i`, for the faces here.
+    #[must_use]
+    pub fn corner_rows(&self, rows: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let flip = |f: usize| self.flipped.as_ref().is_some_and(|flipped| flipped[f]);
+        rows.iter().enumerate().map(|(f, &[a, b, c])| if flip(f) { [a, c, b] } else { [a, b, c] }).collect()
+    }
+
+    /// Values of the mesh's vertices from those here.
+    #[must_use]
+    pub fn spread<T: Copy>(&self, values: &[T]) -> Vec<T> {
+        match &self.weld {
+            Some(weld) => weld.vertex.iter().map(|&v| values[v as usize]).collect(),
+            None => values.to_vec(),
+        }
+    }
+
+    /// A point here, in the mesh's coordinates.
+    #[must_use]
+    pub fn place(&self, p: Point) -> Point {
+        if self.origin == [0.0; 3] {
+            p
+        } else {
+            add(p, self.origin)
+        }
+    }
+
+    /// Positions of the mesh's vertices from those here: vertices that did not move keep their bits.
+    #[must_use]
+    pub fn positions(&self, points: &[Point]) -> Vec<Point> {
+        let (Some(before), Some(here)) = (self.original.positions(), self.mesh.positions()) else {
+            return points.to_vec();
+        };
+        let position = |(v, &old): (u32, &Point)| {
+            let w = self.vertex(v) as usize;
+            if points[w] == here[w] {
+                old
+            } else {
+                self.place(points[w])
+            }
+        };
+        (0..).zip(before).map(position).collect()
+    }
+
+    /// The vertices of the mesh at the border edges here whose vertices are several of the mesh: by tail and head here.
+    #[must_use]
+    pub fn seam_edges(&self) -> HashMap<[u32; 2], [u32; 2]> {
+        let (connectivity, faces) = (self.mesh.connectivity(), self.original.connectivity().faces());
+        if self.weld.is_none() {
+            return HashMap::new();
+        }
+        let own = |h: usize, v: u32| {
+            faces[h / 3].into_iter().find(|&w| self.vertex(w) == v).unwrap_or_else(|| self.original(v))
+        };
+        let edge = |h: usize| {
+            let here = [connectivity.tail(h), connectivity.head(h)];
+            (here, here.map(|v| own(h, v)))
+        };
+        connectivity.boundary().map(edge).collect()
+    }
+}
+
+/// The origin that brings vertices near: for each coordinate 0, or that of the first vertex where all are far away beside the
+/// range that they take. Such a coordinate is subtracted, and added again, without rounding.
+fn far_origin(positions: &[Point]) -> Point {
+    let Some(&first) = positions.first() else { return [0.0; 3] };
+    let is_far = |c: usize| {
+        let most = first[c].abs() / FAR;
+        first[c] != 0.0 && positions.iter().all(|p| (p[c] - first[c]).abs() <= most)
+    };
+    let ranges = |c: usize| positions.iter().fold(0.0_f64, |range, p| range.max((p[c] - first[c]).abs()));
+    let far = [0, 1, 2].map(is_far);
+    if !far.contains(&true) {
+        return [0.0; 3];
+    }
+    // A flat side in one coordinate is no distance: the ranges of the others count as well.
+    let size = [0, 1, 2].map(ranges).into_iter().fold(0.0, f64::max);
+    [0, 1, 2].map(|c| if far[c] && first[c].abs() > FAR * size { first[c] } else { 0.0 })
+}
+
+/// The mesh with some faces turned over.
+fn turned(mesh: &Mesh, flipped: &[bool]) -> Result<Mesh, MeshError> {
+    let faces = turned_over(mesh.connectivity().faces(), flipped);
+    match mesh.positions() {
+        Some(positions) => Mesh::new(positions.to_vec(), faces),
+        None => {
+            let swap = |(&[a, b, c], &flip): (&[f64; 3], &bool)| if flip { [a, c, b] } else { [a, b, c] };
+            let lengths = mesh.edge_lengths().iter().zip(flipped).map(swap).collect();
+            Mesh::from_edge_lengths(faces, lengths, Some(mesh.connectivity().n_vertices()))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::shapes::{self, Shape};
+
+    #[test]
+    fn a_plain_mesh_is_computed_on_as_it_is() {
+        for shape in [shapes::cube(3), shapes::grid(4, 4), shapes::torus(6, 5, 2.0, 0.5).map(|p| add(p, [9.0; 3]))] {
+            assert!(Working::new(&shape.mesh().unwrap()).unwrap().is_plain());
+        }
+    }
+
+    #[test]
+    fn what_is_far_away_comes_back_bit_by_bit() {
+        let shape = shapes::icosphere(2).map(|[x, y, z]| [x + 512_345.678, y + 5_572_094.155, z]);
+        let mesh = shape.mesh().unwrap();
+        let working = Working::new(&mesh).unwrap();
+        let here = working.mesh().positions().unwrap();
+        assert!(here.iter().flatten().all(|x| x.abs() <= 2.0));
+        assert!(here.iter().zip(&shape.vertices).all(|(p, q)| p[2] == q[2]));
+        let back: Vec<Point> = here.iter().map(|&p| working.place(p)).collect();
+        assert_eq!(back, shape.vertices);
+        assert_eq!(working.positions(here), shape.vertices);
+    }
+
+    #[test]
+    fn seams_and_turned_faces_at_once() {
+        let shape = shapes::cube(4);
+        let mut split = Shape {
+            vertices: shape.faces.iter().flatten().map(|&v| shape.vertices[v as usize]).collect(),
+            faces: (0..shape.faces.len() as u32).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect(),
+        };
+        split.faces.iter_mut().step_by(7).for_each(|face| face.swap(0, 2));
+        let mesh = split.mesh().unwrap();
+        let working = Working::new(&mesh).unwrap();
+        let connectivity = working.mesh().connectivity();
+        assert!(!connectivity.has_any(&[EdgeKind::Boundary, EdgeKind::Inconsistent]));
+        assert_eq!(connectivity.n_vertices(), shape.vertices.len());
+        assert_eq!(working.positions(working.mesh().positions().unwrap()), split.vertices);
+    }
+}

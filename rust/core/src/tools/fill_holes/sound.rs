@@ -1,0 +1,64 @@
+//! No patch is left folded, or facing inwards: where one came out so, the next simpler one takes its place.
+
+use super::constants::INWARDS;
+use super::region::Region;
+use super::restore::{restore, Restored, Watch, FOLD_COSINE};
+use super::{FillHolesOptions, PatchShape};
+use crate::hole_filling::Patch;
+use crate::mesh::vector::{dot, norm, Point};
+use crate::progress::Progress;
+use crate::remesh::guard::worst_bend_of;
+use crate::Result;
+
+/// [`restore`], and if that leaves a patch folded or facing inwards, the smooth patch, or the triangulation that it started from:
+/// the first that is in order, or else the least folded.
+pub(super) fn restored_in_order(
+    region: &mut Region,
+    patch: &Patch,
+    options: &FillHolesOptions,
+    progress: &Progress,
+    watch: &mut Watch<'_>,
+) -> Result<Restored> {
+    if patch.is_flat {
+        watch(region, 1.0, 0, None);
+        return Ok(Restored { shape: PatchShape::Flat, ..Restored::smooth() });
+    }
+    let start = region.clone();
+    let mut restored = restore(region, options, progress, watch)?;
+    let mut best = order(region, patch.lid_normal);
+    if best >= 0.0 {
+        return Ok(restored);
+    }
+    let mut simpler = Vec::new();
+    if restored.sharpness > 0.0 {
+        let mut smooth = start.clone();
+        let options = FillHolesOptions { shape: PatchShape::Smooth, ..options.clone() };
+        restore(&mut smooth, &options, progress, watch)?;
+        simpler.push(smooth);
+    }
+    simpler.push(start);
+    for other in simpler {
+        let order = order(&other, patch.lid_normal);
+        if order > best {
+            best = order;
+            *region = other;
+            restored = Restored { status: restored.status, ..Restored::smooth() };
+        }
+        if best >= 0.0 {
+            break;
+        }
+    }
+    watch(region, 1.0, restored.iterations, None);
+    Ok(restored)
+}
+
+/// By how much the worst bend of the patch, or its face that looks inwards most, is within the limits; negative if not.
+fn order(region: &Region, lid: Option<Point>) -> f64 {
+    let bend = worst_bend_of(&region.mesh, region.patch_faces().map(|(f, _)| f));
+    let looks = |(f, _): (u32, [u32; 3])| {
+        let area = region.mesh.area_vector(f);
+        lid.map_or(1.0, |lid| if norm(area) > 0.0 { dot(area, lid) / norm(area) } else { 1.0 })
+    };
+    let least = region.patch_faces().map(looks).fold(1.0, f64::min);
+    (bend - FOLD_COSINE).min(least - INWARDS)
+}
