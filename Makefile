@@ -3,7 +3,7 @@ PYTHON ?= python3
 RUN = @$(PYTHON) scripts/setup_env.py
 
 .PHONY: help demo test test-all-blenders lint workflows notices advisories bench bench-holes bench-segments \
-	bench-memory bench-limits bench-growth bench-latency fuzz extension wheel release sizes docs fixtures pictures gallery
+	bench-memory bench-limits bench-growth bench-latency bench-files fuzz fuzz-sequences extension wheel release sizes docs fixtures pictures gallery
 
 help:
 	@echo "make demo        stylize a real scan in Blender, without a window: out/demo.png, out/demo.blend"
@@ -21,7 +21,9 @@ help:
 	@echo "make bench-limits  every call under caps on memory: docs/reliability.md"
 	@echo "make bench-growth  how time grows with what a file has many of: docs/reliability.md"
 	@echo "make bench-latency   how soon every tool hears a wish to stop: docs/reliability.md"
-	@echo "make fuzz        random calls of wheel and core for MINUTES=10"
+	@echo "make bench-files     every format when writing fails: docs/reliability.md"
+	@echo "make fuzz        random calls of wheel and core, sequences in Blender, for MINUTES=10"
+	@echo "make fuzz-sequences  sequences in Blender alone: docs/reliability.md"
 	@echo "make wheel       build the Python wheel"
 	@echo "make extension   build and check the Blender extension: .ridgeform/extension/"
 	@echo "                 WHEELS=folder: with wheels built elsewhere, for other platforms too"
@@ -71,6 +73,12 @@ bench-memory bench-limits bench-growth: wheel
 bench-latency:
 	$(RUN) scripts/build_wheel.py
 	PYTHONPATH=.ridgeform/wheel-site:tests .ridgeform/py311/bin/python benchmarks/latency.py $(ARGS)
+
+bench-files:
+	$(RUN) benchmarks/faulty_files.py
+
+fuzz-sequences:
+	$(RUN) scripts/fuzz_sequences.py $(or $(MINUTES),10) --write
 
 fuzz:
 	$(RUN) scripts/fuzz.py $(or $(MINUTES),10)

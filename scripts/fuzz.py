@@ -1,10 +1,10 @@
-"""Fuzz the wheel and the core: random calls for some minutes, and what holds of every answer.
+"""Fuzz the wheel, the core, and the add-on: random calls and sequences for some minutes, and what holds then.
 
-    python scripts/setup_env.py scripts/fuzz.py MINUTES [core | wheel]
+    python scripts/setup_env.py scripts/fuzz.py MINUTES [core | wheel | blender]
 
 The kept seeds come first, then ones that no run had before. A fault of the wheel is shown as small as can be
 and its seed is added to `tests/fuzz/seeds.txt`; seeds of the core are shown, for
-`rust/core/tests/fuzz_seeds.txt`. The tests run what is kept there.
+`rust/core/tests/fuzz_seeds.txt`. The tests run what is kept there. For Blender see `fuzz_sequences.py`.
 """
 
 import collections
@@ -15,6 +15,7 @@ import sys
 import time
 
 from build_wheel import build_wheel
+from fuzz_sequences import sequences
 from setup_env import environments
 from workspace import ROOT, WHEEL_SITE
 
@@ -72,15 +73,17 @@ def core(minutes: float) -> int:
 
 
 def main(arguments: list[str]) -> None:
-    """Half of the time for each, or all for one."""
+    """The time in equal shares, or all for one."""
     minutes = float(arguments[0]) if arguments else 1.0
-    parts = arguments[1:] or ["wheel", "core"]
+    parts = arguments[1:] or ["wheel", "core", "blender"]
     faults = 0
     if "wheel" in parts:
         build_wheel()
         faults += wheel(next(iter(environments().values())), minutes / len(parts))
     if "core" in parts:
         faults += core(minutes / len(parts))
+    if "blender" in parts:
+        faults += sequences(minutes / len(parts))
     sys.exit(1 if faults else 0)
 
 

@@ -1,12 +1,13 @@
 """Random sequences of operators, modes, undo, and edits in Blender, for some minutes.
 
-    python scripts/setup_env.py scripts/fuzz_sequences.py MINUTES [SEED]
+    python scripts/setup_env.py scripts/fuzz_sequences.py MINUTES [SEED] [--write]
 
 Each batch is a process of its own with a seed of its own, from SEED on (by default one that no run had
 before), in every Blender here in turn. What a batch that fails printed, and the steps that led there, stay in
 `out/fuzz/`.
 """
 
+import argparse
 import collections
 import json
 import os
@@ -16,12 +17,15 @@ import time
 from pathlib import Path
 
 from build_extension import build_extension, extension_here
+from reliability_page import write_section
 from setup_env import PYTHONS, environments
 from workspace import OUT, ROOT
 
 RESULTS = OUT / "fuzz"
 BATCH = 50
 """Sequences in a process: about a minute."""
+KINDS = ("sequences", "steps", "operators", "runs", "finished", "changes", "undos")
+"""What is counted: finished are operators and runs with a result, changes those by another hand."""
 PATIENCE = 1800
 """Seconds after which a batch hangs."""
 
@@ -61,30 +65,43 @@ def batch(python: Path, extension: Path, seed: int, stem: Path) -> tuple[dict[st
     return done, ""
 
 
-def sequences(minutes: float, seed: int | None = None) -> int:
-    """Batches until the time is over; the number of faults."""
+def sequences(minutes: float, seed: int | None = None, write: bool = False) -> int:
+    """Batches until the time is over; the number of faults. `write` puts the counts into the docs."""
     RESULTS.mkdir(parents=True, exist_ok=True)
     extension = extension_here(build_extension())
-    found = environments()
     # Seconds since 1970, so that no run repeats another one's seeds.
     seed = int(time.time()) if seed is None else seed
     end = time.monotonic() + 60 * minutes
-    total: dict[str, collections.Counter[str]] = {version: collections.Counter() for version in found}
-    faults = 0
+    total = {version: collections.Counter() for version in environments()}
+    faults = collections.Counter()
     while time.monotonic() < end:
-        for version, python in found.items():
+        for version, python in environments().items():
             done, fault = batch(python, extension, seed, RESULTS / f"sequences-{version}-{seed}")
             total[version].update(done)
+            faults[version] += bool(fault)
             if fault:
-                faults += 1
                 print(f"Blender {PYTHONS[version]}, seed {seed}: {fault}", flush=True)
         seed += 1
+    text = table(total, faults)
+    print(text, flush=True)
+    if write:
+        write_section("sequences", text)
+    return faults.total()
+
+
+def table(total: dict[str, collections.Counter[str]], faults: collections.Counter[str]) -> str:
+    """How much was done in each Blender, as Markdown."""
+    rows = [f"| Blender | {' | '.join(KINDS)} | faults |", "|---" * (len(KINDS) + 2) + "|"]
     for version, counts in total.items():
-        print(f"sequences in Blender {PYTHONS[version]}: {dict(counts)}", flush=True)
-    print(f"sequences: {faults} faults", flush=True)
-    return faults
+        cells = " | ".join(f"{counts[kind]:,}" for kind in KINDS)
+        rows.append(f"| {PYTHONS[version]} | {cells} | {faults[version]} |")
+    return "\n".join(rows)
 
 
 if __name__ == "__main__":
-    words = sys.argv[1:]
-    sys.exit(1 if sequences(float(words[0]), *map(int, words[1:])) else 0)
+    parser = argparse.ArgumentParser(description="Random sequences in Blender for some minutes.")
+    parser.add_argument("minutes", type=float)
+    parser.add_argument("seed", type=int, nargs="?")
+    parser.add_argument("--write", action="store_true", help="put the counts into docs/reliability.md")
+    options = parser.parse_args()
+    sys.exit(1 if sequences(options.minutes, options.seed, options.write) else 0)

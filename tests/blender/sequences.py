@@ -99,6 +99,8 @@ class Sequences(RuleBasedStateMachine):
         super().__init__()
         self.session, self.at_start = None, None
         self.steps, self.place = [], 0
+        # Changes that no undo step knows of: Blender itself crashes when one is undone across them.
+        self.is_ahead = False
 
     @initialize(kind=st.sampled_from(list(KINDS)))
     def begin(self, kind):
@@ -232,6 +234,7 @@ class Sequences(RuleBasedStateMachine):
         if self.session is not None and change is not None and meshes():
             self.at_start = None
             self._change(change, index)
+            self.is_ahead = True
         if self.session is not None:
             self.send(key)
         if self.session is not None:
@@ -249,10 +252,11 @@ class Sequences(RuleBasedStateMachine):
         """Undo or redo, and compare every bit."""
         note("undo", forth)
         target = self.place + (1 if forth else -1)
-        if bpy.context.mode != "OBJECT" or not 0 <= target < len(self.steps):
+        if self.is_ahead or bpy.context.mode != "OBJECT" or not 0 <= target < len(self.steps):
             return
         counts["undos"] += 1
         bpy.ops.ed.redo() if forth else bpy.ops.ed.undo()
+        bpy.context.view_layer.update()
         self.place = target
         self.at_start = None
         assert everything() == self.steps[target], "redo" if forth else "undo"
@@ -302,13 +306,15 @@ class Sequences(RuleBasedStateMachine):
             bpy.ops.ed.undo_push(message=str(self.place))
             self.steps = [*self.steps[: self.place + 1], everything()]
             self.place = len(self.steps) - 1
+            self.is_ahead = False
         if self.session is not None:
             self.at_start = None
+            self.is_ahead = True
 
     def _restart(self):
         self.at_start = None
         bpy.ops.ed.undo_push(message="start")
-        self.steps, self.place = [everything()], 0
+        self.steps, self.place, self.is_ahead = [everything()], 0, False
 
     def _end(self):
         self.session.check_ended()
