@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[2]
 REFUSED = {
     "sys.path": "changes the module search path",
     "sys.modules": "reaches into loaded modules",
-    "urllib": "goes to the network",
+    "urllib.request": "goes to the network",
     # Not the bare word: nodes have sockets too.
     "import socket": "goes to the network",
     "from socket": "goes to the network",

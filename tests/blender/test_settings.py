@@ -1,6 +1,7 @@
 """A setting is declared once: its property, row, preset entry, flag and the manual's words agree."""
 
 import json
+import math
 import os
 import re
 import shutil
@@ -65,6 +66,22 @@ def test_the_panels_have_the_sections(tool):
     assert parts == set(rows.sections_of(tool.settings))
 
 
+def given(word, setting):
+    """What to write after a flag, and what that sets: not the default, unless that is 1."""
+    if word in setting.switches:
+        return [], setting.switches[word]
+    if setting.items:
+        identifier = setting.items[-1][0]
+        words = identifier if identifier.islower() else identifier.lower().replace("_", "-")
+        return [words], {identifier} if isinstance(setting.default, set) else identifier
+    if isinstance(setting.default, bool):
+        return [], not setting.default
+    if isinstance(setting.default, str):
+        return ["Mine"], "Mine"
+    is_angle = setting.keywords.get("subtype") == "ANGLE"
+    return ["1"], pytest.approx(math.radians(1.0) if is_angle else 1)
+
+
 @every_tool
 def test_every_value_of_a_setting_can_be_given_on_the_command_line(tool):
     """But those that only say what a window shows."""
@@ -72,17 +89,11 @@ def test_every_value_of_a_setting_can_be_given_on_the_command_line(tool):
     for name, setting in tool.settings.declared.items():
         words = flags.flags_of(name, setting)
         assert words or name in silent, name
+        assert settings_of(tool.command)[name] == setting.default
         for word in words:
-            assert settings_of(tool.command)[name] == setting.default
-            value = {"BoolProperty": [], "StringProperty": ["Mine"]}.get(setting.make.__name__)
-            if word in setting.switches:
-                value = []
-            elif setting.items:
-                value = [flags._word(setting.items[-1][0])]
-            elif value is None:
-                value = ["1"]
+            value, expected = given(word, setting)
             got = settings_of(tool.command, word, *value)
-            assert got[name] != setting.default or setting.items or setting.default == 1
+            assert got[name] == expected
             for other, implied in setting.implies.items():
                 assert got[other] == implied
 
