@@ -36,7 +36,8 @@ pub fn on<T: Send>(n: usize, work: impl FnOnce() -> Result<T> + Send) -> Result<
 }
 
 /// The threads that run at once on this machine, as far as this process may use it.
-fn available() -> usize {
+#[must_use]
+pub fn available() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 

@@ -45,7 +45,8 @@ pub fn share_of_free(needed: usize) -> usize {
 /// # Errors
 /// [`Error::Memory`].
 pub fn floor(what: &'static str) -> Result<()> {
-    let needed = FLOOR + THREAD * (1 + rayon::current_num_threads());
+    // Not asked of the pool of threads: asking starts it, and panics where the system gives no thread.
+    let needed = FLOOR + THREAD * (1 + crate::threads::available());
     if is_granted(needed) {
         return Ok(());
     }
