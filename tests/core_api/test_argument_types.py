@@ -13,6 +13,9 @@ N, M = MESH.n_vertices, MESH.n_faces
 # A valid value of every argument without a default.
 VALID = {
     "mesh": MESH,
+    "tool": "stylize",
+    "vertices": MESH.vertices,
+    "faces": MESH.faces,
     "values": np.ones(N),
     "indices": [0, 1],
     "fidelity": 1.0,
