@@ -2,6 +2,7 @@
 //!
 //! Read in this order: [`mesh`] → [`operators`] → [`linear`] → [`solve`] → [`tools`].
 pub mod block_rows;
+mod buckets;
 pub mod error;
 pub mod hole_filling;
 pub mod intrinsic;
@@ -10,6 +11,8 @@ pub mod memory;
 pub mod mesh;
 pub mod operators;
 pub mod progress;
+#[doc(hidden)]
+pub mod random;
 pub mod remesh;
 #[doc(hidden)]
 pub mod shapes;

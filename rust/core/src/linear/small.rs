@@ -33,43 +33,87 @@ impl DenseCholesky {
     }
 }
 
-/// The eigenvalues of a small symmetric matrix, ascending, and its eigenvectors: Jacobi's rotations, which give the same bits
-/// on any number of threads.
+/// The eigenvalues of a small symmetric matrix, ascending, and its eigenvectors.
 #[must_use]
 pub fn symmetric_eigen(mut a: Vec<Vec<f64>>) -> (Vec<f64>, Vec<Vec<f64>>) {
     let n = a.len();
     let mut vectors: Vec<Vec<f64>> = (0..n).map(|j| (0..n).map(|i| f64::from(u8::from(i == j))).collect()).collect();
+    diagonalize(&mut a, &mut vectors);
+    let mut pairs: Vec<(f64, Vec<f64>)> = vectors.into_iter().enumerate().map(|(j, v)| (a[j][j], v)).collect();
+    pairs.sort_by(|x, y| x.0.total_cmp(&y.0));
+    pairs.into_iter().unzip()
+}
+
+/// The eigenvalues of a symmetric 3 × 3 matrix, in no order, each with its unit eigenvector.
+#[must_use]
+pub fn eigen3(mut a: [[f64; 3]; 3]) -> [(f64, [f64; 3]); 3] {
+    let mut vectors = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    diagonalize(&mut a, &mut vectors);
+    [0, 1, 2].map(|j| (a[j][j], vectors[j]))
+}
+
+/// Jacobi's rotations, which give the same bits on any number of threads: `a` becomes diagonal, `vectors` one a row.
+fn diagonalize<R: AsMut<[f64]> + AsRef<[f64]>>(a: &mut [R], vectors: &mut [R]) {
+    let n = a.len();
+    let turn = |c: f64, s: f64, x: &mut f64, y: &mut f64| (*x, *y) = (c * *x - s * *y, s * *x + c * *y);
+    let turn_rows = |c: f64, s: f64, rows: &mut [R], p: usize, q: usize| {
+        let (upper, lower) = rows.split_at_mut(q);
+        upper[p].as_mut().iter_mut().zip(lower[0].as_mut()).for_each(|(x, y)| turn(c, s, x, y));
+    };
     // Convergence is quadratic: some ten sweeps at most.
     for _ in 0..30 {
-        let off: f64 = (0..n).map(|i| (0..i).map(|j| a[i][j] * a[i][j]).sum::<f64>()).sum();
-        let whole: f64 = a.iter().flatten().map(|x| x * x).sum();
+        let off: f64 = (0..n).map(|i| a[i].as_ref()[..i].iter().map(|x| x * x).sum::<f64>()).sum();
+        let whole: f64 = a.iter().flat_map(|row| row.as_ref()).map(|x| x * x).sum();
         if off <= 1e-32 * whole {
             break;
         }
         for p in 0..n {
             for q in p + 1..n {
-                if a[p][q] == 0.0 {
+                let beside = a[p].as_ref()[q];
+                if beside == 0.0 {
                     continue;
                 }
-                let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
+                let theta = (a[q].as_ref()[q] - a[p].as_ref()[p]) / (2.0 * beside);
                 let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
                 let c = 1.0 / t.hypot(1.0);
                 let s = c * t;
-                for row in &mut a {
-                    (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
+                for row in a.iter_mut() {
+                    let (left, right) = row.as_mut().split_at_mut(q);
+                    turn(c, s, &mut left[p], &mut right[0]);
                 }
-                let (upper, lower) = a.split_at_mut(q);
-                let pairs = upper[p].iter_mut().zip(&mut lower[0]);
-                pairs.for_each(|(x, y)| (*x, *y) = (c * *x - s * *y, s * *x + c * *y));
-                let (left, right) = vectors.split_at_mut(q);
-                let pairs = left[p].iter_mut().zip(&mut right[0]);
-                pairs.for_each(|(x, y)| (*x, *y) = (c * *x - s * *y, s * *x + c * *y));
+                turn_rows(c, s, a, p, q);
+                turn_rows(c, s, vectors, p, q);
             }
         }
     }
-    let mut pairs: Vec<(f64, Vec<f64>)> = vectors.into_iter().enumerate().map(|(j, v)| (a[j][j], v)).collect();
-    pairs.sort_by(|x, y| x.0.total_cmp(&y.0));
-    pairs.into_iter().unzip()
+}
+
+/// Planes that a point is to lie on, as least squares: the quadric of Garland and Heckbert 1997.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Quadric {
+    matrix: [[f64; 3]; 3],
+    right: [f64; 3],
+}
+
+impl Quadric {
+    /// Adds a plane by its unit `normal` and its signed distance `offset` from the origin along that.
+    pub fn add(&mut self, weight: f64, normal: [f64; 3], offset: f64) {
+        for i in 0..3 {
+            self.right[i] += weight * offset * normal[i];
+            (0..3).for_each(|j| self.matrix[i][j] += weight * normal[i] * normal[j]);
+        }
+    }
+
+    /// The directions that the planes determine, with how far the best point is along each: what the pseudo-inverse keeps,
+    /// eigenvalues above `drop` times the largest.
+    #[must_use]
+    pub fn determined(&self, drop: f64) -> Vec<([f64; 3], f64)> {
+        let pairs = eigen3(self.matrix);
+        let largest = pairs.iter().fold(0.0, |most: f64, pair| most.max(pair.0));
+        let along = |vector: [f64; 3]| (0..3).map(|i| vector[i] * self.right[i]).sum::<f64>();
+        let kept = pairs.into_iter().filter(|(value, _)| *value > drop * largest);
+        kept.map(|(value, vector)| (vector, along(vector) / value)).collect()
+    }
 }
 
 #[cfg(test)]
@@ -91,6 +135,28 @@ mod tests {
         for (value, v) in values.iter().zip(&vectors) {
             for (row, x) in a.iter().zip(v) {
                 assert!((dot(row, v) - value * x).abs() < 1e-14);
+            }
+        }
+    }
+
+    #[test]
+    fn eigenvectors_are_orthonormal_and_rebuild_the_matrix() {
+        let matrices = [
+            [[2.0, -1.0, 0.5], [-1.0, 3.0, 0.25], [0.5, 0.25, 1.0]],
+            [[1.0, 1.0, 1.0], [1.0, 1.0, 1.0], [1.0, 1.0, 1.0]],
+            [[0.0; 3]; 3],
+            [[1e-20, 0.0, 0.0], [0.0, 1e20, 1e5], [0.0, 1e5, 1.0]],
+        ];
+        for matrix in matrices {
+            let (values, vectors): (Vec<f64>, Vec<[f64; 3]>) = eigen3(matrix).into_iter().unzip();
+            let size = matrix.iter().flatten().fold(0.0, |a: f64, x| a.max(x.abs()));
+            for i in 0..3 {
+                for j in 0..3 {
+                    let identity = if i == j { 1.0 } else { 0.0 };
+                    assert!((dot(&vectors[i], &vectors[j]) - identity).abs() < 1e-12);
+                    let rebuilt: f64 = (0..3).map(|k| values[k] * vectors[k][i] * vectors[k][j]).sum();
+                    assert!((rebuilt - matrix[i][j]).abs() <= 1e-12 * size, "{matrix:?}");
+                }
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Halfedge connectivity of a triangle list, for any input: what is not manifold gets no twin and is told apart.
 
+use crate::buckets::Buckets;
 use crate::error::MeshError;
 
 /// No halfedge.
@@ -83,32 +84,17 @@ impl Connectivity {
 
     /// Finds the halfedges of every edge: bucketed by the edge's smaller vertex, then sorted by its larger one.
     fn match_halfedges(&mut self) {
-        let mut starts = vec![0_u32; self.n_vertices + 1];
         let sound = |f: &[u32; 3]| f[0] != f[1] && f[1] != f[2] && f[2] != f[0];
-        let edge = |f: &[u32; 3], i: usize| {
-            let (tail, head) = (f[(i + 1) % 3], f[(i + 2) % 3]);
-            (tail.min(head), tail.max(head))
-        };
-        for corners in self.faces.iter().filter(|f| sound(f)) {
-            for i in 0..3 {
-                starts[edge(corners, i).0 as usize + 1] += 1;
+        let mut at_smaller = Buckets::new(self.n_vertices, |visit| {
+            for (f, corners) in (0_u32..).zip(&self.faces).filter(|(_, f)| sound(f)) {
+                for i in 0..3 {
+                    let (tail, head) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
+                    visit(tail.min(head) as usize, (tail.max(head), 3 * f + i as u32));
+                }
             }
-        }
+        });
         for v in 0..self.n_vertices {
-            starts[v + 1] += starts[v];
-        }
-        let mut fill = starts.clone();
-        let mut entries = vec![(0_u32, 0_u32); starts[self.n_vertices] as usize];
-        for (f, corners) in (0_u32..).zip(&self.faces).filter(|(_, f)| sound(f)) {
-            for i in 0..3 {
-                let (low, high) = edge(corners, i);
-                let slot = &mut fill[low as usize];
-                entries[*slot as usize] = (high, 3 * f + i as u32);
-                *slot += 1;
-            }
-        }
-        for v in 0..self.n_vertices {
-            let bucket = &mut entries[starts[v] as usize..starts[v + 1] as usize];
+            let bucket = at_smaller.of_mut(v);
             bucket.sort_unstable();
             for group in bucket.chunk_by(|a, b| a.0 == b.0) {
                 self.set_edge(group);

@@ -1,6 +1,6 @@
 //! Sets that can be united.
 
-/// A partition of `0..n` into sets; the root of a set is its least element (Tarjan 1975, with path halving).
+/// A partition of `0..n` into sets; the root of a set is its least element, unless [`Partition::attach`] chose another (Tarjan 1975, with path halving).
 #[derive(Debug, Clone)]
 pub(crate) struct Partition(Vec<u32>);
 
@@ -18,6 +18,11 @@ impl Partition {
             x = self.0[x as usize];
         }
         x
+    }
+
+    /// Puts the set with the root `gone` under the root `kept`, which stays one although it may not be the least element.
+    pub(crate) fn attach(&mut self, gone: u32, kept: u32) {
+        self.0[gone as usize] = kept;
     }
 
     /// Makes one set of those of `a` and `b`.

@@ -1,6 +1,7 @@
 //! The cotangent Laplacian, and the energy of its square.
 
 use crate::block_rows::BlockRows;
+use crate::buckets::Buckets;
 use crate::mesh::{triangle, Connectivity};
 use crate::operators::voronoi_mass;
 
@@ -11,31 +12,27 @@ use crate::operators::voronoi_mass;
 #[must_use]
 pub fn cotangent_laplacian(connectivity: &Connectivity, lengths: &[[f64; 3]]) -> sprs::CsMat<f64> {
     let n = connectivity.n_vertices();
-    let mut starts = vec![0_usize; n + 1];
-    for h in 0..connectivity.n_halfedges() {
-        starts[connectivity.tail(h) as usize + 1] += 1;
-        starts[connectivity.head(h) as usize + 1] += 1;
-    }
-    for v in 0..n {
-        starts[v + 1] += starts[v];
-    }
-    let mut fill = starts.clone();
-    let mut neighbours = vec![(0_u32, 0.0); starts[n]];
-    for (f, &l) in lengths.iter().enumerate() {
-        let weights = if triangle::is_degenerate(l) { [0.0; 3] } else { triangle::cotangents(l).map(|c| 0.5 * c) };
-        for (i, weight) in weights.into_iter().enumerate() {
-            let (tail, head) = (connectivity.tail(3 * f + i), connectivity.head(3 * f + i));
-            for (row, column) in [(tail, head), (head, tail)] {
-                neighbours[fill[row as usize]] = (column, weight);
-                fill[row as usize] += 1;
-            }
+    let halves = |&l: &[f64; 3]| {
+        if triangle::is_degenerate(l) {
+            [0.0; 3]
+        } else {
+            triangle::cotangents(l).map(|c| 0.5 * c)
         }
-    }
+    };
+    let weights: Vec<[f64; 3]> = lengths.iter().map(halves).collect();
+    let mut neighbours = Buckets::new(n, |visit| {
+        for (h, &weight) in weights.as_flattened().iter().enumerate() {
+            let (tail, head) = (connectivity.tail(h), connectivity.head(h));
+            visit(tail as usize, (head, weight));
+            visit(head as usize, (tail, weight));
+        }
+    });
     let mut indptr = Vec::with_capacity(n + 1);
-    let (mut indices, mut data) = (Vec::with_capacity(starts[n] / 2 + n), Vec::with_capacity(starts[n] / 2 + n));
+    let (mut indices, mut data) =
+        (Vec::with_capacity(neighbours.len() / 2 + n), Vec::with_capacity(neighbours.len() / 2 + n));
     indptr.push(0);
     for v in 0..n {
-        let row = &mut neighbours[starts[v]..starts[v + 1]];
+        let row = neighbours.of_mut(v);
         // Stable, so that both rows of an edge add its weights in the same order: symmetric to the last bit.
         row.sort_by_key(|&(column, _)| column);
         let diagonal: f64 = row.iter().filter(|&&(column, _)| column as usize != v).map(|(_, weight)| weight).sum();

@@ -4,6 +4,7 @@
 //! vertices of the boundary out is what makes the natural boundary conditions.
 
 use crate::block_rows::{BlockRows, BLOCK};
+use crate::buckets::Buckets;
 use crate::error::MeshError;
 use crate::mesh::Mesh;
 use crate::operators::hinge::usable_areas;
@@ -58,21 +59,11 @@ fn rings(mesh: &Mesh) -> Result<Vec<(u32, Ring)>, MeshError> {
     let connectivity = mesh.connectivity();
     let areas = usable_areas(mesh.edge_lengths());
     let boundary = is_boundary(connectivity, &areas);
-    let mut starts = vec![0_usize; connectivity.n_vertices() + 1];
-    for &corner in connectivity.faces().iter().flatten() {
-        starts[corner as usize + 1] += 1;
-    }
-    for v in 0..connectivity.n_vertices() {
-        starts[v + 1] += starts[v];
-    }
-    let mut fill = starts.clone();
-    let mut corners = vec![(0_usize, 0_usize); starts[connectivity.n_vertices()]];
-    for (f, face) in connectivity.faces().iter().enumerate() {
-        for (c, &v) in face.iter().enumerate() {
-            corners[fill[v as usize]] = (f, c);
-            fill[v as usize] += 1;
+    let corners = Buckets::new(connectivity.n_vertices(), |visit| {
+        for (f, face) in connectivity.faces().iter().enumerate() {
+            face.iter().enumerate().for_each(|(c, &v)| visit(v as usize, (f, c)));
         }
-    }
+    });
     let gradients: Vec<[[f64; 3]; 3]> = connectivity
         .faces()
         .iter()
@@ -83,7 +74,7 @@ fn rings(mesh: &Mesh) -> Result<Vec<(u32, Ring)>, MeshError> {
         .collect();
     let ring = |v: usize| -> Ring {
         let mut ring: Ring = Vec::new();
-        for &(f, c) in &corners[starts[v]..starts[v + 1]] {
+        for &(f, c) in corners.of(v) {
             for (&w, gradient) in connectivity.faces()[f].iter().zip(&gradients[f]) {
                 let entry = gradients[f][c].map(|x| gradient.map(|y| areas[f] * x * y));
                 match ring.iter_mut().find(|(other, _)| *other == w) {
@@ -96,7 +87,7 @@ fn rings(mesh: &Mesh) -> Result<Vec<(u32, Ring)>, MeshError> {
         }
         ring
     };
-    let inner = |v: &usize| !boundary[*v] && corners[starts[*v]..starts[*v + 1]].iter().any(|&(f, _)| areas[f] > 0.0);
+    let inner = |v: &usize| !boundary[*v] && corners.of(*v).iter().any(|&(f, _)| areas[f] > 0.0);
     Ok((0..connectivity.n_vertices()).filter(inner).map(|v| (v as u32, ring(v))).collect())
 }
 

@@ -1,6 +1,7 @@
 //! `HᵀRH + D` for a block operator `H`, a scalar `R` per block and a diagonal `D`, on a pattern found once.
 
 use crate::block_rows::{BlockRows, BLOCK};
+use crate::buckets::Buckets;
 use crate::linear::pattern::LowerPattern;
 use crate::solve::primal_dual::Stiffness;
 
@@ -17,37 +18,20 @@ impl NormalMatrix {
     #[must_use]
     pub fn new(operator: &BlockRows) -> Self {
         let n = operator.n_columns;
-        let mut counts = vec![1usize; n];
-        let pairs = |visit: &mut dyn FnMut(usize, usize)| {
+        let mut gathered = Buckets::new(n, |visit| {
+            (0..n).for_each(|j| visit(j, j as u32));
             for b in 0..operator.n_blocks() {
-                let columns = &operator.columns[operator.starts[b]..operator.starts[b + 1]];
+                let (columns, _) = operator.block(b);
                 for (i, &row) in columns.iter().enumerate() {
-                    for &column in &columns[..i] {
-                        visit(row as usize, column as usize);
-                    }
+                    columns[..i].iter().for_each(|&column| visit(column as usize, row));
                 }
             }
-        };
-        pairs(&mut |_, column| counts[column] += 1);
-        let mut begin = vec![0usize; n + 1];
-        for j in 0..n {
-            begin[j + 1] = begin[j] + counts[j];
-        }
-        let mut gathered = vec![0u32; begin[n]];
-        let mut fill: Vec<usize> = begin[..n].to_vec();
-        for j in 0..n {
-            gathered[fill[j]] = j as u32;
-            fill[j] += 1;
-        }
-        pairs(&mut |row, column| {
-            gathered[fill[column]] = row as u32;
-            fill[column] += 1;
         });
         let mut starts = Vec::with_capacity(n + 1);
         let mut rows: Vec<usize> = Vec::new();
         starts.push(0);
         for j in 0..n {
-            let column = &mut gathered[begin[j]..begin[j + 1]];
+            let column = gathered.of_mut(j);
             column.sort_unstable();
             let first = rows.len();
             for &row in column.iter() {

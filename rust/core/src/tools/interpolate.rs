@@ -2,6 +2,7 @@
 
 use super::scalar::{ScalarOptions, ScalarProblem};
 use crate::linear::Columns;
+use crate::mesh::partition::Partition;
 use crate::mesh::{Connectivity, Mesh};
 use crate::progress::Progress;
 use crate::solve::Solution;
@@ -58,29 +59,17 @@ pub fn interpolate(
 
 /// Refuses a connected part with faces but without a known vertex: nothing would determine its values.
 fn refuse_unknown_component(connectivity: &Connectivity, known: &[bool]) -> Result<()> {
-    let mut parent: Vec<u32> = (0..connectivity.n_vertices() as u32).collect();
-    fn root(parent: &mut [u32], mut v: u32) -> u32 {
-        while parent[v as usize] != v {
-            parent[v as usize] = parent[parent[v as usize] as usize];
-            v = parent[v as usize];
-        }
-        v
-    }
+    let mut parts = Partition::new(connectivity.n_vertices());
     for &[a, b, c] in connectivity.faces() {
-        let r = root(&mut parent, a);
-        for v in [b, c] {
-            let s = root(&mut parent, v);
-            parent[s as usize] = r;
-        }
+        parts.unite(a, b);
+        parts.unite(a, c);
     }
-    let mut has_value = vec![false; parent.len()];
+    let mut has_value = vec![false; connectivity.n_vertices()];
     for (v, _) in known.iter().enumerate().filter(|(_, known)| **known) {
-        let r = root(&mut parent, v as u32);
-        has_value[r as usize] = true;
+        has_value[parts.root(v as u32) as usize] = true;
     }
     for (f, &[a, _, _]) in connectivity.faces().iter().enumerate() {
-        let r = root(&mut parent, a);
-        if !has_value[r as usize] {
+        if !has_value[parts.root(a) as usize] {
             return Err(Error::argument(
                 "indices",
                 format!("gives no value on the connected part of the mesh with face {f}; give at least one there"),

@@ -1,6 +1,7 @@
 //! The tree of the fronts, and where everything goes in them: found once per pattern.
 
 use super::dense::{update_len, Padded};
+use crate::buckets::Buckets;
 use crate::error::SolveError;
 use crate::linear::pattern::LowerPattern;
 use crate::linear::triangular::Panels;
@@ -21,9 +22,8 @@ const DEEPEST: u32 = 100;
 /// Who updates whom. Panels are the columns that a front eliminates, and come in postorder.
 #[derive(Debug, Clone, Default)]
 pub struct Tree {
-    /// Panel `s` has the children `first_child[s]..first_child[s + 1]` of `children`; those of no parent come last.
-    first_child: Vec<u32>,
-    children: Vec<u32>,
+    /// The children of every panel; those of no parent come last.
+    children: Buckets<u32>,
     /// The first panel of each subtree.
     pub first: Vec<u32>,
     /// Whether the subtree is split between threads at its root.
@@ -79,26 +79,15 @@ impl Tree {
     /// The children of a panel in rising order; those of the number of panels are the roots.
     #[must_use]
     pub fn children(&self, s: usize) -> &[u32] {
-        &self.children[self.first_child[s] as usize..self.first_child[s + 1] as usize]
+        self.children.of(s)
     }
 
     fn find_children(&mut self, parents: &[u32]) {
         let count = parents.len();
         let of = |parent: u32| if parent == NONE { count } else { parent as usize };
-        self.first_child = vec![0; count + 2];
-        for &parent in parents {
-            self.first_child[of(parent) + 1] += 1;
-        }
-        for s in 0..=count {
-            self.first_child[s + 1] += self.first_child[s];
-        }
-        let mut next = self.first_child.clone();
-        self.children = vec![0; count];
-        for (s, &parent) in parents.iter().enumerate() {
-            let next = &mut next[of(parent)];
-            self.children[*next as usize] = s as u32;
-            *next += 1;
-        }
+        self.children = Buckets::new(count + 1, |visit| {
+            (0..).zip(parents).for_each(|(s, &parent)| visit(of(parent), s));
+        });
     }
 
     /// Finds where subtrees are split, and on which stack every front leaves what is left.
@@ -167,27 +156,18 @@ impl Tree {
         for (k, &i) in order.iter().enumerate() {
             place[i as usize] = k as u32;
         }
-        let entries = |visit: &mut dyn FnMut(usize, u32, u32)| {
+        let count = panels.count();
+        let in_panels = Buckets::new(count, |visit| {
             for j in 0..pattern.n {
                 for e in pattern.starts[j]..pattern.starts[j + 1] {
                     let (a, b) = (place[pattern.rows[e]], place[j]);
-                    visit(e, a.max(b), a.min(b));
+                    let (row, column) = (a.max(b), a.min(b));
+                    visit(panel_of[column as usize] as usize, [e as u32, row, column]);
                 }
             }
-        };
-        let count = panels.count();
-        self.starts = vec![0; count + 1];
-        entries(&mut |_, _, column| self.starts[panel_of[column as usize] as usize + 1] += 1);
-        for s in 0..count {
-            self.starts[s + 1] += self.starts[s];
-        }
-        let mut next = self.starts.clone();
-        let mut at = vec![[0u32; 3]; self.starts[count]];
-        entries(&mut |e, row, column| {
-            let next = &mut next[panel_of[column as usize] as usize];
-            at[*next] = [e as u32, row, column];
-            *next += 1;
         });
+        let at;
+        (self.starts, at) = in_panels.into_parts();
         let mut local = vec![0u32; pattern.n];
         self.source.reserve_exact(at.len());
         self.target.reserve_exact(at.len());

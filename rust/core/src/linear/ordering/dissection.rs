@@ -3,11 +3,12 @@
 //! A small separator cuts the graph of the matrix in two, its rows come last, and each half is ordered in the same way
 //! (George 1973), down to parts that minimum degree orders as well.
 
-use super::graph::{Graph, Random};
+use super::graph::Graph;
 use super::minimum_degree::minimum_degree;
 use super::separator::{separator, SEPARATOR};
 use crate::error::SolveError;
 use crate::linear::pattern::LowerPattern;
+use crate::random::Random;
 
 /// Parts of at most so many rows are left to minimum degree: with 200 one factor entry in twenty goes, for twice the time.
 const LEAF: usize = 1000;

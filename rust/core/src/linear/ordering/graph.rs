@@ -1,6 +1,8 @@
 //! A weighted graph, its coarser versions and its parts.
 
+use crate::buckets::Buckets;
 use crate::linear::pattern::LowerPattern;
+use crate::random::Random;
 
 /// An undirected graph with weights on vertices and edges; every edge stands at both of its ends.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -22,30 +24,16 @@ impl Graph {
     /// The graph of a symmetric matrix; all weights are one.
     #[must_use]
     pub fn new(pattern: &LowerPattern) -> Self {
-        let mut starts = vec![0u32; pattern.n + 1];
-        let entries =
-            |j: usize| pattern.rows[pattern.starts[j]..pattern.starts[j + 1]].iter().filter(move |&&i| i != j);
-        for j in 0..pattern.n {
-            for &i in entries(j) {
-                starts[i + 1] += 1;
-                starts[j + 1] += 1;
+        let (starts, neighbours) = Buckets::new(pattern.n, |visit| {
+            for j in 0..pattern.n {
+                for &i in pattern.rows[pattern.starts[j]..pattern.starts[j + 1]].iter().filter(|&&i| i != j) {
+                    visit(i, j as u32);
+                    visit(j, i as u32);
+                }
             }
-        }
-        for v in 0..pattern.n {
-            starts[v + 1] += starts[v];
-        }
-        let mut place = starts.clone();
-        let mut neighbours = vec![0; starts[pattern.n] as usize];
-        let mut add = |v: usize, other: usize| {
-            neighbours[place[v] as usize] = other as u32;
-            place[v] += 1;
-        };
-        for j in 0..pattern.n {
-            for &i in entries(j) {
-                add(i, j);
-                add(j, i);
-            }
-        }
+        })
+        .into_parts();
+        let starts = starts.into_iter().map(|start| start as u32).collect();
         let edges = vec![1; neighbours.len()];
         Self { starts, neighbours, edges, weights: vec![1; pattern.n] }
     }
@@ -68,7 +56,7 @@ impl Graph {
     pub fn coarsened(&self, heaviest: u32, random: &mut Random) -> (Self, Vec<u32>) {
         let n = self.n();
         let mut mate = vec![NONE; n];
-        for v in random.order(n) {
+        for v in random.permutation(n).into_iter().map(|v| v as u32) {
             if mate[v as usize] != NONE {
                 continue;
             }
@@ -147,34 +135,5 @@ impl Graph {
             part.weights.push(self.weights[v as usize]);
         }
         (part, members)
-    }
-}
-
-/// A reproducible source of orders (xorshift; Marsaglia 2003).
-#[derive(Debug, Clone)]
-pub struct Random(u64);
-
-impl Random {
-    /// A source that depends on `seed` alone.
-    #[must_use]
-    pub fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
-    }
-
-    /// A number below `n`.
-    pub fn below(&mut self, n: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (((self.0 >> 32) * n as u64) >> 32) as usize
-    }
-
-    /// The numbers below `n` in a random order.
-    fn order(&mut self, n: usize) -> Vec<u32> {
-        let mut order: Vec<u32> = (0..n as u32).collect();
-        for i in (1..n).rev() {
-            order.swap(i, self.below(i + 1));
-        }
-        order
     }
 }

@@ -1,5 +1,6 @@
 //! Postorders of elimination trees.
 
+use crate::buckets::Buckets;
 use crate::linear::pattern::LowerPattern;
 
 /// No row.
@@ -41,29 +42,18 @@ fn parents(pattern: &LowerPattern, order: &[u32]) -> Vec<u32> {
         place[i as usize] = k as u32;
     }
     // The columns of each row of the lower triangle, in the new order.
-    let mut starts = vec![0usize; n + 1];
-    let pairs = |visit: &mut dyn FnMut(u32, u32)| {
+    let columns = Buckets::new(n, |visit| {
         for j in 0..n {
             for &i in &pattern.rows[pattern.starts[j] + 1..pattern.starts[j + 1]] {
                 let (a, b) = (place[i], place[j]);
-                visit(a.max(b), a.min(b));
+                visit(a.max(b) as usize, a.min(b));
             }
         }
-    };
-    pairs(&mut |row, _| starts[row as usize + 1] += 1);
-    for k in 0..n {
-        starts[k + 1] += starts[k];
-    }
-    let mut columns = vec![0u32; starts[n]];
-    let mut next = starts.clone();
-    pairs(&mut |row, column| {
-        columns[next[row as usize]] = column;
-        next[row as usize] += 1;
     });
     let mut parent = vec![NONE; n];
     let mut ancestor = vec![NONE; n];
     for k in 0..n {
-        for &column in &columns[starts[k]..starts[k + 1]] {
+        for &column in columns.of(k) {
             let mut i = column;
             while i != NONE && i != k as u32 {
                 let above = std::mem::replace(&mut ancestor[i as usize], k as u32);

@@ -3,7 +3,8 @@
 
 use std::collections::BinaryHeap;
 
-use crate::linear::ordering::graph::{Graph, Random};
+use crate::linear::ordering::graph::Graph;
+use crate::random::Random;
 
 /// The side that stands for the separator; the others are 0 and 1.
 pub const SEPARATOR: u8 = 2;

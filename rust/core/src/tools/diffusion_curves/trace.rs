@@ -3,11 +3,12 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
+use crate::buckets::Buckets;
 use crate::error::MeshError;
 use crate::memory::Tool;
-use crate::mesh::vector::{add, distance, dot, scale, sub, Point};
+use crate::mesh::vector::{add, distance, scale, Point};
 use crate::mesh::{Connectivity, EdgeTable, Mesh};
-use crate::remesh::closest::ClosestPoint;
+use crate::remesh::closest::{closest_on_segment, ClosestPoint};
 use crate::unit::Unit;
 use crate::{Error, Result};
 
@@ -73,8 +74,7 @@ pub fn trace_curves(mesh: &Mesh, curves: &[(Vec<Point>, bool)]) -> Result<Vec<Tr
 /// The edges around every vertex, and what a search marks.
 struct Search<'a> {
     positions: &'a [Point],
-    starts: Vec<usize>,
-    neighbours: Vec<u32>,
+    neighbours: Buckets<u32>,
     mean_edge: f64,
     /// For each vertex the search that reached it, its cost, and the vertex before it.
     seen: Vec<(u32, f64, u32)>,
@@ -86,21 +86,15 @@ impl<'a> Search<'a> {
         let table = EdgeTable::new(connectivity);
         let ends = |h: usize| [connectivity.tail(h), connectivity.head(h)];
         let edges: Vec<[u32; 2]> = table.edges().filter_map(|mut edge| edge.next()).map(ends).collect();
-        let mut starts = vec![0; positions.len() + 1];
-        edges.iter().flatten().for_each(|&v| starts[v as usize + 1] += 1);
-        for v in 0..positions.len() {
-            starts[v + 1] += starts[v];
-        }
-        let (mut next, mut neighbours) = (starts.clone(), vec![0; 2 * edges.len()]);
-        for &[a, b] in &edges {
-            for (from, to) in [(a, b), (b, a)] {
-                neighbours[next[from as usize]] = to;
-                next[from as usize] += 1;
+        let neighbours = Buckets::new(positions.len(), |visit| {
+            for &[a, b] in &edges {
+                visit(a as usize, b);
+                visit(b as usize, a);
             }
-        }
+        });
         let total: f64 = edges.iter().map(|&[a, b]| distance(positions[a as usize], positions[b as usize])).sum();
         let mean_edge = (total / edges.len().max(1) as f64).max(f64::MIN_POSITIVE);
-        Self { positions, starts, neighbours, mean_edge, seen: vec![(0, 0.0, 0); positions.len()], stamp: 0 }
+        Self { positions, neighbours, mean_edge, seen: vec![(0, 0.0, 0); positions.len()], stamp: 0 }
     }
 
     /// The path over `vertices`, which stand for `points`; `first` is the row of the first point.
@@ -154,8 +148,8 @@ impl<'a> Search<'a> {
             if cost > self.seen[vertex as usize].1 {
                 continue;
             }
-            for at in self.starts[vertex as usize]..self.starts[vertex as usize + 1] {
-                let next = self.neighbours[at];
+            for k in 0..self.neighbours.of(vertex as usize).len() {
+                let next = self.neighbours.of(vertex as usize)[k];
                 let there = cost + self.cost(vertex, next, line);
                 let held = &mut self.seen[next as usize];
                 if held.0 != stamp || there < held.1 {
@@ -169,16 +163,9 @@ impl<'a> Search<'a> {
 
     fn cost(&self, a: u32, b: u32, line: [Point; 2]) -> f64 {
         let middle = scale(add(self.positions[a as usize], self.positions[b as usize]), 0.5);
-        let away = distance_to_segment(middle, line) / self.mean_edge;
+        let away = distance(middle, closest_on_segment(middle, line[0], line[1])) / self.mean_edge;
         self.length(a, b) * (1.0 + away * away)
     }
-}
-
-fn distance_to_segment(p: Point, [a, b]: [Point; 2]) -> f64 {
-    let along = sub(b, a);
-    let squared = dot(along, along);
-    let t = if squared > 0.0 { (dot(sub(p, a), along) / squared).clamp(0.0, 1.0) } else { 0.0 };
-    distance(p, add(a, scale(along, t)))
 }
 
 /// A vertex with the cost of its path; a heap takes the cheapest first.

@@ -7,6 +7,7 @@ use super::ridge_curves::third_derivatives;
 use super::surface::Surface;
 use crate::block_rows::BlockRows;
 use crate::linear::Columns;
+use crate::mesh::partition::Partition;
 use crate::mesh::vector::norm;
 use crate::mesh::Mesh;
 use crate::operators::{Dual, Energy, EnergyForm};
@@ -62,7 +63,7 @@ impl Cut {
         let surface = Surface::of(region);
         let faces = region.faces();
         // Corners of faces that are one vertex, as a forest: across every edge that is no ridge.
-        let mut parents: Vec<u32> = (0..3 * faces.len() as u32).collect();
+        let mut corners = Partition::new(3 * faces.len());
         let corner = |f: u32, v: u32| 3 * f + faces[f as usize].iter().position(|&w| w == v).unwrap_or(0) as u32;
         for [a, b] in mesh.edges() {
             let Some(wings) = mesh.wings(a, b) else { continue };
@@ -71,16 +72,15 @@ impl Cut {
                 continue;
             }
             for v in [a, b] {
-                let (x, y) = (root(&mut parents, corner(f, v)), root(&mut parents, corner(g, v)));
-                parents[x.max(y) as usize] = x.min(y);
+                corners.unite(corner(f, v), corner(g, v));
             }
         }
-        let mut number = vec![u32::MAX; parents.len()];
+        let mut number = vec![u32::MAX; 3 * faces.len()];
         let mut origin = Vec::new();
         let mut cut = faces.clone();
         for (f, face) in faces.iter().enumerate() {
             for (i, &v) in face.iter().enumerate() {
-                let r = root(&mut parents, (3 * f + i) as u32) as usize;
+                let r = corners.root((3 * f + i) as u32) as usize;
                 if number[r] == u32::MAX {
                     number[r] = origin.len() as u32;
                     origin.push(v);
@@ -90,12 +90,4 @@ impl Cut {
         }
         Self { faces: cut, origin }
     }
-}
-
-pub(super) fn root(parents: &mut [u32], mut x: u32) -> u32 {
-    while parents[x as usize] != x {
-        parents[x as usize] = parents[parents[x as usize] as usize];
-        x = parents[x as usize];
-    }
-    x
 }

@@ -4,7 +4,7 @@ use super::assign::parts_at;
 use super::constants::{DROPPED_EIGENVALUES, NEWTON_STEPS};
 use super::parts::Parts;
 use super::region::Region;
-use super::snap::eigen;
+use crate::linear::small::Quadric;
 use crate::mesh::vector::{add, area_vector, centroid, dot, norm, quality, scale, unit, Point};
 
 /// A face is turned away from its part if it looks along it by less than this (60 degrees), and in order from this quality on.
@@ -47,18 +47,13 @@ pub(super) fn meeting_point(region: &Region, parts: &Parts, labels: &[u32], v: u
 
 /// The shortest step from `p` onto the tangent planes of some parts.
 fn step(parts: &Parts, own: &[u32], p: Point) -> Point {
-    let (mut quadric, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
+    let mut quadric = Quadric::default();
     for &part in own {
         let (off, normal) = parts.models[part as usize].at(p);
-        for i in 0..3 {
-            right[i] -= off * normal[i];
-            (0..3).for_each(|j| quadric[i][j] += normal[i] * normal[j]);
-        }
+        quadric.add(1.0, normal, -off);
     }
-    let (values, vectors) = eigen(quadric);
-    let largest = values.iter().fold(0.0, |a: f64, &x| a.max(x));
-    let kept = values.into_iter().zip(vectors).filter(|(value, _)| *value > DROPPED_EIGENVALUES * largest);
-    kept.fold([0.0; 3], |sum, (value, vector)| add(sum, scale(vector, dot(vector, right) / value)))
+    let kept = quadric.determined(DROPPED_EIGENVALUES).into_iter();
+    kept.fold([0.0; 3], |sum, (vector, along)| add(sum, scale(vector, along)))
 }
 
 /// Whether all faces lie on their part, and are in order.

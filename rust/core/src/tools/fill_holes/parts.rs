@@ -1,10 +1,10 @@
 //! The smooth parts that the surface around a hole falls into along its ridges, each with the surface that it goes on as.
 
 use super::constants::{NEAR_PART, PART_WIDTH, WORST_FIT};
-use super::fair::root;
 use super::model::Model;
 use super::region::Region;
 use super::surface::Surface;
+use crate::mesh::partition::Partition;
 use crate::mesh::vector::{add, norm, scale, unit, Point};
 
 /// No part.
@@ -26,7 +26,7 @@ impl Parts {
         let surface = Surface::of(region);
         let mut on_rim = vec![false; mesh.n_vertices()];
         region.patch_faces().for_each(|(_, face)| face.into_iter().for_each(|v| on_rim[v as usize] = true));
-        let mut roots: Vec<u32> = (0..region.n_outer as u32).collect();
+        let mut pieces = Partition::new(region.n_outer);
         let mut ridges = Vec::new();
         let mut seeds = Vec::new();
         for [a, b] in mesh.edges() {
@@ -41,13 +41,10 @@ impl Parts {
                         ridges.push([f, g]);
                     }
                 }
-                [false, false] => {
-                    let (x, y) = (root(&mut roots, f), root(&mut roots, g));
-                    roots[x.max(y) as usize] = x.min(y);
-                }
+                [false, false] => pieces.unite(f, g),
             }
         }
-        let roots: Vec<u32> = (0..region.n_outer as u32).map(|f| root(&mut roots, f)).collect();
+        let roots: Vec<u32> = (0..region.n_outer as u32).map(|f| pieces.root(f)).collect();
         if ridges.iter().any(|&[f, g]| roots[f as usize] == roots[g as usize]) {
             return None;
         }

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::guard::move_one;
 use super::region::Region;
 use super::surface::Surface;
+use crate::linear::small::Quadric;
 use crate::mesh::vector::{add, distance, dot, norm, scale, sub, Point};
 use crate::remesh::Rings;
 
@@ -94,7 +95,7 @@ fn step(region: &Region, surface: &Surface, bent: &[bool], around: &mut Rings<'_
     let neighbours = mesh.neighbours(v);
     let count = neighbours.len().max(1) as f64;
     let edge = neighbours.iter().map(|&w| distance(at, mesh.position(w))).sum::<f64>() / count;
-    let (mut quadric, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
+    let mut quadric = Quadric::default();
     let near_ridge = bent[v as usize];
     let rings = if near_ridge { how.rings } else { 1 };
     for f in around.within(v, rings).iter().map(|&f| f as usize) {
@@ -104,89 +105,20 @@ fn step(region: &Region, surface: &Surface, bent: &[bool], around: &mut Rings<'_
         let confidence = 1.0 / (0.01 + (surface.face_angles[f] / how.doubt).powi(4));
         let trust = if region.is_patch(f as u32) { 1.0 } else { how.trust };
         let weight = trust * surface.areas[f] * (-0.5 * away * away).exp() * confidence;
-        let offset = dot(normal, sub(mesh.position(face[0]), at));
-        for i in 0..3 {
-            right[i] += weight * offset * normal[i];
-            for j in 0..3 {
-                quadric[i][j] += weight * normal[i] * normal[j];
-            }
-        }
+        quadric.add(weight, normal, dot(normal, sub(mesh.position(face[0]), at)));
     }
-    let (values, vectors) = eigen(quadric);
-    let largest = values.iter().fold(0.0, |a: f64, &x| a.max(x));
     let mut step = [0.0; 3];
     let centroid = neighbours.iter().fold([0.0; 3], |sum, &w| add(sum, scale(mesh.position(w), 1.0 / count)));
     let mut slide = scale(sub(centroid, at), how.relaxation);
-    for (value, vector) in values.into_iter().zip(vectors) {
-        if value > how.drop * largest {
-            if near_ridge {
-                step = add(step, scale(vector, dot(vector, right) / value));
-            }
-            slide = sub(slide, scale(vector, dot(vector, slide)));
+    for (vector, along) in quadric.determined(how.drop) {
+        if near_ridge {
+            step = add(step, scale(vector, along));
         }
+        slide = sub(slide, scale(vector, dot(vector, slide)));
     }
     let length = norm(step);
     if length > how.reach * edge {
         step = scale(step, how.reach * edge / length);
     }
     add(step, slide)
-}
-
-/// Sweeps of rotations at most; they converge quadratically, after four or five.
-const ROTATIONS: usize = 30;
-
-/// Eigenvalues and unit eigenvectors of a symmetric matrix, by Jacobi rotations.
-pub(super) fn eigen(mut a: [[f64; 3]; 3]) -> ([f64; 3], [Point; 3]) {
-    let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    for _ in 0..ROTATIONS {
-        let off = a[0][1].abs() + a[0][2].abs() + a[1][2].abs();
-        if off <= 1e-300 || off <= 1e-15 * (a[0][0].abs() + a[1][1].abs() + a[2][2].abs()) {
-            break;
-        }
-        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            if a[p][q] == 0.0 {
-                continue;
-            }
-            let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-            let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
-            let c = 1.0 / (t * t + 1.0).sqrt();
-            let s = t * c;
-            let turn = |x: f64, y: f64| (c * x - s * y, s * x + c * y);
-            for row in a.iter_mut().chain(&mut v) {
-                (row[p], row[q]) = turn(row[p], row[q]);
-            }
-            let (first, second) = (a[p], a[q]);
-            for (k, (&x, &y)) in first.iter().zip(&second).enumerate() {
-                (a[p][k], a[q][k]) = turn(x, y);
-            }
-        }
-    }
-    ([a[0][0], a[1][1], a[2][2]], [0, 1, 2].map(|j| [v[0][j], v[1][j], v[2][j]]))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn eigenvectors_are_orthonormal_and_rebuild_the_matrix() {
-        let matrices = [
-            [[2.0, -1.0, 0.5], [-1.0, 3.0, 0.25], [0.5, 0.25, 1.0]],
-            [[1.0, 1.0, 1.0], [1.0, 1.0, 1.0], [1.0, 1.0, 1.0]],
-            [[0.0; 3]; 3],
-            [[1e-20, 0.0, 0.0], [0.0, 1e20, 1e5], [0.0, 1e5, 1.0]],
-        ];
-        for matrix in matrices {
-            let (values, vectors) = eigen(matrix);
-            let size = matrix.iter().flatten().fold(0.0, |a: f64, x| a.max(x.abs()));
-            for i in 0..3 {
-                for j in 0..3 {
-                    let identity = if i == j { 1.0 } else { 0.0 };
-                    assert!((dot(vectors[i], vectors[j]) - identity).abs() < 1e-12);
-                    let rebuilt: f64 = (0..3).map(|k| values[k] * vectors[k][i] * vectors[k][j]).sum();
-                    assert!((rebuilt - matrix[i][j]).abs() <= 1e-12 * size, "{matrix:?}");
-                }
-            }
-        }
-    }
 }

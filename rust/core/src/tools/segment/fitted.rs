@@ -15,6 +15,7 @@ use super::surface::{contiguous, Surface};
 use super::threshold::cut_and_merge;
 use super::watershed::watershed;
 use crate::linear::Columns;
+use crate::mesh::partition::Partition;
 use crate::progress::{Progress, Report};
 use crate::Result;
 
@@ -222,22 +223,14 @@ impl Fitted<'_> {
 /// The same merges in the order given, each named by segments that are still there.
 fn within_order(labels: &[u32], n: usize, merges: &[Merge]) -> Vec<Merge> {
     debug_assert!(labels.iter().all(|l| (*l as usize) < n));
-    let mut parent: Vec<u32> = (0..n as u32).collect();
+    let mut segments = Partition::new(n);
     let mut ordered = Vec::with_capacity(merges.len());
     for merge in merges {
-        let (kept, gone) = (root(&mut parent, merge.kept), root(&mut parent, merge.gone));
+        let (kept, gone) = (segments.root(merge.kept), segments.root(merge.gone));
         if kept != gone {
-            parent[gone as usize] = kept;
+            segments.attach(gone, kept);
             ordered.push(Merge { kept, gone, strength: merge.strength });
         }
     }
     ordered
-}
-
-fn root(parent: &mut [u32], mut label: u32) -> u32 {
-    while parent[label as usize] != label {
-        parent[label as usize] = parent[parent[label as usize] as usize];
-        label = parent[label as usize];
-    }
-    label
 }

@@ -1,6 +1,7 @@
 //! Watershed by persistence on the dual graph (Edelsbrunner, Letscher and Zomorodian 2002; Couprie and Bertrand 1997).
 
-use super::surface::{contiguous, Surface, NONE};
+use super::surface::{contiguous, Surface};
+use crate::mesh::partition::Partition;
 
 /// Floods the faces from the maxima of `indicator` downwards; two basins stay apart only if the pass between them lies deeper than
 /// `persistence` under the lower of their maxima. Returns a label for every face, from 0, and how many there are.
@@ -9,7 +10,8 @@ pub(super) fn watershed(surface: &Surface<'_>, indicator: &[f64], persistence: f
     let mut order: Vec<u32> = (0..m as u32).collect();
     order.sort_by(|&a, &b| indicator[b as usize].total_cmp(&indicator[a as usize]).then(a.cmp(&b)));
     // A basin is named by its highest face, which is the root of its tree.
-    let mut parent = vec![NONE; m];
+    let mut flooded = vec![false; m];
+    let mut sets = Partition::new(m);
     let mut basins: Vec<u32> = Vec::with_capacity(3);
     for &face in &order {
         let f = face as usize;
@@ -17,10 +19,10 @@ pub(super) fn watershed(surface: &Surface<'_>, indicator: &[f64], persistence: f
         // The neighbour that lies highest decides where the face goes when basins stay apart.
         let mut best: Option<(f64, u32)> = None;
         for (_, g) in surface.around(f) {
-            if parent[g] == NONE {
+            if !flooded[g] {
                 continue;
             }
-            let root = root(&mut parent, g as u32);
+            let root = sets.root(g as u32);
             if best.is_none_or(|(height, _)| indicator[g] > height) {
                 best = Some((indicator[g], root));
             }
@@ -28,27 +30,18 @@ pub(super) fn watershed(surface: &Surface<'_>, indicator: &[f64], persistence: f
                 basins.push(root);
             }
         }
-        let Some((_, home)) = best else {
-            parent[f] = face;
-            continue;
-        };
+        flooded[f] = true;
+        let Some((_, home)) = best else { continue };
         basins.sort_by(|&a, &b| indicator[b as usize].total_cmp(&indicator[a as usize]).then(a.cmp(&b)));
         let highest = basins[0];
         for &basin in &basins[1..] {
             if indicator[basin as usize] - indicator[f] < persistence {
-                parent[basin as usize] = highest;
+                sets.attach(basin, highest);
             }
         }
-        parent[f] = root(&mut parent, home);
+        let home = sets.root(home);
+        sets.attach(face, home);
     }
-    let roots: Vec<u32> = (0..m as u32).map(|f| root(&mut parent, f)).collect();
+    let roots: Vec<u32> = (0..m as u32).map(|f| sets.root(f)).collect();
     contiguous(&roots)
-}
-
-fn root(parent: &mut [u32], mut f: u32) -> u32 {
-    while parent[f as usize] != f {
-        parent[f as usize] = parent[parent[f as usize] as usize];
-        f = parent[f as usize];
-    }
-    f
 }
