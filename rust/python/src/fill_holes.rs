@@ -8,7 +8,6 @@ use ridgeform_core::tools::{self, HoleStatus, LoopChoice, PatchShape, Sharpness}
 use crate::errors::argument;
 use crate::mesh::Mesh;
 use crate::numbers::at_least;
-use crate::progress::{handle, Progress};
 use crate::{arrays, doorway, options};
 
 /// What `fill_holes` returns: the patches, the mesh with its patches, and how each hole went.
@@ -118,108 +117,94 @@ impl FilledHole {
     }
 }
 
-/// Fill holes so that the surface around them goes on, ridges included.
-///
-/// Faces are oriented and seams joined first, as `orient` and `weld` do; what comes out is given for the mesh as it was. A planar
-/// rim that the surface meets steeply all round, as the missing side of a box or the cut end of a tube, is closed flat. Every
-/// other hole is triangulated (Liepa 2003) and remeshed at the resolution of its rim. The patch starts as the smooth one. Where the
-/// surface around the hole has ridges, the L1 Hessian flow, edge flips along the ridges and snapping of vertices onto the
-/// planes around them bring the ridges back. Everything outside the patches stays as it is, and costs nothing.
-///
-/// Parameters
-/// ----------
-/// mesh : Mesh with positions
-/// loops : None for all holes; or a list of indices into `find_holes(mesh)`, or of arrays of the vertices around a hole
-/// max_edges : with loops=None, only holes of at most so many edges
-/// outer : with loops=None, also close the outer borders of open sheets
-/// edge_length : float > 0, of the patches; None continues that of the rim
-/// iterations : steps of the flow at most, ≥ 0; 0 leaves the smooth patch
-/// fidelity : float > 0, how strongly a step holds on to the shape, in the unit that `scale` sets
-/// shape : "auto" (per hole: flat, sharp or smooth), "flat" (in the mean plane of the rim, all but notches in it; as "auto" where that
-///     would overlap itself), "smooth" (no ridges) or "sharp"
-/// sharpness : "auto" (per hole: sharp where there are ridges around it, else smooth), or 0 (the paper's flow, without flips
-///     and snapping) to 1 (most angular)
-/// coupling : "joint" (independent of the axes) or "separate" (the paper's)
-/// scale : "max_edge", "bounding_box", "area" or "extent" of the patch is 1
-/// dual : "barycentric", "circumcentric" or "circumcentric_or_barycentric"
-/// solver : "auto", "fast", "clarabel", "clarabel-qdldl" or "clarabel-faer"
-/// tolerance : certified relative gap of every step; None stops on residuals and reports the gap reached
-/// max_iterations : at most so many solver iterations in a step, or None
-/// memory_limit : bytes that the factor of the linear system may take, or None
-/// threads : int or None
-/// progress : Progress or None; its snapshot_surface() shows the patch in work
-///
-/// Returns
-/// -------
-/// Filled
-///
-/// Raises
-/// ------
-/// ArgumentError, MeshError (no positions; vertices in `loops` that are no boundary loop), SolveError, Cancelled. Holes that cannot be
-/// filled are left open and reported in `Filled.holes`.
-///
-/// References
-/// ----------
-/// Rowe et al. 2024, section 7.4.2; Liepa 2003; Botsch and Kobbelt 2004.
-#[pyfunction]
-#[pyo3(signature = (mesh, *, loops=None, max_edges=None, outer=false, edge_length=None, iterations=50, fidelity=50.0,
-    shape="auto", sharpness=None, coupling="joint", scale="max_edge", dual="barycentric", solver="auto", tolerance=None,
-    max_iterations=None, memory_limit=None, threads=None, progress=None),
+solver_function! {
+    /// Fill holes so that the surface around them goes on, ridges included.
+    ///
+    /// Faces are oriented and seams joined first, as `orient` and `weld` do; what comes out is given for the mesh as it was. A planar
+    /// rim that the surface meets steeply all round, as the missing side of a box or the cut end of a tube, is closed flat. Every
+    /// other hole is triangulated (Liepa 2003) and remeshed at the resolution of its rim. The patch starts as the smooth one. Where the
+    /// surface around the hole has ridges, the L1 Hessian flow, edge flips along the ridges and snapping of vertices onto the
+    /// planes around them bring the ridges back. Everything outside the patches stays as it is, and costs nothing.
+    ///
+    /// Parameters
+    /// ----------
+    /// mesh : Mesh with positions
+    /// loops : None for all holes; or a list of indices into `find_holes(mesh)`, or of arrays of the vertices around a hole
+    /// max_edges : with loops=None, only holes of at most so many edges
+    /// outer : with loops=None, also close the outer borders of open sheets
+    /// edge_length : float > 0, of the patches; None continues that of the rim
+    /// iterations : steps of the flow at most, ≥ 0; 0 leaves the smooth patch
+    /// fidelity : float > 0, how strongly a step holds on to the shape, in the unit that `scale` sets
+    /// shape : "auto" (per hole: flat, sharp or smooth), "flat" (in the mean plane of the rim, all but notches in it; as "auto" where that
+    ///     would overlap itself), "smooth" (no ridges) or "sharp"
+    /// sharpness : "auto" (per hole: sharp where there are ridges around it, else smooth), or 0 (the paper's flow, without flips
+    ///     and snapping) to 1 (most angular)
+    /// coupling : "joint" (independent of the axes) or "separate" (the paper's)
+    /// scale : "max_edge", "bounding_box", "area" or "extent" of the patch is 1
+    /// dual : "barycentric", "circumcentric" or "circumcentric_or_barycentric"
+    solver keywords
+    /// progress : Progress or None; its snapshot_surface() shows the patch in work
+    ///
+    /// Returns
+    /// -------
+    /// Filled
+    ///
+    /// Raises
+    /// ------
+    /// ArgumentError, MeshError (no positions; vertices in `loops` that are no boundary loop), SolveError, Cancelled. Holes that cannot be
+    /// filled are left open and reported in `Filled.holes`.
+    ///
+    /// References
+    /// ----------
+    /// Rowe et al. 2024, section 7.4.2; Liepa 2003; Botsch and Kobbelt 2004.
+    signature = (mesh, *, loops=None, max_edges=None, outer=false, edge_length=None, iterations=50, fidelity=50.0, shape="auto", sharpness=None, coupling="joint", scale="max_edge", dual="barycentric"), tolerance = None,
     text_signature = "(mesh, *, loops=None, max_edges=None, outer=False, edge_length=None, iterations=50, fidelity=50.0, \
     shape='auto', sharpness='auto', coupling='joint', scale='max_edge', dual='barycentric', solver='auto', tolerance=None, \
-    max_iterations=None, memory_limit=None, threads=None, progress=None)")]
-#[allow(clippy::too_many_arguments)]
-pub fn fill_holes(
-    py: Python<'_>,
-    mesh: &Bound<'_, Mesh>,
-    loops: Option<&Bound<'_, PyAny>>,
-    max_edges: Option<i64>,
-    outer: bool,
-    edge_length: Option<f64>,
-    iterations: i64,
-    fidelity: f64,
-    shape: &str,
-    sharpness: Option<&Bound<'_, PyAny>>,
-    coupling: &str,
-    scale: &str,
-    dual: &str,
-    solver: &str,
-    tolerance: Option<f64>,
-    max_iterations: Option<i64>,
-    memory_limit: Option<i64>,
-    threads: Option<i64>,
-    progress: Option<&Bound<'_, Progress>>,
-) -> PyResult<Filled> {
-    let options = tools::FillHolesOptions {
-        loops: loops.map(|given| read_loops(given, mesh.get().n_vertices())).transpose()?,
-        max_edges: max_edges.map(|count| at_least(py, "max_edges", count, 3)).transpose()?,
-        outer,
-        edge_length,
-        iterations: at_least(py, "iterations", iterations, 0)?,
-        fidelity,
-        shape: read_shape(py, shape)?,
-        sharpness: read_sharpness(py, sharpness)?,
-        coupling: options::coupling(py, coupling)?,
-        scale: options::scale(py, scale)?,
-        dual: options::dual(py, dual)?,
-        solve: options::solve(py, solver, tolerance, max_iterations, memory_limit, threads)?,
-    };
-    let progress = handle(progress);
-    let inner = mesh.get().inner();
-    let result = doorway::call(py, &progress, || tools::fill_holes(inner, &options, &progress))?;
-    let holes = result.holes.iter().map(|hole| Py::new(py, filled_hole(py, hole)?));
-    Ok(Filled {
-        mesh: mesh.clone().unbind(),
-        new_vertices: arrays::float_rows(py, &result.vertices)?.unbind(),
-        new_faces: arrays::index_rows(py, &result.faces)?.unbind(),
-        new_patch: arrays::index_array(py, &result.patch)?.unbind(),
-        whole_vertices: PyOnceLock::new(),
-        whole_faces: PyOnceLock::new(),
-        whole_patch: PyOnceLock::new(),
-        holes: holes.collect::<PyResult<_>>()?,
-        ridges: arrays::index_rows(py, &result.ridges)?.unbind(),
-        status: result.status.name(),
-    })
+    max_iterations=None, memory_limit=None, threads=None, progress=None)";
+    pub fn fill_holes(py: Python<'_>, solve, progress;
+        mesh: &Bound<'_, Mesh>,
+        loops: Option<&Bound<'_, PyAny>>,
+        max_edges: Option<i64>,
+        outer: bool,
+        edge_length: Option<f64>,
+        iterations: i64,
+        fidelity: f64,
+        shape: &str,
+        sharpness: Option<&Bound<'_, PyAny>>,
+        coupling: &str,
+        scale: &str,
+        dual: &str,
+    ) -> PyResult<Filled> {
+        let options = tools::FillHolesOptions {
+            loops: loops.map(|given| read_loops(given, mesh.get().n_vertices())).transpose()?,
+            max_edges: max_edges.map(|count| at_least(py, "max_edges", count, 3)).transpose()?,
+            outer,
+            edge_length,
+            iterations: at_least(py, "iterations", iterations, 0)?,
+            fidelity,
+            shape: read_shape(py, shape)?,
+            sharpness: read_sharpness(py, sharpness)?,
+            coupling: options::coupling(py, coupling)?,
+            scale: options::scale(py, scale)?,
+            dual: options::dual(py, dual)?,
+            solve: solve()?,
+        };
+        let inner = mesh.get().inner();
+        let result = doorway::call(py, &progress, || tools::fill_holes(inner, &options, &progress))?;
+        let holes = result.holes.iter().map(|hole| Py::new(py, filled_hole(py, hole)?));
+        Ok(Filled {
+            mesh: mesh.clone().unbind(),
+            new_vertices: arrays::float_rows(py, &result.vertices)?.unbind(),
+            new_faces: arrays::index_rows(py, &result.faces)?.unbind(),
+            new_patch: arrays::index_array(py, &result.patch)?.unbind(),
+            whole_vertices: PyOnceLock::new(),
+            whole_faces: PyOnceLock::new(),
+            whole_patch: PyOnceLock::new(),
+            holes: holes.collect::<PyResult<_>>()?,
+            ridges: arrays::index_rows(py, &result.ridges)?.unbind(),
+            status: result.status.name(),
+        })
+    }
 }
 
 fn filled_hole(py: Python<'_>, hole: &tools::FilledHole) -> PyResult<FilledHole> {

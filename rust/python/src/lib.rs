@@ -3,6 +3,9 @@
 //! [`arrays`] is the doorway for data, [`doorway`] that for calls and [`errors`] that for failures; then one file for each
 //! thing that Python sees.
 
+#[macro_use]
+mod keywords;
+
 mod arrays;
 mod columns;
 mod denoise;
@@ -21,6 +24,7 @@ mod operators;
 mod options;
 mod progress;
 mod remesh;
+mod scalar;
 mod segment;
 mod solution;
 mod stylize;

@@ -7,7 +7,6 @@ use ridgeform_core::tools::{self, Hierarchy, SegmentMethod};
 use crate::columns::{self, Values};
 use crate::mesh::Mesh;
 use crate::numbers::at_least;
-use crate::progress::{handle, Progress};
 use crate::{arrays, doorway, errors, options};
 
 /// What `segment` returns: a label for every face, and finer and coarser segmentations nested with it.
@@ -87,114 +86,99 @@ impl Segmentation {
     }
 }
 
-/// Divide the faces into segments on which the shape, or a function on it, is nearly plane (affine), with borders along the ridges.
-///
-/// Minimises fidelity ‖u - u₀‖²_M + Σ_f v_f² ‖(H u)_f‖ + length_weight (epsilon vᵀ L v + ‖1 - v‖² / (4 epsilon)) in turns over the
-/// signal u and the indicator of borders v on the faces, epsilon halved from start to end. Smoothly curved parts stay one segment.
-///
-/// Parameters
-/// ----------
-/// mesh : Mesh with positions
-/// values : (n,) or (n,k) array, the signal, k ≤ 16; None for the positions. A signal is scaled to a range of 1
-/// length_weight : float > 0, what a border costs per length: two parts of a shape that meet at an edge bent by less than about 0.8
-///     times this (radians) become one; smaller gives more segments
-/// fidelity : float > 0, how closely u follows the signal; None: as the noise found in the signal wants it (1000 for "paper")
-/// epsilon_start, epsilon_end : widths of the bands in which v falls, in the unit that `scale` sets; "fitted" goes no lower than
-///     the mesh is fine
-/// inner_tolerance : the mean squared change of v at which epsilon is halved
-/// cut_threshold : 0 to 1, edges with a lower v are cut; for "paper"
-/// min_faces : segments of fewer faces are merged; None: 20, and for "fitted" down to 4 the less noise there is, and 0 for
-///     modelled shapes
-/// scale : "extent" (a cube has its side, whatever its rotation), "bounding_box" (the longest side is 1), "area" or "max_edge"
-/// method : "fitted" (watershed of v, merging of what bends little, border faces moved to the segment that they fit best) or "paper"
-///     (cuts below the threshold, small pieces merged by majority)
-/// n_segments : number of segments wanted, or None; fewer where the finest segmentation has fewer
-/// face_weights : (m,) array ≥ 0, what borders cost there: 1 is neutral, smaller attracts them
-/// edge_weights : (m,3) array ≥ 0, the same for edges, column i opposite corner i; the mean of both faces' entries counts
-/// faces : faces to segment, (m,) booleans or (j,) indices; None for all
-/// solver : "auto", "fast", "clarabel", "clarabel-qdldl" or "clarabel-faer"
-/// tolerance : certified relative gap of every problem in u; None stops on residuals
-/// max_iterations : at most so many solver iterations for each of them, or None
-/// memory_limit : bytes that the factor of the linear system may take, or None
-/// threads : int or None
-/// progress : Progress or None
-///
-/// Returns
-/// -------
-/// Segmentation
-///
-/// Raises
-/// ------
-/// ArgumentError, MeshError (no positions, no face with area), SolveError, Cancelled
-///
-/// References
-/// ----------
-/// Rowe et al. 2024, eqs. (25) and (41), section 7.5, supplement E.
-#[pyfunction]
-#[pyo3(signature = (mesh, *, values=None, length_weight=0.5, fidelity=None, epsilon_start=0.1, epsilon_end=0.001,
-    inner_tolerance=1e-5, cut_threshold=0.6, min_faces=None, scale="extent", method="fitted", n_segments=None,
-    face_weights=None, edge_weights=None, faces=None, solver="auto", tolerance=None, max_iterations=None,
-    memory_limit=None, threads=None, progress=None))]
-#[allow(clippy::too_many_arguments)]
-pub fn segment(
-    py: Python<'_>,
-    mesh: &Mesh,
-    values: Option<&Bound<'_, PyAny>>,
-    length_weight: f64,
-    fidelity: Option<f64>,
-    epsilon_start: f64,
-    epsilon_end: f64,
-    inner_tolerance: f64,
-    cut_threshold: f64,
-    min_faces: Option<i64>,
-    scale: &str,
-    method: &str,
-    n_segments: Option<i64>,
-    face_weights: Option<&Bound<'_, PyAny>>,
-    edge_weights: Option<&Bound<'_, PyAny>>,
-    faces: Option<&Bound<'_, PyAny>>,
-    solver: &str,
-    tolerance: Option<f64>,
-    max_iterations: Option<i64>,
-    memory_limit: Option<i64>,
-    threads: Option<i64>,
-    progress: Option<&Bound<'_, Progress>>,
-) -> PyResult<Segmentation> {
-    let (n, m) = (mesh.n_vertices(), mesh.n_faces());
-    let signal = values.map(|given| columns::read("values", given, n, "vertex")).transpose()?;
-    let methods = [("fitted", SegmentMethod::Fitted), ("paper", SegmentMethod::Paper)];
-    let rows = |given: &Bound<'_, PyAny>| arrays::finite_floats("edge_weights", given)?.rows::<3>(py, "edge_weights");
-    let options = tools::SegmentOptions {
-        method: options::choice(py, "method", method, &methods)?,
-        length_weight,
-        fidelity,
-        epsilon_start,
-        epsilon_end,
-        inner_tolerance,
-        cut_threshold,
-        min_faces: min_faces.map(|count| at_least(py, "min_faces", count, 0)).transpose()?,
-        n_segments: n_segments.map(|count| at_least(py, "n_segments", count, 1)).transpose()?,
-        scale: options::scale(py, scale)?,
-        face_weights: options::weights("face_weights", face_weights, m, "face")?,
-        edge_weights: edge_weights.map(rows).transpose()?,
-        faces: faces.map(|given| arrays::mask("faces", given, m, "face")).transpose()?,
-        solve: options::solve(py, solver, tolerance, max_iterations, memory_limit, threads)?,
-    };
-    let progress = handle(progress);
-    let given = signal.as_ref().map(|signal| &signal.columns);
-    let found = doorway::call(py, &progress, || tools::segment(mesh.inner(), given, &options, &progress))?;
-    let single = signal.as_ref().is_some_and(|signal| signal.single);
-    Ok(Segmentation {
-        labels: found.labels.into_pyarray(py).unbind(),
-        n_segments: found.n_segments,
-        indicator: found.indicator.into_pyarray(py).unbind(),
-        values: columns::write(py, Values { columns: found.values, single }).unbind(),
-        boundary_edges: arrays::index_rows(py, &found.boundary_edges)?.unbind(),
-        noise: found.noise,
-        fidelity: found.fidelity,
-        epsilons: found.epsilons.into_pyarray(py).unbind(),
-        alternations: found.alternations,
-        status: found.status.name(),
-        hierarchy: found.hierarchy,
-    })
+solver_function! {
+    /// Divide the faces into segments on which the shape, or a function on it, is nearly plane (affine), with borders along the ridges.
+    ///
+    /// Minimises fidelity ‖u - u₀‖²_M + Σ_f v_f² ‖(H u)_f‖ + length_weight (epsilon vᵀ L v + ‖1 - v‖² / (4 epsilon)) in turns over the
+    /// signal u and the indicator of borders v on the faces, epsilon halved from start to end. Smoothly curved parts stay one segment.
+    ///
+    /// Parameters
+    /// ----------
+    /// mesh : Mesh with positions
+    /// values : (n,) or (n,k) array, the signal, k ≤ 16; None for the positions. A signal is scaled to a range of 1
+    /// length_weight : float > 0, what a border costs per length: two parts of a shape that meet at an edge bent by less than about 0.8
+    ///     times this (radians) become one; smaller gives more segments
+    /// fidelity : float > 0, how closely u follows the signal; None: as the noise found in the signal wants it (1000 for "paper")
+    /// epsilon_start, epsilon_end : widths of the bands in which v falls, in the unit that `scale` sets; "fitted" goes no lower than
+    ///     the mesh is fine
+    /// inner_tolerance : the mean squared change of v at which epsilon is halved
+    /// cut_threshold : 0 to 1, edges with a lower v are cut; for "paper"
+    /// min_faces : segments of fewer faces are merged; None: 20, and for "fitted" down to 4 the less noise there is, and 0 for
+    ///     modelled shapes
+    /// scale : "extent" (a cube has its side, whatever its rotation), "bounding_box" (the longest side is 1), "area" or "max_edge"
+    /// method : "fitted" (watershed of v, merging of what bends little, border faces moved to the segment that they fit best) or "paper"
+    ///     (cuts below the threshold, small pieces merged by majority)
+    /// n_segments : number of segments wanted, or None; fewer where the finest segmentation has fewer
+    /// face_weights : (m,) array ≥ 0, what borders cost there: 1 is neutral, smaller attracts them
+    /// edge_weights : (m,3) array ≥ 0, the same for edges, column i opposite corner i; the mean of both faces' entries counts
+    /// faces : faces to segment, (m,) booleans or (j,) indices; None for all
+    solver keywords
+    /// progress : Progress or None
+    ///
+    /// Returns
+    /// -------
+    /// Segmentation
+    ///
+    /// Raises
+    /// ------
+    /// ArgumentError, MeshError (no positions, no face with area), SolveError, Cancelled
+    ///
+    /// References
+    /// ----------
+    /// Rowe et al. 2024, eqs. (25) and (41), section 7.5, supplement E.
+    signature = (mesh, *, values=None, length_weight=0.5, fidelity=None, epsilon_start=0.1, epsilon_end=0.001, inner_tolerance=1e-5, cut_threshold=0.6, min_faces=None, scale="extent", method="fitted", n_segments=None, face_weights=None, edge_weights=None, faces=None), tolerance = None;
+    pub fn segment(py: Python<'_>, solve, progress;
+        mesh: &Mesh,
+        values: Option<&Bound<'_, PyAny>>,
+        length_weight: f64,
+        fidelity: Option<f64>,
+        epsilon_start: f64,
+        epsilon_end: f64,
+        inner_tolerance: f64,
+        cut_threshold: f64,
+        min_faces: Option<i64>,
+        scale: &str,
+        method: &str,
+        n_segments: Option<i64>,
+        face_weights: Option<&Bound<'_, PyAny>>,
+        edge_weights: Option<&Bound<'_, PyAny>>,
+        faces: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Segmentation> {
+        let (n, m) = (mesh.n_vertices(), mesh.n_faces());
+        let signal = values.map(|given| columns::read("values", given, n, "vertex")).transpose()?;
+        let methods = [("fitted", SegmentMethod::Fitted), ("paper", SegmentMethod::Paper)];
+        let rows = |given: &Bound<'_, PyAny>| arrays::finite_floats("edge_weights", given)?.rows::<3>(py, "edge_weights");
+        let options = tools::SegmentOptions {
+            method: options::choice(py, "method", method, &methods)?,
+            length_weight,
+            fidelity,
+            epsilon_start,
+            epsilon_end,
+            inner_tolerance,
+            cut_threshold,
+            min_faces: min_faces.map(|count| at_least(py, "min_faces", count, 0)).transpose()?,
+            n_segments: n_segments.map(|count| at_least(py, "n_segments", count, 1)).transpose()?,
+            scale: options::scale(py, scale)?,
+            face_weights: options::weights("face_weights", face_weights, m, "face")?,
+            edge_weights: edge_weights.map(rows).transpose()?,
+            faces: faces.map(|given| arrays::mask("faces", given, m, "face")).transpose()?,
+            solve: solve()?,
+        };
+        let given = signal.as_ref().map(|signal| &signal.columns);
+        let found = doorway::call(py, &progress, || tools::segment(mesh.inner(), given, &options, &progress))?;
+        let single = signal.as_ref().is_some_and(|signal| signal.single);
+        Ok(Segmentation {
+            labels: found.labels.into_pyarray(py).unbind(),
+            n_segments: found.n_segments,
+            indicator: found.indicator.into_pyarray(py).unbind(),
+            values: columns::write(py, Values { columns: found.values, single }).unbind(),
+            boundary_edges: arrays::index_rows(py, &found.boundary_edges)?.unbind(),
+            noise: found.noise,
+            fidelity: found.fidelity,
+            epsilons: found.epsilons.into_pyarray(py).unbind(),
+            alternations: found.alternations,
+            status: found.status.name(),
+            hierarchy: found.hierarchy,
+        })
+    }
 }

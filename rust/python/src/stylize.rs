@@ -6,7 +6,6 @@ use ridgeform_core::tools;
 
 use crate::mesh::Mesh;
 use crate::numbers::at_least;
-use crate::progress::{handle, Progress};
 use crate::{arrays, doorway, options};
 
 /// What `stylize` returns: the new positions, and how each step of the flow went.
@@ -37,93 +36,79 @@ impl Stylized {
     }
 }
 
-/// Turn a mesh piecewise flat with crisp ridges, in steps of the L1 Hessian flow.
-///
-/// Each step minimises Σ_f w_f ‖(H x)_f‖ + fidelity (x - x₀)ᵀ M (x - x₀) over the vertex positions x, with H and M from the
-/// positions x₀ before the step.
-///
-/// Parameters
-/// ----------
-/// mesh : Mesh with positions
-/// iterations : number of steps, ≥ 0
-/// fidelity : float > 0, how strongly a step holds on to the shape, in the unit that `scale` sets; larger changes less
-/// sharpness : 0 (the paper's energy) to 1 (most angular): reweighting from step to step, w_f ∝ (curvature + 0.1)^(-sharpness)
-/// coupling : "joint" (one norm for the three coordinates, independent of the axes) or "separate" (the paper's)
-/// scale : "max_edge" (the longest edge is 1: the paper's unit), "bounding_box" (the longest side is 1), "area" (the surface is 1)
-///     or "extent" (a cube has its side, whatever its rotation)
-/// fixed : vertices that stay where they are: (n,) booleans or (j,) indices
-/// strength : (n,) array, 0 (stay) to 1 (full effect)
-/// ridge_weights : (m,) array > 0, 1 is neutral, smaller makes ridges cheaper there
-/// delaunay : flip edges to intrinsic Delaunay before each step
-/// dual : "barycentric", "circumcentric" (MeshError where a dual edge has no length) or "circumcentric_or_barycentric"
-///     (barycentres for such edges)
-/// solver : "auto", "fast", "clarabel", "clarabel-qdldl" or "clarabel-faer"
-/// tolerance : certified relative gap of every step; None stops on residuals and reports the gap reached
-/// max_iterations : at most so many solver iterations in a step, or None
-/// memory_limit : bytes that the factor of the linear system, the larger part of all memory, may take, or None
-/// threads : int or None
-/// progress : Progress or None; its snapshot() shows the vertices after the last finished step
-///
-/// Returns
-/// -------
-/// Stylized
-///
-/// Raises
-/// ------
-/// ArgumentError, MeshError (no positions, no face with area), SolveError, Cancelled
-///
-/// References
-/// ----------
-/// Rowe et al. 2024, eq. (24), section 7.3; reweighting: Candès et al. 2008.
-#[pyfunction]
-#[pyo3(signature = (mesh, *, iterations=20, fidelity=500.0, sharpness=0.5, coupling="joint", scale="max_edge", fixed=None,
-    strength=None, ridge_weights=None, delaunay=false, dual="barycentric", solver="auto", tolerance=None,
-    max_iterations=None, memory_limit=None, threads=None, progress=None))]
-#[allow(clippy::too_many_arguments)]
-pub fn stylize(
-    py: Python<'_>,
-    mesh: &Mesh,
-    iterations: i64,
-    fidelity: f64,
-    sharpness: f64,
-    coupling: &str,
-    scale: &str,
-    fixed: Option<&Bound<'_, PyAny>>,
-    strength: Option<&Bound<'_, PyAny>>,
-    ridge_weights: Option<&Bound<'_, PyAny>>,
-    delaunay: bool,
-    dual: &str,
-    solver: &str,
-    tolerance: Option<f64>,
-    max_iterations: Option<i64>,
-    memory_limit: Option<i64>,
-    threads: Option<i64>,
-    progress: Option<&Bound<'_, Progress>>,
-) -> PyResult<Stylized> {
-    let (n, m) = (mesh.n_vertices(), mesh.n_faces());
-    let options = tools::StylizeOptions {
-        iterations: at_least(py, "iterations", iterations, 0)?,
-        fidelity,
-        sharpness,
-        coupling: options::coupling(py, coupling)?,
-        scale: options::scale(py, scale)?,
-        fixed: fixed.map(|given| arrays::mask("fixed", given, n, "vertex")).transpose()?,
-        strength: options::weights("strength", strength, n, "vertex")?,
-        ridge_weights: options::weights("ridge_weights", ridge_weights, m, "face")?,
-        delaunay,
-        dual: options::dual(py, dual)?,
-        solve: options::solve(py, solver, tolerance, max_iterations, memory_limit, threads)?,
-    };
-    let progress = handle(progress);
-    let result = doorway::call(py, &progress, || tools::stylize(mesh.inner(), &options, &progress))?;
-    let counts = result.solver_iterations.iter().map(|&count| i32::try_from(count).unwrap_or(i32::MAX));
-    Ok(Stylized {
-        vertices: arrays::float_rows(py, &result.vertices)?.unbind(),
-        solver_iterations: counts.collect::<Vec<_>>().into_pyarray(py).unbind(),
-        iterations: result.gap.len(),
-        energy: result.energy.into_pyarray(py).unbind(),
-        gap: result.gap.into_pyarray(py).unbind(),
-        factorisations: result.factorisations,
-        status: result.status.name(),
-    })
+solver_function! {
+    /// Turn a mesh piecewise flat with crisp ridges, in steps of the L1 Hessian flow.
+    ///
+    /// Each step minimises Σ_f w_f ‖(H x)_f‖ + fidelity (x - x₀)ᵀ M (x - x₀) over the vertex positions x, with H and M from the
+    /// positions x₀ before the step.
+    ///
+    /// Parameters
+    /// ----------
+    /// mesh : Mesh with positions
+    /// iterations : number of steps, ≥ 0
+    /// fidelity : float > 0, how strongly a step holds on to the shape, in the unit that `scale` sets; larger changes less
+    /// sharpness : 0 (the paper's energy) to 1 (most angular): reweighting from step to step, w_f ∝ (curvature + 0.1)^(-sharpness)
+    /// coupling : "joint" (one norm for the three coordinates, independent of the axes) or "separate" (the paper's)
+    /// scale : "max_edge" (the longest edge is 1: the paper's unit), "bounding_box" (the longest side is 1), "area" (the surface is 1)
+    ///     or "extent" (a cube has its side, whatever its rotation)
+    /// fixed : vertices that stay where they are: (n,) booleans or (j,) indices
+    /// strength : (n,) array, 0 (stay) to 1 (full effect)
+    /// ridge_weights : (m,) array > 0, 1 is neutral, smaller makes ridges cheaper there
+    /// delaunay : flip edges to intrinsic Delaunay before each step
+    /// dual : "barycentric", "circumcentric" (MeshError where a dual edge has no length) or "circumcentric_or_barycentric"
+    ///     (barycentres for such edges)
+    solver keywords
+    /// progress : Progress or None; its snapshot() shows the vertices after the last finished step
+    ///
+    /// Returns
+    /// -------
+    /// Stylized
+    ///
+    /// Raises
+    /// ------
+    /// ArgumentError, MeshError (no positions, no face with area), SolveError, Cancelled
+    ///
+    /// References
+    /// ----------
+    /// Rowe et al. 2024, eq. (24), section 7.3; reweighting: Candès et al. 2008.
+    signature = (mesh, *, iterations=20, fidelity=500.0, sharpness=0.5, coupling="joint", scale="max_edge", fixed=None, strength=None, ridge_weights=None, delaunay=false, dual="barycentric"), tolerance = None;
+    pub fn stylize(py: Python<'_>, solve, progress;
+        mesh: &Mesh,
+        iterations: i64,
+        fidelity: f64,
+        sharpness: f64,
+        coupling: &str,
+        scale: &str,
+        fixed: Option<&Bound<'_, PyAny>>,
+        strength: Option<&Bound<'_, PyAny>>,
+        ridge_weights: Option<&Bound<'_, PyAny>>,
+        delaunay: bool,
+        dual: &str,
+    ) -> PyResult<Stylized> {
+        let (n, m) = (mesh.n_vertices(), mesh.n_faces());
+        let options = tools::StylizeOptions {
+            iterations: at_least(py, "iterations", iterations, 0)?,
+            fidelity,
+            sharpness,
+            coupling: options::coupling(py, coupling)?,
+            scale: options::scale(py, scale)?,
+            fixed: fixed.map(|given| arrays::mask("fixed", given, n, "vertex")).transpose()?,
+            strength: options::weights("strength", strength, n, "vertex")?,
+            ridge_weights: options::weights("ridge_weights", ridge_weights, m, "face")?,
+            delaunay,
+            dual: options::dual(py, dual)?,
+            solve: solve()?,
+        };
+        let result = doorway::call(py, &progress, || tools::stylize(mesh.inner(), &options, &progress))?;
+        let counts = result.solver_iterations.iter().map(|&count| i32::try_from(count).unwrap_or(i32::MAX));
+        Ok(Stylized {
+            vertices: arrays::float_rows(py, &result.vertices)?.unbind(),
+            solver_iterations: counts.collect::<Vec<_>>().into_pyarray(py).unbind(),
+            iterations: result.gap.len(),
+            energy: result.energy.into_pyarray(py).unbind(),
+            gap: result.gap.into_pyarray(py).unbind(),
+            factorisations: result.factorisations,
+            status: result.status.name(),
+        })
+    }
 }

@@ -71,7 +71,7 @@ impl Paint<'_> {
         let mut sorted = Sorted { regions: Vec::with_capacity(copies.len()), off: Vec::with_capacity(copies.len()) };
         for (v, own) in copies.iter().enumerate() {
             let beside = around[v].iter().flat_map(|&u| &copies[u as usize]);
-            let mut fits = Fits { labels: &label_of, values: &values, found: Vec::new() };
+            let mut fits = Misfits { labels: &label_of, values: &values, found: Vec::new() };
             own.iter().for_each(|&copy| fits.add(copy));
             let here = fits.found.len();
             beside.for_each(|&copy| fits.add_beside(copy, here));
@@ -92,13 +92,13 @@ impl Paint<'_> {
 }
 
 /// The colours of regions at and around one vertex: label, their sum, and their number.
-struct Fits<'a> {
+struct Misfits<'a> {
     labels: &'a [i32],
     values: &'a Columns,
     found: Vec<(i32, Vec<f64>, f64)>,
 }
 
-impl Fits<'_> {
+impl Misfits<'_> {
     fn color(&self, copy: u32) -> Vec<f64> {
         (0..self.values.n_columns).map(|c| self.values.column(c)[copy as usize]).collect()
     }

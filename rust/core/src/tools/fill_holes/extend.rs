@@ -16,15 +16,26 @@ use crate::mesh::vector::{between, centroid, distance, Point};
 use crate::progress::Progress;
 use crate::Result;
 
-/// Lets the parts around the patch go on in it. Returns whether it ended where they meet, and if so, whether all are planes.
+/// How letting the parts go on ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Extended {
+    /// They do not say how the surface goes on, or do not meet.
+    NotMet,
+    /// They meet, and all are planes.
+    Planes,
+    /// They meet, and some are bent.
+    Bent,
+}
+
+/// Lets the parts around the patch go on in it until they meet.
 pub(super) fn extend(
     region: &mut Region,
     ridge: f64,
     edge_length: Option<f64>,
     progress: &Progress,
-) -> Result<Option<bool>> {
+) -> Result<Extended> {
     let edge = typical_edge(&region.mesh);
-    let Some(parts) = Parts::around(region, ridge, edge) else { return Ok(None) };
+    let Some(parts) = Parts::around(region, ridge, edge) else { return Ok(Extended::NotMet) };
     let mut labels = Vec::new();
     for round in 0..EXTEND_ROUNDS {
         progress.check()?;
@@ -53,8 +64,11 @@ pub(super) fn extend(
             break;
         }
     }
-    let is_there = has_arrived(region, &parts, &labels, edge);
-    Ok(is_there.then(|| parts.models.iter().all(|model| model.is_flat)))
+    Ok(match has_arrived(region, &parts, &labels, edge) {
+        false => Extended::NotMet,
+        true if parts.models.iter().all(|model| model.is_flat) => Extended::Planes,
+        true => Extended::Bent,
+    })
 }
 
 /// Cuts triangles that cannot lie on their part whatever their free vertices do, because they have none or because all their
@@ -175,7 +189,7 @@ mod tests {
     use crate::shapes::{self, Shape};
 
     /// The region of a hole after its smooth start and the extension, and what this said.
-    fn extended(shape: &Shape, place: Point, radius: f64) -> (Region, Option<bool>) {
+    fn extended(shape: &Shape, place: Point, radius: f64) -> (Region, Extended) {
         let mut region = around_hole(shape, place, radius);
         smooth(&mut region, Energy::L2Laplacian, 3, &Progress::new()).unwrap();
         let found = extend(&mut region, 0.9, None, &Progress::new()).unwrap();
@@ -196,7 +210,7 @@ mod tests {
             [(12, [1.0, 1.0, 0.1], 0.5), (12, [1.0; 3], 0.29), (12, [1.0; 3], 0.6), (24, [1.0; 3], 0.5)]
         {
             let (region, found) = extended(&shapes::cube(n), place, radius);
-            assert_eq!(found, Some(true));
+            assert_eq!(found, Extended::Planes);
             for (f, face) in region.patch_faces() {
                 let corners = region.mesh.corners(face);
                 assert!(off_cube(centroid(corners)) < 1e-9, "face {f}: {corners:?}");
@@ -226,7 +240,7 @@ mod tests {
         }
         let place = shape.vertices[bottom[5] as usize];
         let (region, found) = extended(&capped, place, 0.35);
-        assert_eq!(found, Some(false));
+        assert_eq!(found, Extended::Bent);
         for (f, face) in region.patch_faces() {
             let p = centroid(region.mesh.corners(face));
             let (radius, z) = (p[0].hypot(p[1]), p[2]);
@@ -237,7 +251,7 @@ mod tests {
     #[test]
     fn a_smooth_surface_is_one_part_that_goes_on_smoothly() {
         let (region, found) = extended(&shapes::icosphere(3), [0.0, 0.0, 1.0], 0.4);
-        assert_eq!(found, Some(false));
+        assert_eq!(found, Extended::Bent);
         let off = |v: u32| (norm(region.mesh.position(v)) - 1.0).abs();
         // A quadratic over five rings is no sphere (0.052 at its top), but a flat patch would be off by 0.08.
         let worst = region.free().map(off).fold(0.0, f64::max);

@@ -295,6 +295,7 @@ fn fill(working: &Working<'_>, options: &FillHolesOptions, progress: &Progress) 
     };
     let near = Neighbourhoods::new(mesh.connectivity(), &at_loops);
     let shared = choice::on_several(&chosen);
+    let filling = Filling { working, near, shared, options, progress };
     let total = patches.iter().map(|patch| patch.faces.len()).sum::<usize>().max(1) as f64;
     let mut done = 0.0;
     // Where the new vertices of a patch begin, as the triangulation numbered them.
@@ -305,7 +306,7 @@ fn fill(working: &Working<'_>, options: &FillHolesOptions, progress: &Progress) 
             Some(reason) => Err(reason),
             None => {
                 let watch = |part: f64, steps, energy| report(progress, done + share * part, "filling", steps, energy);
-                Ok(fill_one(working, &near, &shared, &patch, from, &mut filled, options, progress, &watch)?)
+                Ok(filling.one(&patch, from, &mut filled, &watch)?)
             }
         };
         done += share;
@@ -335,34 +336,42 @@ fn fill(working: &Working<'_>, options: &FillHolesOptions, progress: &Progress) 
     Ok(filled)
 }
 
-/// Restores one patch and appends it.
-#[allow(clippy::too_many_arguments)]
-fn fill_one(
-    working: &Working<'_>,
-    near: &Neighbourhoods<'_>,
-    shared: &HashSet<u32>,
-    patch: &Patch,
-    patches_from: u32,
-    filled: &mut Filled,
-    options: &FillHolesOptions,
-    progress: &Progress,
-    watch: &dyn Fn(f64, usize, Option<f64>),
-) -> Result<Restored> {
-    let mesh = working.mesh();
-    let mut region = Region::new(mesh, near, patch, patches_from, REGION_RINGS, shared)?;
-    region.first_new = (mesh.connectivity().n_vertices() + filled.vertices.len()) as u32;
-    let restored = restored_in_order(&mut region, patch, options, progress, &mut |region, part, steps, energy| {
-        let (vertices, faces, _) = region.patch();
-        progress.set_surface(vertices.into_iter().map(|p| working.place(p)).collect(), faces);
-        watch(part, steps, energy);
-    })?;
-    filled.vertices.extend(region.free().map(|v| region.mesh.position(v)));
-    filled.faces.extend(region.patch_faces().map(|(_, face)| face.map(|v| region.global(v))));
-    filled.patch.resize(filled.faces.len(), filled.holes.len() as u32);
-    if restored.shape != PatchShape::Smooth {
-        filled.ridges.extend(surface::ridges(&region, MARKED_ANGLE));
+/// What the filling of every hole knows.
+struct Filling<'a> {
+    working: &'a Working<'a>,
+    near: Neighbourhoods<'a>,
+    /// The vertices on several loops.
+    shared: HashSet<u32>,
+    options: &'a FillHolesOptions,
+    progress: &'a Progress,
+}
+
+impl Filling<'_> {
+    /// Restores one patch, whose new vertices begin at the number `from`, and appends it.
+    fn one(
+        &self,
+        patch: &Patch,
+        from: u32,
+        filled: &mut Filled,
+        watch: &dyn Fn(f64, usize, Option<f64>),
+    ) -> Result<Restored> {
+        let (mesh, progress) = (self.working.mesh(), self.progress);
+        let mut region = Region::new(mesh, &self.near, patch, from, REGION_RINGS, &self.shared)?;
+        region.first_new = (mesh.connectivity().n_vertices() + filled.vertices.len()) as u32;
+        let restored =
+            restored_in_order(&mut region, patch, self.options, progress, &mut |region, part, steps, energy| {
+                let (vertices, faces, _) = region.patch();
+                progress.set_surface(vertices.into_iter().map(|p| self.working.place(p)).collect(), faces);
+                watch(part, steps, energy);
+            })?;
+        filled.vertices.extend(region.free().map(|v| region.mesh.position(v)));
+        filled.faces.extend(region.patch_faces().map(|(_, face)| face.map(|v| region.global(v))));
+        filled.patch.resize(filled.faces.len(), filled.holes.len() as u32);
+        if restored.shape != PatchShape::Smooth {
+            filled.ridges.extend(surface::ridges(&region, MARKED_ANGLE));
+        }
+        Ok(restored)
     }
-    Ok(restored)
 }
 
 fn report(progress: &Progress, fraction: f64, stage: &str, iteration: usize, energy: Option<f64>) {

@@ -1,15 +1,13 @@
 //! How a part of the surface around a hole goes on: as a plane, or as a quadratic height over one.
 
 use super::constants::{AS_GOOD, BENT_STIFFNESS, FLAT};
-use crate::mesh::vector::{add, dot, scale, sub, unit, Point};
-use crate::tools::heights::{frame, solve, TERMS};
+use crate::mesh::vector::{add, dot, scale, sub, Point};
+use crate::tools::heights::{Frame, LeastSquares, TERMS};
 
 /// A surface that goes on as the points do that it was fitted to.
 #[derive(Debug, Clone)]
 pub(super) struct Model {
-    origin: Point,
-    axes: [Point; 3],
-    scale: f64,
+    frame: Frame,
     coefficients: [f64; TERMS],
     /// Whether it is a plane.
     pub is_flat: bool,
@@ -28,16 +26,14 @@ impl Model {
         let origin = points.iter().fold([0.0; 3], |sum, &(p, weight)| add(sum, scale(p, weight / total)));
         let spread: f64 = points.iter().map(|&(p, weight)| weight / total * dot(sub(p, origin), sub(p, origin))).sum();
         let mut flat = Self {
-            origin,
-            axes: frame(normal),
-            scale: spread.sqrt().max(f64::MIN_POSITIVE),
+            frame: Frame::new(origin, normal, spread.sqrt().max(f64::MIN_POSITIVE)),
             coefficients: [0.0; TERMS],
             is_flat: true,
             misfit: 0.0,
         };
         flat.solve(points, total, 1e12);
         // Heights are measured along the normal of the plane that the first fit found.
-        flat.axes = frame(flat.at(origin).1);
+        flat.frame = Frame::new(origin, flat.at(origin).1, flat.frame.scale);
         flat.solve(points, total, 1e12);
         let mut bent = Self { is_flat: false, ..flat.clone() };
         bent.solve(points, total, BENT_STIFFNESS);
@@ -46,19 +42,12 @@ impl Model {
     }
 
     fn solve(&mut self, points: &[(Point, f64)], total: f64, stiffness: f64) {
-        let (mut matrix, mut right) = ([[0.0; TERMS]; TERMS], [0.0; TERMS]);
+        let mut squares = LeastSquares::new(1);
         for &(p, weight) in points {
-            let (terms, height) = self.terms(p);
-            for i in 0..TERMS {
-                (0..TERMS).for_each(|j| matrix[i][j] += weight / total * terms[i] * terms[j]);
-                right[i] += weight / total * terms[i] * height;
-            }
+            let (terms, height) = self.frame.terms(p);
+            squares.add(weight / total, &terms, |_| height);
         }
-        for (i, row) in matrix.iter_mut().enumerate() {
-            // The constant and the slopes need it only where the points lie on a line.
-            row[i] += if i < 3 { 1e-12 } else { stiffness };
-        }
-        self.coefficients = solve(matrix, right);
+        self.coefficients = squares.solve(1e-12, stiffness)[0];
         if self.is_flat {
             self.coefficients[3..].fill(0.0);
         }
@@ -66,22 +55,9 @@ impl Model {
         self.misfit = squares.sqrt();
     }
 
-    fn terms(&self, p: Point) -> ([f64; TERMS], f64) {
-        let d = sub(p, self.origin);
-        let [s, t, height] = self.axes.map(|axis| dot(axis, d) / self.scale);
-        ([1.0, s, t, s * s, s * t, t * t], height)
-    }
-
     /// The signed distance of `p`, to first order, and the unit normal of the surface there.
     pub(super) fn at(&self, p: Point) -> (f64, Point) {
-        let (terms, height) = self.terms(p);
-        let c = &self.coefficients;
-        let off = height - terms.iter().zip(c).map(|(t, c)| t * c).sum::<f64>();
-        let slope = [c[1] + 2.0 * c[3] * terms[1] + c[4] * terms[2], c[2] + c[4] * terms[1] + 2.0 * c[5] * terms[2]];
-        let [first, second, up] = self.axes;
-        let steepness = (1.0 + slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
-        let normal = unit(sub(up, add(scale(first, slope[0]), scale(second, slope[1]))));
-        (self.scale * off / steepness, normal)
+        (self.frame.distance(&self.coefficients, p), self.frame.normal(&self.coefficients, p))
     }
 }
 
@@ -89,7 +65,9 @@ impl Model {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use crate::mesh::vector::unit;
     use crate::shapes::Random;
+    use crate::tools::heights::axes_along as frame;
 
     /// Points of a height over a plane, which lies askew.
     fn points(height: impl Fn(f64, f64) -> f64) -> Vec<(Point, f64)> {

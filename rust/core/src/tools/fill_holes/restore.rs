@@ -5,7 +5,7 @@ use super::constants::{
     MOST_BEND, RESAMPLE_EVERY, RESAMPLE_ROUNDS, RIDGE, SHARP, SMOOTH_ROUNDS, SNAPS, SNAP_FROM, STILL_CYCLE,
 };
 use super::decide::{ridges_around, Ridges};
-use super::extend::extend;
+use super::extend::{extend, Extended};
 use super::fair::fair;
 use super::flips::flip_along_ridges;
 use super::flow::flow;
@@ -179,11 +179,13 @@ fn extend_between(
 ) -> Result<Option<Region>> {
     for bend in [ridges.least, ridges.most] {
         let mut extended = region.clone();
-        if let Some(flat) = extend(&mut extended, RIDGE * bend, options.edge_length, progress)? {
-            if !flat {
+        match extend(&mut extended, RIDGE * bend, options.edge_length, progress)? {
+            Extended::NotMet => {}
+            Extended::Planes => return Ok(Some(extended)),
+            Extended::Bent => {
                 finish(&mut extended, options, RIDGE * bend, progress)?;
+                return Ok(Some(extended));
             }
-            return Ok(Some(extended));
         }
         if ridges.most < ALIKE * ridges.least {
             break;

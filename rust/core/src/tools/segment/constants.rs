@@ -63,7 +63,7 @@ pub(super) const PERSISTENCE: f64 = 0.03;
 /// A border stands if it bends by more than this share of the length weight.
 pub(super) const BEND: f64 = 0.8;
 
-/// Shares of that bend up to which borders fall before each refit: with cleaner borders the later ones
+/// Shares of that bend up to which borders fall before each relabeling: with cleaner borders the later ones
 /// are measured better.
 pub(super) const BEND_SHARES: [f64; 4] = [0.4, 0.7, 1.0, 1.0];
 
@@ -144,8 +144,8 @@ pub(super) const SPECK_TOLERANCE: f64 = 2.0;
 // Where borders run.
 
 /// Rounds of fits, and sweeps over the faces with the fits of a round.
-pub(super) const REFIT_ROUNDS: usize = 6;
-pub(super) const REFIT_SWEEPS: usize = 12;
+pub(super) const RELABEL_ROUNDS: usize = 6;
+pub(super) const RELABEL_SWEEPS: usize = 12;
 
 /// A segment counts as plane if it is off its plane by no more than this many times the noise, or this
 /// part of an edge.

@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 
 use super::constants::{DIVIDE_ROUNDS, DIVIDE_TURNS, EVIDENCE_TO_DIVIDE, LEAST_PART};
-use super::fit::{Patch, Plane};
+use super::patches::{Patch, Plane};
 use super::surface::{members, pieces, Surface};
 use crate::mesh::vector::{distance, dot, Point};
 use crate::progress::Progress;

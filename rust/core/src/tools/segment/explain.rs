@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::constants::{EVIDENCE_TO_KEEP, LEAST_AROUND, SPECK_TOLERANCE};
 use super::divide::log_likelihood_ratio;
-use super::fit::{Patch, Plane};
+use super::patches::{Patch, Plane};
 use super::surface::{members, Surface};
 use crate::mesh::vector::{add, dot};
 use crate::progress::Progress;

@@ -1,9 +1,9 @@
 //! Segmentation: the faces that a person would name, with clean borders (Rowe et al. 2024, section 7.5).
 //!
 //! [`indicator`] minimises the functional (41), whose `v` is low at borders. From there on the paper's way is [`threshold`]; the
-//! other one is [`watershed`], then merging across borders that bend little ([`crease`], [`merge`]), dividing what lies across a
+//! other one ([`passes`]) is [`watershed`], then merging across borders that bend little ([`crease`], [`merge`]), dividing what lies across a
 //! ridge ([`divide`]), joining what a neighbour explains ([`explain`]), and moving faces at borders
-//! to the segment that they fit best ([`refit`]), or, between curved segments, along creases ([`straighten`]). Sides of a few triangles, which the Hessian cannot see, are told by their planes
+//! to the segment that they fit best ([`relabel`]), or, between curved segments, along creases ([`straighten`]). Sides of a few triangles, which the Hessian cannot see, are told by their planes
 //! ([`exact`]), those of a few rows under little noise by the normals of their faces ([`flat_sides`]). In any case a [`hierarchy`] of nested segmentations comes with it.
 
 mod constants;
@@ -12,17 +12,18 @@ mod cut;
 mod divide;
 mod exact;
 mod explain;
-mod fit;
-mod fitted;
 mod flat_sides;
 mod hierarchy;
 mod indicator;
 mod indicator_step;
 mod merge;
 mod noise;
+mod normalized;
 mod options;
 mod part;
-mod refit;
+mod passes;
+mod patches;
+mod relabel;
 mod slopes;
 mod straighten;
 mod surface;
@@ -44,11 +45,12 @@ use crate::unit::Unit;
 use crate::Result;
 use constants::{BEND, LEAST_EPSILON};
 use exact::coarse_planes;
-use fitted::{Finished, Fitted};
 use flat_sides::flat_sides;
 use indicator::Functional;
 use noise::noise_level;
-use surface::Surface;
+use normalized::Normalized;
+use passes::Passes;
+use surface::{contiguous, Surface};
 
 /// What came out of a segmentation.
 #[derive(Debug, Clone, PartialEq)]
@@ -159,7 +161,7 @@ fn whole(
         return Err(MeshError::NoFaces.into());
     }
     let signal = values.map(Normalized::of);
-    let start = signal.as_ref().map_or_else(|| Columns::from_points(&surface.positions), |s| s.normalised.clone());
+    let start = signal.as_ref().map_or_else(|| Columns::from_points(&surface.positions), |s| s.values.clone());
     let plain = values.is_none() && options.fidelity.is_none() && options.method == SegmentMethod::Fitted;
     let exact = if plain { coarse_planes(&surface, BEND * options.length_weight) } else { None };
     let is_exact = exact.is_some();
@@ -183,7 +185,7 @@ fn whole(
         settings: *settings,
     };
     let found = if is_exact { functional.indicate(progress)? } else { functional.minimise(progress)? };
-    let fitted = Fitted {
+    let passes = Passes {
         surface: &surface,
         start: &start,
         is_shape: values.is_none(),
@@ -193,7 +195,11 @@ fn whole(
         options,
         progress,
     };
-    let Finished { hierarchy, n_segments } = fitted.segments()?;
+    let slopes = passes.slopes();
+    let merging = passes.merging(&slopes);
+    let leaves = passes.leaves()?;
+    let (labels, n_segments) = contiguous(&passes.joined(&merging, &leaves)?);
+    let hierarchy = passes.hierarchy(&merging, &leaves, &labels)?;
     let labels = hierarchy.labels_at(n_segments)?;
     let unscaled = |columns: &Columns| match &signal {
         Some(signal) => signal.restored(columns),
@@ -225,37 +231,4 @@ fn boundary_edges(mesh: &Mesh, labels: &[i32]) -> Vec<[u32; 2]> {
         })
     };
     connectivity.edges().filter(|&h| between(h)).map(|h| [connectivity.tail(h), connectivity.head(h)]).collect()
-}
-
-/// A signal shifted and scaled so that its widest column has a range of 1: weights then mean the same for every signal.
-struct Normalized {
-    normalised: Columns,
-    low: Vec<f64>,
-    range: f64,
-}
-
-impl Normalized {
-    fn of(values: &Columns) -> Self {
-        let ends = |c: usize| {
-            let column = values.column(c).iter();
-            column.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &x| [low.min(x), high.max(x)])
-        };
-        let ends: Vec<[f64; 2]> = (0..values.n_columns).map(ends).collect();
-        let low: Vec<f64> = ends.iter().map(|[low, _]| *low).collect();
-        let range = ends.iter().fold(0.0_f64, |range, [low, high]| range.max(high - low));
-        let range = if range > 0.0 { range } else { 1.0 };
-        let mut normalised = values.clone();
-        for (c, low) in low.iter().enumerate() {
-            normalised.column_mut(c).iter_mut().for_each(|x| *x = (*x - low) / range);
-        }
-        Self { normalised, low, range }
-    }
-
-    fn restored(&self, columns: &Columns) -> Columns {
-        let mut restored = columns.clone();
-        for (c, low) in self.low.iter().enumerate() {
-            restored.column_mut(c).iter_mut().for_each(|x| *x = *x * self.range + low);
-        }
-        restored
-    }
 }

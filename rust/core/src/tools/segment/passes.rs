@@ -1,14 +1,14 @@
-//! From the indicator to segments and their hierarchy.
+//! The passes from the indicator to segments and their hierarchy, each with what it takes from the options and the noise.
 
 use super::constants::{BEND, BEND_SHARES, MOST_LEAST_FACES, NOISY, PERSISTENCE, PLANE_EDGE, PLANE_NOISE};
 use super::divide::Divide;
 use super::exact::Planes;
 use super::explain::Explain;
-use super::fit::patch_size;
 use super::hierarchy::Hierarchy;
 use super::merge::{rename, Merge, Merging};
 use super::options::{SegmentMethod, SegmentOptions};
-use super::refit::Refit;
+use super::patches::patch_size;
+use super::relabel::Relabel;
 use super::slopes::Slopes;
 use super::straighten::Straighten;
 use super::surface::{contiguous, Surface};
@@ -20,7 +20,7 @@ use crate::progress::{Progress, Report};
 use crate::Result;
 
 /// All that segments are made from.
-pub(super) struct Fitted<'a> {
+pub(super) struct Passes<'a> {
     pub surface: &'a Surface<'a>,
     /// The signal as it came, in the unit of the segmentation.
     pub start: &'a Columns,
@@ -34,49 +34,59 @@ pub(super) struct Fitted<'a> {
     pub progress: &'a Progress,
 }
 
-/// Nested segmentations, and which of them is the answer.
-pub(super) struct Finished {
-    pub hierarchy: Hierarchy,
-    pub n_segments: usize,
-}
-
-impl Fitted<'_> {
-    /// The segments.
-    ///
-    /// # Errors
-    /// [`crate::Error::Cancelled`].
-    pub fn segments(&self) -> Result<Finished> {
-        self.report(0.9, "segments");
-        let slopes = match self.planes {
+impl<'a> Passes<'a> {
+    /// What bends across borders.
+    pub fn slopes(&self) -> Slopes {
+        match self.planes {
             Some(planes) => Slopes::of_planes(self.surface, &planes.normals),
             None if self.is_shape => Slopes::of_shape(self.surface, self.noise),
             None => Slopes::of_values(self.surface, self.start, self.noise),
-        };
-        let merging = Merging { surface: self.surface, slopes: &slopes, groups: None, progress: self.progress };
-        let mut leaves = match (self.planes, self.options.method) {
-            (Some(planes), _) => planes.labels.clone(),
-            (None, SegmentMethod::Paper) => {
-                let (threshold, least) = (self.options.cut_threshold, self.least_faces());
-                cut_and_merge(self.surface, self.indicator, threshold, least).0
-            }
-            (None, SegmentMethod::Fitted) => watershed(self.surface, self.indicator, PERSISTENCE).0,
-        };
-        if self.planes.is_none() && self.options.method == SegmentMethod::Fitted {
-            self.divide(&mut leaves)?;
         }
-        let mut labels = leaves.clone();
+    }
+
+    /// What merges across borders that bend little.
+    pub fn merging(&self, slopes: &'a Slopes) -> Merging<'a> {
+        Merging { surface: self.surface, slopes, groups: None, progress: self.progress }
+    }
+
+    /// The segments to begin with: planes, or pieces between low indicators, divided where a ridge runs through them.
+    ///
+    /// # Errors
+    /// [`crate::Error::Cancelled`].
+    pub fn leaves(&self) -> Result<Vec<u32>> {
+        self.report(0.9, "segments");
+        if let Some(planes) = self.planes {
+            return Ok(planes.labels.clone());
+        }
+        match self.options.method {
+            SegmentMethod::Paper => {
+                let (threshold, least) = (self.options.cut_threshold, self.least_faces());
+                Ok(cut_and_merge(self.surface, self.indicator, threshold, least).0)
+            }
+            SegmentMethod::Fitted => {
+                let mut leaves = watershed(self.surface, self.indicator, PERSISTENCE).0;
+                self.divide(&mut leaves)?;
+                Ok(leaves)
+            }
+        }
+    }
+
+    /// The segments that are left of `leaves`, without borders that bend little.
+    ///
+    /// # Errors
+    /// [`crate::Error::Cancelled`].
+    pub fn joined(&self, merging: &Merging<'_>, leaves: &[u32]) -> Result<Vec<u32>> {
+        let mut labels = leaves.to_vec();
         if self.planes.is_some() {
             merging.below(&mut labels, BEND * self.options.length_weight)?;
             merging.absorb_small(&mut labels, self.options.min_faces.unwrap_or(0))?;
         } else if self.options.method == SegmentMethod::Fitted {
-            self.fit(&merging, &mut labels)?;
+            self.fit(merging, &mut labels)?;
         }
         if let Some(n) = self.options.n_segments {
-            self.merge_to(&merging, &mut labels, n)?;
+            self.merge_to(merging, &mut labels, n)?;
         }
-        let (labels, n_segments) = contiguous(&labels);
-        let hierarchy = self.hierarchy(&merging, &leaves, &labels)?;
-        Ok(Finished { hierarchy, n_segments })
+        Ok(labels)
     }
 
     /// How many faces a segment must have: twenty where the noise is a tenth of an edge, down to a fifth of that where there is less.
@@ -113,9 +123,9 @@ impl Fitted<'_> {
         Explain { surface, deviation, flat, most_faces, curved, progress: self.progress }.run(labels)
     }
 
-    /// Merges and refits in turns.
+    /// Merges and relabels in turns.
     fn fit(&self, merging: &Merging<'_>, labels: &mut Vec<u32>) -> Result<()> {
-        let refit = Refit {
+        let relabel = Relabel {
             surface: self.surface,
             signal: (!self.is_shape).then_some(self.start),
             noise: self.noise,
@@ -130,7 +140,7 @@ impl Fitted<'_> {
             self.explain(labels, false)?;
             self.divide(labels)?;
             let before = labels.clone();
-            refit.run(labels)?;
+            relabel.run(labels)?;
             if *labels == before && share == 1.0 {
                 break;
             }
@@ -139,14 +149,14 @@ impl Fitted<'_> {
         let straighten = self.is_shape.then(|| Straighten::new(self.surface, flat, self.progress));
         if let Some(straighten) = &straighten {
             straighten.run(labels)?;
-            refit.rejoin(labels);
+            relabel.rejoin(labels);
         }
         merging.below(labels, threshold)?;
         merging.absorb_small(labels, self.least_faces())?;
         self.explain(labels, true)?;
         if let Some(straighten) = &straighten {
             straighten.run(labels)?;
-            refit.rejoin(labels);
+            relabel.rejoin(labels);
         }
         Ok(())
     }
@@ -165,7 +175,7 @@ impl Fitted<'_> {
 
     /// The finest segments are the pieces of `leaves` inside the segments `labels`; they merge to those, and those to one for each
     /// connected part.
-    fn hierarchy(&self, merging: &Merging<'_>, leaves: &[u32], labels: &[u32]) -> Result<Hierarchy> {
+    pub fn hierarchy(&self, merging: &Merging<'_>, leaves: &[u32], labels: &[u32]) -> Result<Hierarchy> {
         self.report(0.98, "hierarchy");
         let (finest, n_leaves) = self.nested_leaves(leaves, labels);
         let mut current = finest.clone();

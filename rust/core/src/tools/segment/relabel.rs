@@ -6,10 +6,10 @@
 use std::collections::BTreeMap;
 
 use super::constants::{
-    EDGE_COST, LEAST_NOISE, LEAST_NOISE_OF_VALUES, LEAST_TURN, MOST_MISFIT, PLANE_EDGE, PLANE_NOISE, REFIT_ROUNDS,
-    REFIT_SWEEPS, TURN_OF_NOISE,
+    EDGE_COST, LEAST_NOISE, LEAST_NOISE_OF_VALUES, LEAST_TURN, MOST_MISFIT, PLANE_EDGE, PLANE_NOISE, RELABEL_ROUNDS,
+    RELABEL_SWEEPS, TURN_OF_NOISE,
 };
-use super::fit::{nearby, patch_size, Patch, Plane};
+use super::patches::{nearby, patch_size, Patch, Plane};
 use super::surface::{pieces, Surface};
 use crate::linear::Columns;
 use crate::mesh::vector::{distance, unit};
@@ -17,7 +17,7 @@ use crate::progress::Progress;
 use crate::Result;
 
 /// What is fitted, and how exactly.
-pub(super) struct Refit<'a> {
+pub(super) struct Relabel<'a> {
     pub surface: &'a Surface<'a>,
     /// The signal, or nothing for the shape itself.
     pub signal: Option<&'a Columns>,
@@ -28,9 +28,9 @@ pub(super) struct Refit<'a> {
     pub progress: &'a Progress,
 }
 
-/// The fits of one round.
-struct Fits<'a, 'b> {
-    refit: &'b Refit<'a>,
+/// What segments look like in one round.
+struct Round<'a, 'b> {
+    relabel: &'b Relabel<'a>,
     labels: Vec<u32>,
     planes: BTreeMap<u32, Plane>,
     /// The misfit of a face with a segment.
@@ -43,18 +43,18 @@ struct Fits<'a, 'b> {
     turn: f64,
 }
 
-impl Refit<'_> {
+impl Relabel<'_> {
     /// Moves faces until none wants to move. Segments may vanish, and fall into pieces that are segments then.
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
     pub fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
-        for _ in 0..REFIT_ROUNDS {
+        for _ in 0..RELABEL_ROUNDS {
             self.progress.check()?;
             let before = labels.clone();
-            let mut fits = Fits::new(self, before.clone());
-            for _ in 0..REFIT_SWEEPS {
-                if !self.sweep(&mut fits, labels) {
+            let mut round = Round::new(self, before.clone());
+            for _ in 0..RELABEL_SWEEPS {
+                if !self.sweep(&mut round, labels) {
                     break;
                 }
             }
@@ -67,7 +67,7 @@ impl Refit<'_> {
     }
 
     /// One pass over the faces at borders; whether any moved.
-    fn sweep(&self, fits: &mut Fits<'_, '_>, labels: &mut [u32]) -> bool {
+    fn sweep(&self, round: &mut Round<'_, '_>, labels: &mut [u32]) -> bool {
         let mut moved = false;
         for f in 0..labels.len() {
             if !self.surface.is_at_border(labels, f) {
@@ -81,7 +81,7 @@ impl Refit<'_> {
             }
             let mut best = (f64::INFINITY, labels[f]);
             for label in candidates {
-                let cost = fits.misfit(f, label) + self.border_cost(labels, f, label);
+                let cost = round.misfit(f, label) + self.border_cost(labels, f, label);
                 if cost < best.0 - 1e-12 {
                     best = (cost, label);
                 }
@@ -153,12 +153,12 @@ impl Refit<'_> {
     }
 }
 
-impl<'a, 'b> Fits<'a, 'b> {
-    fn new(refit: &'b Refit<'a>, labels: Vec<u32>) -> Self {
-        let surface = refit.surface;
+impl<'a, 'b> Round<'a, 'b> {
+    fn new(relabel: &'b Relabel<'a>, labels: Vec<u32>) -> Self {
+        let surface = relabel.surface;
         let m = labels.len();
         let mut planes = BTreeMap::new();
-        if refit.signal.is_none() {
+        if relabel.signal.is_none() {
             let mut members: BTreeMap<u32, (Vec<u32>, Vec<u32>)> = BTreeMap::new();
             for f in 0..m {
                 let entry = members.entry(labels[f]).or_default();
@@ -167,7 +167,7 @@ impl<'a, 'b> Fits<'a, 'b> {
                 }
                 entry.1.push(f as u32);
             }
-            let flat = (PLANE_NOISE * refit.noise).max(PLANE_EDGE * surface.mean_edge);
+            let flat = (PLANE_NOISE * relabel.noise).max(PLANE_EDGE * surface.mean_edge);
             for (label, (inside, all)) in members {
                 let plane = Plane::through(surface, if inside.is_empty() { &all } else { &inside });
                 if let Some(plane) = plane.filter(|plane| plane.spread <= flat) {
@@ -175,17 +175,17 @@ impl<'a, 'b> Fits<'a, 'b> {
                 }
             }
         }
-        let least = if refit.signal.is_none() { LEAST_NOISE * surface.mean_edge } else { LEAST_NOISE_OF_VALUES };
+        let least = if relabel.signal.is_none() { LEAST_NOISE * surface.mean_edge } else { LEAST_NOISE_OF_VALUES };
         Self {
-            refit,
+            relabel,
             labels,
             planes,
             known: BTreeMap::new(),
             seen: vec![0; m],
             stamp: 0,
-            patch_size: patch_size(refit.noise / surface.mean_edge),
-            deviation: refit.noise.max(least),
-            turn: LEAST_TURN + TURN_OF_NOISE * refit.noise / surface.mean_edge,
+            patch_size: patch_size(relabel.noise / surface.mean_edge),
+            deviation: relabel.noise.max(least),
+            turn: LEAST_TURN + TURN_OF_NOISE * relabel.noise / surface.mean_edge,
         }
     }
 
@@ -194,9 +194,9 @@ impl<'a, 'b> Fits<'a, 'b> {
         if let Some(known) = self.known.get(&(f as u32, label)) {
             return *known;
         }
-        let surface = self.refit.surface;
+        let surface = self.relabel.surface;
         let corners = surface.connectivity.faces()[f].map(|v| v as usize);
-        let signal = self.refit.signal;
+        let signal = self.relabel.signal;
         let fit = if let Some(plane) = self.planes.get(&label) {
             Some((corners.map(|v| plane.distance(surface.positions[v])), plane.normal()))
         } else {
@@ -224,7 +224,7 @@ impl<'a, 'b> Fits<'a, 'b> {
             if let Some(&start) = ring.iter().find(|&&g| self.labels[g] == label) {
                 return Some(start);
             }
-            let next: Vec<usize> = ring.iter().flat_map(|&g| self.refit.surface.around(g).map(|(_, g)| g)).collect();
+            let next: Vec<usize> = ring.iter().flat_map(|&g| self.relabel.surface.around(g).map(|(_, g)| g)).collect();
             ring = next;
         }
         None

@@ -5,7 +5,7 @@ use super::surface::Surface;
 use crate::linear::small::symmetric_eigen;
 use crate::linear::Columns;
 use crate::mesh::vector::{add, dot, norm, scale, sub, unit, Point};
-use crate::tools::heights::{frame, solve, TERMS};
+use crate::tools::heights::{value, Frame, LeastSquares, TERMS};
 
 /// How many faces a local fit looks at where the noise is this part of a mean edge.
 pub(super) fn patch_size(noise: f64) -> usize {
@@ -64,9 +64,7 @@ impl Plane {
 
 /// A function `1, s, t, s², st, t²` over the tangent plane of a patch: its height, or the columns of a signal.
 pub(super) struct Patch {
-    origin: [f64; 3],
-    axes: [[f64; 3]; 3],
-    scale: f64,
+    frame: Frame,
     /// For each column of the signal the coefficients; for the height one.
     coefficients: Vec<[f64; TERMS]>,
 }
@@ -88,63 +86,28 @@ impl Patch {
         if area <= 0.0 || norm(normal) <= 0.0 {
             return None;
         }
-        let axes = frame(unit(normal));
-        let origin = origin.map(|c| c / area);
-        let mut patch = Self { origin, axes, scale: area.sqrt(), coefficients: Vec::new() };
-        let columns = signal.map_or(1, |s| s.n_columns);
-        let mut matrix = [[0.0; TERMS]; TERMS];
-        let mut right = vec![[0.0; TERMS]; columns];
+        let frame = Frame::new(origin.map(|c| c / area), unit(normal), area.sqrt());
+        let mut squares = LeastSquares::new(signal.map_or(1, |s| s.n_columns));
         for &f in faces {
             let weight = surface.areas[f as usize] / area;
             for v in surface.connectivity.faces()[f as usize] {
-                let (terms, height) = patch.terms(surface.positions[v as usize]);
-                for i in 0..TERMS {
-                    (0..TERMS).for_each(|j| matrix[i][j] += weight * terms[i] * terms[j]);
-                    for (c, row) in right.iter_mut().enumerate() {
-                        let value = signal.map_or(height, |s| s.column(c)[v as usize]);
-                        row[i] += weight * terms[i] * value;
-                    }
-                }
+                let (terms, height) = frame.terms(surface.positions[v as usize]);
+                squares.add(weight, &terms, |c| signal.map_or(height, |s| s.column(c)[v as usize]));
             }
         }
-        for (i, row) in matrix.iter_mut().enumerate() {
-            // The constant and the slopes need it only where the corners lie on a line.
-            row[i] += if i < 3 { 1e-9 } else { PATCH_STIFFNESS };
-        }
-        patch.coefficients = right.iter().map(|row| solve(matrix, *row)).collect();
-        Some(patch)
-    }
-
-    /// The terms at `p`, and its height, in units of the patch's size.
-    fn terms(&self, p: [f64; 3]) -> ([f64; TERMS], f64) {
-        let d = sub(p, self.origin);
-        let [s, t, height] = self.axes.map(|axis| dot(axis, d) / self.scale);
-        ([1.0, s, t, s * s, s * t, t * t], height)
+        Some(Self { frame, coefficients: squares.solve(1e-9, PATCH_STIFFNESS) })
     }
 
     /// How far vertex `v` lies off the continued patch: a distance, or the norm over the columns of the signal.
     pub fn misfit(&self, surface: &Surface<'_>, v: usize, signal: Option<&Columns>) -> f64 {
-        let (terms, height) = self.terms(surface.positions[v]);
-        let at = |c: &[f64; TERMS]| terms.iter().zip(c).map(|(t, c)| t * c).sum::<f64>();
         match signal {
-            None => {
-                let slope = self.slope(&terms);
-                let steepness = (1.0 + slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
-                self.scale * (height - at(&self.coefficients[0])).abs() / steepness
-            }
+            None => self.frame.distance(&self.coefficients[0], surface.positions[v]).abs(),
             Some(signal) => {
-                let squares = self.coefficients.iter().enumerate().map(|(k, c)| (signal.column(k)[v] - at(c)).powi(2));
-                squares.sum::<f64>().sqrt()
+                let terms = self.frame.terms(surface.positions[v]).0;
+                let off = |(k, c): (usize, &[f64; TERMS])| (signal.column(k)[v] - value(c, &terms)).powi(2);
+                self.coefficients.iter().enumerate().map(off).sum::<f64>().sqrt()
             }
         }
-    }
-}
-
-impl Patch {
-    /// The slope of the first column at a point with these terms.
-    fn slope(&self, terms: &[f64; TERMS]) -> [f64; 2] {
-        let c = &self.coefficients[0];
-        [c[1] + 2.0 * c[3] * terms[1] + c[4] * terms[2], c[2] + c[4] * terms[1] + 2.0 * c[5] * terms[2]]
     }
 
     /// The sum of the squared distances of all corners of `faces` from a patch of a shape.
@@ -158,15 +121,13 @@ impl Patch {
         let c = &self.coefficients[0];
         let (values, vectors) = symmetric_eigen(vec![vec![2.0 * c[3], c[4]], vec![c[4], 2.0 * c[5]]]);
         let most = usize::from(values[1].abs() > values[0].abs());
-        let [first, second, _] = self.axes;
+        let [first, second, _] = self.frame.axes;
         [most, 1 - most].map(|i| add(scale(first, vectors[i][0]), scale(second, vectors[i][1])))
     }
 
     /// The unit normal of the continued patch of a shape at `p`.
     pub fn normal(&self, p: Point) -> Point {
-        let [s, t] = self.slope(&self.terms(p).0);
-        let [first, second, up] = self.axes;
-        unit(sub(up, add(scale(first, s), scale(second, t))))
+        self.frame.normal(&self.coefficients[0], p)
     }
 }
 
