@@ -57,6 +57,54 @@ def defines(path, name):
     return re.search(rf"\b(fn|struct|enum|trait|type|const)\s+{re.escape(name)}\b", text) is not None
 
 
+NOT_COMPUTED = {*range(31, 38)}
+"""Equations of the paper that derive boundary conditions; docs/equations.md says so."""
+
+
+def paper_rows():
+    """Numbers, file and names of every row of the paper's table in docs/equations.md."""
+    page = ROOT / "docs/equations.md"
+    for line in page.read_text(encoding="utf-8").split("## Other sources")[0].splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if len(cells) == 4 and (link := LINK.fullmatch(cells[2])):
+            numbers = {int(number) for number in re.findall(r"\((\d+)\)", cells[0])}
+            yield numbers, (page.parent / link[1]).resolve(), re.findall(r"`([^`]+)`", cells[3])
+
+
+def documentation(path, name):
+    """The doc comments of all that a Rust file defines by this name."""
+    item = r"(?:pub(?:\([a-z]+\))? )?(?:const )?(?:fn|struct|enum|trait|type)"
+    definition = rf"^((?:[ \t]*(?:///|#\[)[^\n]*\n)*)[ \t]*{item}\s+{re.escape(name)}\b"
+    return "\n".join(re.findall(definition, path.read_text(encoding="utf-8"), re.MULTILINE))
+
+
+def test_functions_carry_the_numbers_of_their_equations():
+    rows = list(paper_rows())
+    assert len(rows) > 25
+    for numbers, path, names in rows:
+        text = "".join(documentation(path, name) for name in names)
+        missing = [number for number in sorted(numbers) if f"({number})" not in text]
+        assert missing == [], f"{path.name}: {names} does not name {missing}"
+    listed = set().union(*(numbers for numbers, _, _ in rows))
+    assert set(range(15, 42)) - listed == NOT_COMPUTED
+
+
+def test_every_equation_that_code_claims_is_in_the_index():
+    rows = list(paper_rows())
+    claim = re.compile(
+        r"Rowe et al\. 2024, [^()]*?eqs?\. (\(\d+\)(?:(?:, | and |, in matrices eq\. )\(\d+\))*)"
+    )
+    found = 0
+    for path in sorted((ROOT / "rust/core/src").rglob("*.rs")):
+        for block in re.findall(r"(?:^[ \t]*///[^\n]*\n)+", path.read_text(encoding="utf-8"), re.MULTILINE):
+            text = " ".join(line.strip().removeprefix("///").strip() for line in block.splitlines())
+            for numbers in claim.findall(text):
+                for number in map(int, re.findall(r"\d+", numbers)):
+                    found += 1
+                    assert any(number in n and path == p for n, p, _ in rows), f"{path}: ({number})"
+    assert found > 20
+
+
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_relative_links_and_pictures_exist(page):
     for target in relative_links(page):

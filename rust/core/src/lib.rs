@@ -14,6 +14,7 @@ pub mod progress;
 #[doc(hidden)]
 pub mod random;
 pub mod remesh;
+pub mod shape_guard;
 #[doc(hidden)]
 pub mod shapes;
 pub mod solve;

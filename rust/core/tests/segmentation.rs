@@ -1,11 +1,27 @@
 //! Segmentation: the face Laplacian, the functional's fixed points, stopping, and the paper's way.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use ridgeform_core::operators::{face_laplacian, face_laplacian_weights};
+use ridgeform_core::mesh::Connectivity;
+use ridgeform_core::operators::face_laplacian_weights;
 use ridgeform_core::shapes;
 use ridgeform_core::solve::Status;
 use ridgeform_core::tools::{segment, SegmentMethod, SegmentOptions};
 use ridgeform_core::{Error, Progress};
+
+/// The face Laplacian as a matrix, `m × m`, symmetric, rows that sum to 0: see `face_laplacian_weights`.
+fn face_laplacian(connectivity: &Connectivity, weights: &[[f64; 3]]) -> sprs::CsMat<f64> {
+    let m = connectivity.n_faces();
+    let mut triplets = sprs::TriMat::new((m, m));
+    for (f, row) in weights.iter().enumerate() {
+        triplets.add_triplet(f, f, row.iter().sum());
+        for (i, weight) in row.iter().enumerate() {
+            if let Some(twin) = connectivity.twin(3 * f + i).filter(|_| *weight > 0.0) {
+                triplets.add_triplet(f, twin / 3, -weight);
+            }
+        }
+    }
+    triplets.to_csr()
+}
 
 #[test]
 fn the_face_laplacian_is_symmetric_knows_constants_and_squares_of_a_lattice() {

@@ -62,9 +62,9 @@ fn diagonalize<R: AsMut<[f64]> + AsRef<[f64]>>(a: &mut [R], vectors: &mut [R]) {
     };
     // Convergence is quadratic: some ten sweeps at most.
     for _ in 0..30 {
-        let off: f64 = (0..n).map(|i| a[i].as_ref()[..i].iter().map(|x| x * x).sum::<f64>()).sum();
-        let whole: f64 = a.iter().flat_map(|row| row.as_ref()).map(|x| x * x).sum();
-        if off <= 1e-32 * whole {
+        let off: f64 = (0..n).flat_map(|p| &a[p].as_ref()[p + 1..]).fold(0.0, |sum, x| sum + x.abs());
+        let on: f64 = (0..n).fold(0.0, |sum, p| sum + a[p].as_ref()[p].abs());
+        if off <= 1e-300 || off <= 1e-15 * on {
             break;
         }
         for p in 0..n {
@@ -74,8 +74,8 @@ fn diagonalize<R: AsMut<[f64]> + AsRef<[f64]>>(a: &mut [R], vectors: &mut [R]) {
                     continue;
                 }
                 let theta = (a[q].as_ref()[q] - a[p].as_ref()[p]) / (2.0 * beside);
-                let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
-                let c = 1.0 / t.hypot(1.0);
+                let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+                let c = 1.0 / (t * t + 1.0).sqrt();
                 let s = c * t;
                 for row in a.iter_mut() {
                     let (left, right) = row.as_mut().split_at_mut(q);

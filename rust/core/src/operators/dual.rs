@@ -41,7 +41,7 @@ impl DualEdge {
     }
 
     /// What a unit jump of the gradient along the halfedge's normal adds to the face's Hessian times `area`:
-    /// `(1/l*) (n · t) t ⊗ t` (Rowe et al. 2024, supplement A) as `xx, yy, √2·xy` in the face's frame.
+    /// `(1/l*) (n · t) t ⊗ t` (Rowe et al. 2024, eqs. (16) and (17), and supplement A) as `xx, yy, √2·xy` in the face's frame.
     pub(crate) fn tensor(self, direction: [f64; 2], area: f64) -> [f64; 3] {
         let Self([along, across]) = self;
         let [x, y] = self.turned(direction);

@@ -124,7 +124,7 @@ impl EnergyForm {
     }
 
     /// The energy of `values` (column-major, a row a vertex): one norm a block over all columns, or the sum of the columns'
-    /// energies where it is quadratic.
+    /// energies where it is quadratic. For [`Energy::L1Hessian`]: Rowe et al. 2024, eq. (18).
     ///
     /// # Errors
     /// [`Error::Argument`] if `values` are not whole columns.

@@ -32,19 +32,3 @@ pub fn face_laplacian_weights(
     }
     weights
 }
-
-/// The face Laplacian as a matrix, `m × m`, symmetric, rows that sum to 0: see [`face_laplacian_weights`].
-#[must_use]
-pub fn face_laplacian(connectivity: &Connectivity, weights: &[[f64; 3]]) -> sprs::CsMat<f64> {
-    let m = connectivity.n_faces();
-    let mut triplets = sprs::TriMat::new((m, m));
-    for (f, row) in weights.iter().enumerate() {
-        triplets.add_triplet(f, f, row.iter().sum());
-        for (i, weight) in row.iter().enumerate() {
-            if let Some(twin) = connectivity.twin(3 * f + i).filter(|_| *weight > 0.0) {
-                triplets.add_triplet(f, twin / 3, -weight);
-            }
-        }
-    }
-    triplets.to_csr()
-}

@@ -17,7 +17,7 @@ mod vertex_weights;
 pub use curved_hessian::curved_hessian_squares;
 pub use edge_laplacian::edge_laplacian_rows;
 pub use energy::{energy, Energy, EnergyForm};
-pub use face_laplacian::{face_laplacian, face_laplacian_weights};
+pub use face_laplacian::face_laplacian_weights;
 pub use hessian::{hessian, hessian_norm, HessianPattern};
 pub(crate) use hinge::Hinge;
 pub use laplacian::{cotangent_laplacian, laplacian_squares};

@@ -2,25 +2,17 @@
 
 use crate::mesh::vector::{add, area_vector, dot, norm, quality, Point};
 use crate::remesh::{Edge, EditableMesh};
-
-/// The least cosine between a face's normal and what it was before an edit: 60 degrees. A fold turns it by more than 90.
-pub const LEAST_COSINE: f64 = 0.5;
-
-/// Faces of less quality ([`quality`]) than this count as slivers: a triangle whose height is 0.09 of its longest edge.
-/// An edit may make one only if that is better than the worst face before.
-pub const SLIVER: f64 = 0.2;
-
-/// An edit that turns no face by more than this (11 degrees) makes no fold, and need not be looked at for bends.
-const HARDLY_TURNED: f64 = 0.98;
+pub use crate::shape_guard::SLIVER;
+use crate::shape_guard::{HARDLY_TURNED, TURNED};
 
 /// Whether faces in shape `new` may replace what had the normal `normal` (of any length) and the least quality `worst`.
 fn replaces(new: [Point; 3], normal: Point, worst: f64) -> bool {
     let area = area_vector(new);
-    dot(area, normal) > LEAST_COSINE * norm(area) * norm(normal) && quality(new) >= SLIVER.min(worst)
+    dot(area, normal) > TURNED * norm(area) * norm(normal) && quality(new) >= SLIVER.min(worst)
 }
 
 /// Whether flipping the edge `a b` is possible ([`EditableMesh::flip`]) and folds nothing: both new faces look the way that
-/// the two old ones do on average, to [`LEAST_COSINE`], no edge around them bends by more than a right angle that did not bend
+/// the two old ones do on average, to [`TURNED`], no edge around them bends by more than a right angle that did not bend
 /// so before, and no sliver is made where there was none.
 #[must_use]
 pub fn may_flip(mesh: &EditableMesh, a: u32, b: u32) -> bool {
@@ -44,7 +36,7 @@ pub fn may_flip(mesh: &EditableMesh, a: u32, b: u32) -> bool {
     bend >= before.min(0.0)
 }
 
-/// Whether `v` may move to `position`: no face around it turns by more than [`LEAST_COSINE`], none becomes a sliver that
+/// Whether `v` may move to `position`: no face around it turns by more than [`TURNED`], none becomes a sliver that
 /// was none, and none comes to lie at more than a right angle to a neighbour if none did before.
 #[must_use]
 pub fn may_move(mesh: &EditableMesh, v: u32, position: Point) -> bool {

@@ -6,10 +6,8 @@ use crate::mesh::vector::{add, between, dot, norm, scale, sub, unit, Point};
 use crate::remesh::curves::Role;
 use crate::remesh::guard;
 use crate::remesh::remesher::Remesher;
+use crate::shape_guard::PARTS_OF_A_MOVE;
 use crate::Progress;
-
-/// Where a whole step would fold a face, these parts of it are tried.
-const STEPS: [f64; 3] = [1.0, 0.5, 0.25];
 
 /// Moves every free vertex in its tangent plane to the centre of its neighbours, weighted by the area around them over that
 /// wanted (Botsch and Kobbelt 2004, with their weights for a graded mesh), then to the closest point of the surface; a vertex
@@ -33,7 +31,7 @@ pub(crate) fn relax_and_project(remesher: &mut Remesher, progress: &Progress) {
         }
         let Some((target, near)) = target else { continue };
         let start = remesher.mesh.position(v);
-        let allowed = STEPS.iter().map(|&step| between(start, target, step));
+        let allowed = PARTS_OF_A_MOVE.iter().map(|&step| between(start, target, step));
         if let Some(position) = allowed.into_iter().find(|&p| guard::may_move(&remesher.mesh, v, p)) {
             remesher.mesh.set_position(v, position);
             remesher.near[v as usize] = near;

@@ -33,7 +33,8 @@ const MARGIN: f64 = 0.01;
 /// How long Clarabel is left alone between two looks at what the caller wishes.
 const LISTENING: Duration = Duration::from_millis(50);
 
-/// Solves the reduced problem with Clarabel and the factorisation called `method`.
+/// Solves the reduced problem, Rowe et al. 2024, eq. (21) as the cones of eq. (40), with Clarabel and the factorization called
+/// `method`.
 ///
 /// # Errors
 /// [`SolveError`] when Clarabel cannot make anything of the problem; [`Error::Cancelled`].

@@ -57,7 +57,8 @@ pub struct Pencil<'a> {
 }
 
 impl Pencil<'_> {
-    /// The `count` smallest eigenvalues of `Q u = λ M u` and their vectors; `count` must not exceed the rows with mass.
+    /// The `count` smallest eigenvalues of `Q u = λ M u` and their vectors, Rowe et al. 2024, eq. (38) without its L1 norm; `count`
+    /// must not exceed the rows with mass.
     ///
     /// The first rows of the start are a fixed sequence, so that the same input gives the same bits.
     ///

@@ -12,7 +12,7 @@ pub enum Coupling {
     /// One norm per block over all columns: invariant under rotations of the columns.
     #[default]
     Joint,
-    /// One norm per block and column, as Rowe et al. 2024, eq. (24): each column is a problem of its own.
+    /// One norm per block and column, as in the flow of the paper: each column is a problem of its own.
     Separate,
 }
 
@@ -77,7 +77,7 @@ impl Status {
 
 /// `min_u Σ_b w_b ‖(H u)_b‖ + Σ_i a_i ‖u_i − t_i‖²` subject to fixed rows of `u` and `A u = b`.
 ///
-/// Rowe et al. 2024, eq. (21), with `a = α·mass`, weights per block, and one or several columns.
+/// Rowe et al. 2024, eq. (21), in matrices eq. (39), with `a = α·mass`, weights per block, and one or several columns.
 #[derive(Debug, Clone)]
 pub struct Problem<'a> {
     /// The operator `H`, a block a cone.

@@ -40,6 +40,8 @@ const MOST_STEPS: usize = 300;
 
 /// Minimises the quadratic reading of `problem`, column by column (its coupling does not matter).
 ///
+/// The problem of Rowe et al. 2024, eq. (21) with squared norms.
+///
 /// The gap of the solution is the decrease of the objective that one more step with the factored matrix would bring, relative
 /// like [`Solution::gap`]; without a shift it is the distance to the optimum up to rounding. Weights may be negative as long as
 /// the problem stays convex. Rows of `u` that nothing determines keep their target.

@@ -40,7 +40,7 @@ impl Parts {
     }
 }
 
-/// One convex problem in `K` columns with joint norms, free rows only.
+/// One convex problem in `K` columns with joint norms, free rows only (Rowe et al. 2024, eq. (21)).
 #[derive(Debug)]
 pub struct Reduced<'a, const K: usize> {
     /// `H` and who is free.

@@ -27,7 +27,7 @@ impl Default for DenoiseOptions {
 /// `min_u E(u) + α (u − u₀)ᵀ M (u − u₀)`, for the columns of `values` (n × k) on the vertices, with the energy `E` of the options
 /// and the Voronoi mass `M`.
 ///
-/// Source: Rowe et al. 2024, eqs. (21) and (23).
+/// Source: Rowe et al. 2024, eq. (23).
 ///
 /// # Errors
 /// Arguments of the wrong shape or range, a fidelity that is not positive, an energy that the mesh does not have, and the

@@ -34,7 +34,7 @@ pub struct ScalarOptions {
     pub solve: SolveOptions,
 }
 
-/// Values to stay close to or to keep, and the options.
+/// Values to stay close to or to keep, and the options: Rowe et al. 2024, eq. (21) on a mesh.
 pub(super) struct ScalarProblem<'a> {
     pub mesh: &'a Mesh,
     pub options: &'a ScalarOptions,

@@ -114,7 +114,7 @@ impl<'a> Harmonic<'a> {
         Ok(Self { membrane, free, cholesky })
     }
 
-    /// Replaces the values of the free copies by the harmonic function through the others.
+    /// Replaces the values of the free copies by the harmonic function through the others (Rowe et al. 2024, eq. (26)).
     pub fn extend(&mut self, values: &mut Columns, progress: &Progress) -> Result<()> {
         let Some(cholesky) = &mut self.cholesky else { return Ok(()) };
         for c in 0..values.n_columns {

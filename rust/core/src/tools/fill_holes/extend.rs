@@ -7,13 +7,14 @@ use super::constants::{
 };
 use super::flips::flip_along_ridges;
 use super::guard::move_guarded;
-use super::meeting::{has_arrived, meeting_point, order, IN_ORDER};
+use super::meeting::{has_arrived, meeting_point, order};
 use super::parts::Parts;
 use super::region::Region;
 use super::resample::{resample, typical_edge, Kept};
 use super::untangle::untangle;
 use crate::mesh::vector::{between, centroid, distance, Point};
 use crate::progress::Progress;
+use crate::shape_guard::{PARTS_OF_A_MOVE, SLIVER};
 use crate::Result;
 
 /// How letting the parts go on ended.
@@ -164,8 +165,8 @@ fn settle(region: &mut Region, parts: &Parts, labels: &[u32]) -> f64 {
         moves.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
         for (_, v, goal) in moves {
             let start = region.mesh.position(v);
-            let before = order(region, parts, labels, v).min(IN_ORDER);
-            for part in [1.0, 0.5, 0.25] {
+            let before = order(region, parts, labels, v).min(SLIVER);
+            for part in PARTS_OF_A_MOVE {
                 region.mesh.set_position(v, between(start, goal, part));
                 if order(region, parts, labels, v) >= before {
                     longest = longest.max(part * distance(start, goal));

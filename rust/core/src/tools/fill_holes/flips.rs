@@ -6,12 +6,10 @@ use super::surface::angle;
 use crate::mesh::vector::{area_vector, distance, quality, Point};
 use crate::remesh::editable::key;
 use crate::remesh::EditableMesh;
-
-/// No triangle of less quality is made: its height would be a twentieth of its longest edge.
-const LEAST_QUALITY: f64 = 0.1;
+use crate::shape_guard::FLIPPED_SLIVER;
 
 /// Flips edges of the patch while that lowers `Σ length · |dihedral angle|` over the edge and its four neighbours, and
-/// makes no triangle of less quality than [`LEAST_QUALITY`] unless the old one was worse. Returns the number of flips.
+/// makes no triangle of less quality than [`FLIPPED_SLIVER`] unless the old one was worse. Returns the number of flips.
 pub(super) fn flip_along_ridges(region: &mut Region, sweeps: usize) -> usize {
     let mut edges: Vec<[u32; 2]> = (region.n_outer as u32..region.mesh.n_faces() as u32)
         .filter_map(|f| region.mesh.face(f))
@@ -53,7 +51,7 @@ fn lowers(region: &Region, a: u32, b: u32) -> bool {
     let shape = |face: [u32; 3]| quality(mesh.corners(face));
     let old = [[a, b, c], [b, a, d]];
     let worst = |faces: [[u32; 3]; 2]| shape(faces[0]).min(shape(faces[1]));
-    if worst(new) < LEAST_QUALITY.min(worst(old)) {
+    if worst(new) < FLIPPED_SLIVER.min(worst(old)) {
         return false;
     }
     let normal = |face: [u32; 3]| area_vector(mesh.corners(face));

@@ -3,16 +3,7 @@
 use super::region::Region;
 use super::surface::angle;
 use crate::mesh::vector::{area_vector, between, distance, dot, norm, quality, Point};
-
-/// Faces may turn by so much in one move: a chamfer that becomes part of a ridge turns by half the ridge's angle.
-const LEAST_COSINE: f64 = 0.5;
-
-/// A face must keep this quality, or three quarters of its own where it had less.
-const LEAST_QUALITY: f64 = 0.15;
-const KEPT: f64 = 0.75;
-
-/// A dihedral angle above this (137 degrees) must not grow.
-const FOLD: f64 = 2.4;
+use crate::shape_guard::{FOLD_ANGLE, KEPT, MOVED_SLIVER, PARTS_OF_A_MOVE, TURNED};
 
 /// How often the steps at a bad face are halved before they are taken back.
 const HALVINGS: usize = 4;
@@ -57,7 +48,7 @@ pub(super) fn move_one(region: &mut Region, v: u32, goal: Point) -> f64 {
         region.mesh.faces_of(v).iter().filter_map(|&f| Some((f, region.mesh.face(f)?))).collect();
     let before: Vec<(Point, f64)> =
         around.iter().map(|&(_, face)| region.mesh.corners(face)).map(|c| (area_vector(c), quality(c))).collect();
-    for part in [1.0, 0.5, 0.25] {
+    for part in PARTS_OF_A_MOVE {
         let position = between(start, goal, part);
         region.mesh.set_position(v, position);
         let was = |g: u32| {
@@ -78,8 +69,8 @@ pub(super) fn move_one(region: &mut Region, v: u32, goal: Point) -> f64 {
 /// Whether a face that had this area vector and quality is still in order.
 fn is_sound(corners: [Point; 3], area: Point, shape: f64) -> bool {
     let new = area_vector(corners);
-    let turned = norm(area) > 0.0 && dot(new, area) < LEAST_COSINE * norm(new) * norm(area);
-    !turned && quality(corners) >= LEAST_QUALITY.min(KEPT * shape)
+    let turned = norm(area) > 0.0 && dot(new, area) < TURNED * norm(new) * norm(area);
+    !turned && quality(corners) >= MOVED_SLIVER.min(KEPT * shape)
 }
 
 /// Whether a dihedral angle at face `f` is too large and was smaller before; `was` gives the area vectors of then.
@@ -90,6 +81,6 @@ fn folds(region: &Region, f: u32, face: [u32; 3], was: &dyn Fn(u32) -> Point) ->
         let Some(wings) = mesh.wings(face[i], face[(i + 1) % 3]) else { return false };
         let other = if wings.faces[0] == f { wings.faces[1] } else { wings.faces[0] };
         let now = angle(here, mesh.area_vector(other));
-        now > FOLD && now > angle(was(f), was(other))
+        now > FOLD_ANGLE && now > angle(was(f), was(other))
     })
 }

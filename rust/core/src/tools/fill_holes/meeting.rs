@@ -6,15 +6,7 @@ use super::parts::Parts;
 use super::region::Region;
 use crate::linear::small::Quadric;
 use crate::mesh::vector::{add, area_vector, centroid, dot, norm, quality, scale, unit, Point};
-
-/// A face is turned away from its part if it looks along it by less than this (60 degrees), and in order from this quality on.
-const TURNED: f64 = 0.5;
-pub(super) const IN_ORDER: f64 = 0.2;
-
-/// A patch has reached its surfaces if its vertices lie on them, no face is turned from its own by more than 45 degrees, and none is
-/// thinner than this.
-const THIN: f64 = 0.02;
-const LEAST_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+use crate::shape_guard::{ARRIVED_SLIVER, ARRIVED_TURNED, TURNED};
 
 /// How good the worst face at `v` is: its quality, or how much it looks along its part, less what is allowed, if that is not enough.
 pub(super) fn order(region: &Region, parts: &Parts, labels: &[u32], v: u32) -> f64 {
@@ -64,7 +56,7 @@ pub(super) fn has_arrived(region: &Region, parts: &Parts, labels: &[u32], edge: 
         let area = area_vector(corners);
         let normal = model.at(centroid(corners)).1;
         corners.into_iter().all(|p| parts.has(part, p, edge))
-            && dot(area, normal) > LEAST_COSINE * norm(area)
-            && quality(corners) > THIN
+            && dot(area, normal) > ARRIVED_TURNED * norm(area)
+            && quality(corners) > ARRIVED_SLIVER
     })
 }

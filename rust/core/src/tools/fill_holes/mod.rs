@@ -16,6 +16,7 @@ mod constants;
 mod decide;
 mod extend;
 mod fair;
+mod filled;
 mod flips;
 mod flow;
 mod give_back;
@@ -23,6 +24,7 @@ mod guard;
 mod meeting;
 mod model;
 mod neighbourhoods;
+mod options;
 mod parts;
 mod region;
 mod resample;
@@ -35,174 +37,25 @@ mod surface;
 mod untangle;
 
 pub use choice::LoopChoice;
+pub use filled::{Filled, FilledHole, HoleStatus};
+pub use options::{FillHolesOptions, PatchShape, Sharpness};
 
 use std::collections::HashSet;
 
 use super::answer::{self, Surroundings};
-use super::options::check_range;
-use super::{Scale, SolveOptions};
-use crate::error::{MeshError, Refusal};
+use super::Scale;
+use crate::error::MeshError;
 use crate::hole_filling::{faces_at, FillOptions, Lids, Patch};
 use crate::memory::{Demand, Tool};
-use crate::mesh::vector::Point;
 use crate::mesh::{boundary_loops, Mesh, Working};
-use crate::operators::Dual;
 use crate::progress::{Progress, Report};
 use crate::remesh::budget;
-use crate::solve::Coupling;
-use crate::{Error, Result};
+use crate::Result;
 use constants::{MARKED_ANGLE, REGION_RINGS};
 use neighbourhoods::Neighbourhoods;
 use region::Region;
 use restore::Restored;
 use sound::restored_in_order;
-
-/// How sharp the ridges of patches get.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Sharpness {
-    /// Per hole: as sharp as can be where there are ridges around it, smooth where there are none.
-    #[default]
-    Auto,
-    /// 0: the flow of the paper, without flips and snapping; towards 1: ever sharper.
-    Value(f64),
-}
-
-/// What patches look like.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum PatchShape {
-    /// Per hole: flat where a planar rim is met steeply all round, sharp where there are ridges around the hole, else smooth.
-    #[default]
-    Auto,
-    /// In the mean plane of the rim; as `Auto` where that would overlap itself.
-    Flat,
-    /// Without ridges.
-    Smooth,
-    /// Flat pieces that meet in ridges.
-    Sharp,
-}
-
-impl PatchShape {
-    /// The name that users see.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Auto => "auto",
-            Self::Flat => "flat",
-            Self::Smooth => "smooth",
-            Self::Sharp => "sharp",
-        }
-    }
-}
-
-/// How to fill holes.
-#[derive(Debug, Clone)]
-pub struct FillHolesOptions {
-    /// Which loops; `None` for all that can be filled.
-    pub loops: Option<Vec<LoopChoice>>,
-    /// Of all loops, only those with at most so many edges.
-    pub max_edges: Option<usize>,
-    /// Of all loops, also the outer borders of open sheets.
-    pub outer: bool,
-    /// Edge length in the patches; that of the rim where `None`.
-    pub edge_length: Option<f64>,
-    /// Steps of the flow at most; 0 leaves the smooth patch.
-    pub iterations: usize,
-    /// `η`: a larger one moves less per step.
-    pub fidelity: f64,
-    /// What the patches look like.
-    pub shape: PatchShape,
-    /// How sharp those are that are not flat.
-    pub sharpness: Sharpness,
-    /// Joint norms are invariant under rotations; separate ones are those of the paper.
-    pub coupling: Coupling,
-    /// The unit of `fidelity`, measured on the patch.
-    pub scale: Scale,
-    /// Dual edges of the operator.
-    pub dual: Dual,
-    /// The solver; the default stops on residuals.
-    pub solve: SolveOptions,
-}
-
-impl Default for FillHolesOptions {
-    fn default() -> Self {
-        Self {
-            loops: None,
-            max_edges: None,
-            outer: false,
-            edge_length: None,
-            iterations: 50,
-            fidelity: 50.0,
-            shape: PatchShape::Auto,
-            sharpness: Sharpness::Auto,
-            coupling: Coupling::Joint,
-            scale: Scale::MaxEdge,
-            dual: Dual::Barycentric,
-            solve: SolveOptions { tolerance: None, ..SolveOptions::default() },
-        }
-    }
-}
-
-/// How the filling of one hole ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum HoleStatus {
-    /// The patch no longer moves, or is the smooth one.
-    Converged,
-    /// All steps were done.
-    Finished,
-    /// The caller asked to finish early; the patch is what was reached.
-    Stopped,
-    /// It cannot be filled.
-    Refused(Refusal),
-}
-
-impl HoleStatus {
-    /// The name that users see.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Converged => "converged",
-            Self::Finished => "finished",
-            Self::Stopped => "stopped",
-            Self::Refused(_) => "refused",
-        }
-    }
-}
-
-/// One hole and how it was filled.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FilledHole {
-    /// The vertices around it.
-    pub boundary: Vec<u32>,
-    /// How it ended.
-    pub status: HoleStatus,
-    /// What the patch looks like: flat, smooth or sharp; `Auto` where there is none.
-    pub shape: PatchShape,
-    /// The sharpness used; 0 where it is smooth or flat.
-    pub sharpness: f64,
-    /// `E_H` of the coordinates of the patch and its surroundings, before and after the flow; zeros if there was none.
-    pub energy: [f64; 2],
-    /// The relative duality gap of the flow's last step.
-    pub gap: f64,
-    /// Steps of the flow.
-    pub iterations: usize,
-}
-
-/// The patches of a mesh.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Filled {
-    /// The vertices of the patches that are not the mesh's; their numbers follow on those of the mesh.
-    pub vertices: Vec<Point>,
-    /// The faces of the patches, oriented as the faces around.
-    pub faces: Vec<[u32; 3]>,
-    /// For each of these faces the entry of `holes` that it fills.
-    pub patch: Vec<u32>,
-    /// The holes that were chosen.
-    pub holes: Vec<FilledHole>,
-    /// How the holes ended: stopped if one was, else finished if one was, else converged.
-    pub status: HoleStatus,
-    /// The edges of sharp and flat patches that are bent by more than 30 degrees, smaller vertex first, sorted.
-    pub ridges: Vec<[u32; 2]>,
-}
 
 /// Fills holes so that the ridges around them go on.
 ///
@@ -210,7 +63,7 @@ pub struct Filled {
 /// [`MeshError::NoPositions`], [`MeshError::Unfillable`] for vertices that are no boundary loop, arguments out of range, the errors of
 /// the solver, [`Error::Cancelled`].
 pub fn fill_holes(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) -> Result<Filled> {
-    check(options)?;
+    options.check()?;
     options.solve.settings()?;
     let unit = mesh.unit();
     let mesh = mesh.measured(unit)?;
@@ -255,19 +108,6 @@ fn demand(mesh: &Mesh, n_rim_edges: usize) -> Demand {
     let most = budget::patch_faces(FillOptions::default().max_faces, n_rim_edges);
     let whole = mesh.demand(Tool::FillHoles);
     Demand { n_vertices: 0, n_faces: disk.min(most) + whole.n_faces / 200, ..whole }
-}
-
-fn check(options: &FillHolesOptions) -> Result<()> {
-    if !(options.fidelity > 0.0 && options.fidelity.is_finite()) {
-        return Err(Error::argument("fidelity", format!("is {}; it must be positive", options.fidelity)));
-    }
-    if let Some(length) = options.edge_length.filter(|l| !(*l > 0.0 && l.is_finite())) {
-        return Err(Error::argument("edge_length", format!("is {length}; it must be positive, or None for the rim's")));
-    }
-    match options.sharpness {
-        Sharpness::Auto => Ok(()),
-        Sharpness::Value(sharpness) => check_range("sharpness", sharpness, 0.0, 1.0),
-    }
 }
 
 fn fill(working: &Working<'_>, options: &FillHolesOptions, progress: &Progress) -> Result<Filled> {

@@ -18,11 +18,8 @@ use super::{FillHolesOptions, HoleStatus, PatchShape, Sharpness};
 use crate::operators::Energy;
 use crate::progress::Progress;
 use crate::remesh::guard::worst_bend;
+use crate::shape_guard::FOLDED;
 use crate::Result;
-
-/// A patch with a bend beyond this (154 degrees) is folded, unless its smooth start or its rim had such a bend: the last one
-/// without is taken.
-pub(super) const FOLD_COSINE: f64 = -0.9;
 
 /// How one patch ended.
 pub(super) struct Restored {
@@ -89,7 +86,7 @@ pub(super) fn restore(
     resample(region, options.edge_length, &Kept::ridges(ridge), FINE_FACES, FINE_ROUNDS, progress)?;
     flip_along_ridges(region, FLIP_SWEEPS);
     fair(region, ridge, progress)?;
-    if worst_bend(&region.mesh) < worst_bend(&coarse.mesh).min(FOLD_COSINE) {
+    if worst_bend(&region.mesh) < worst_bend(&coarse.mesh).min(FOLDED) {
         *region = coarse;
     }
     watch(region, 1.0, restored.iterations, Some(restored.energy[1]));
@@ -108,7 +105,7 @@ fn form_ridges(
     let sharpness = restored.sharpness;
     let ridge = RIDGE * ridges.map_or(1.0, |ridges| ridges.least);
     let (smooth, mut sound) = (region.clone(), region.clone());
-    let worst = worst_bend(&region.mesh).min(FOLD_COSINE);
+    let worst = worst_bend(&region.mesh).min(FOLDED);
     restored.status = HoleStatus::Finished;
     let cycles = options.iterations.div_ceil(FLOW_STEPS);
     for cycle in 1..=cycles {

@@ -2,7 +2,8 @@
 
 use super::constants::INWARDS;
 use super::region::Region;
-use super::restore::{restore, Restored, Watch, FOLD_COSINE};
+use super::restore::{restore, Restored, Watch};
+use crate::shape_guard::FOLDED;
 use super::{FillHolesOptions, PatchShape};
 use crate::hole_filling::Patch;
 use crate::mesh::vector::{dot, norm, Point};
@@ -60,5 +61,5 @@ fn order(region: &Region, lid: Option<Point>) -> f64 {
         lid.map_or(1.0, |lid| if norm(area) > 0.0 { dot(area, lid) / norm(area) } else { 1.0 })
     };
     let least = region.patch_faces().map(looks).fold(1.0, f64::min);
-    (bend - FOLD_COSINE).min(least - INWARDS)
+    (bend - FOLDED).min(least - INWARDS)
 }

@@ -46,7 +46,7 @@ pub(super) struct Minimiser {
 }
 
 impl Functional<'_> {
-    /// Minimises (41) for every `ε` in turn, starting each from the last.
+    /// Minimizes Rowe et al. 2024, eq. (25), in matrices eq. (41), for every `ε` in turn, starting each from the last.
     ///
     /// # Errors
     /// A failed factorisation, or [`crate::Error::Cancelled`].
