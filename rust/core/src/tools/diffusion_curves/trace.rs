@@ -253,7 +253,7 @@ mod tests {
         let curve = traced(&line, false);
         let size = distance(positions[0], positions[1]);
         assert_eq!((curve.vertices.first(), curve.vertices.last()), (Some(&0), Some(&44)));
-        assert!(places(&curve).iter().all(|&p| distance_to_segment(p, line) < 0.75 * size));
+        assert!(places(&curve).iter().all(|&p| distance(p, closest_on_segment(p, line[0], line[1])) < 0.75 * size));
         let mesh = shapes::grid(8, 8).mesh().unwrap();
         let table = EdgeTable::new(mesh.connectivity());
         assert!(curve.vertices.windows(2).all(|pair| table.between(pair[0], pair[1]).next().is_some()));
