@@ -2,8 +2,8 @@
 
 use super::constants::SOLVER_ITERATIONS;
 use super::guard::move_guarded;
-use super::FillHolesOptions;
 use super::region::Region;
+use super::FillHolesOptions;
 use crate::mesh::{edge_lengths, Connectivity};
 use crate::progress::Progress;
 use crate::tools::{stylize, Scale, SolveOptions, StylizeOptions};

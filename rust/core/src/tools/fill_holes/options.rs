@@ -99,7 +99,10 @@ impl FillHolesOptions {
             return Err(Error::argument("fidelity", format!("is {}; it must be positive", self.fidelity)));
         }
         if let Some(length) = self.edge_length.filter(|l| !(*l > 0.0 && l.is_finite())) {
-            return Err(Error::argument("edge_length", format!("is {length}; it must be positive, or None for the rim's")));
+            return Err(Error::argument(
+                "edge_length",
+                format!("is {length}; it must be positive, or None for the rim's"),
+            ));
         }
         match self.sharpness {
             Sharpness::Auto => Ok(()),

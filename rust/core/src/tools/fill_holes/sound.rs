@@ -3,12 +3,12 @@
 use super::constants::INWARDS;
 use super::region::Region;
 use super::restore::{restore, Restored, Watch};
-use crate::shape_guard::FOLDED;
 use super::{FillHolesOptions, PatchShape};
 use crate::hole_filling::Patch;
 use crate::mesh::vector::{dot, norm, Point};
 use crate::progress::Progress;
 use crate::remesh::guard::worst_bend_of;
+use crate::shape_guard::FOLDED;
 use crate::Result;
 
 /// [`restore`], and if that leaves a patch folded or facing inwards, the smooth patch, or the triangulation that it started from:

@@ -9,7 +9,7 @@ use super::constants::{
     UNCLEAR_SHARE,
 };
 use super::exact::Planes;
-use super::fit::Plane;
+use super::patches::Plane;
 use super::surface::{contiguous, members, Surface};
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::{add, distance, norm, scale, unit, Point};
