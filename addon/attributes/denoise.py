@@ -21,6 +21,7 @@ class Denoising(AttributeRun):
     """One run of denoising."""
 
     name = "denoise_attribute"
+    call = "denoise"
     suffix = "_denoised"
     done_word = "Denoised"
     needs = Needs(coordinates=False)

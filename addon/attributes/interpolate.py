@@ -22,6 +22,7 @@ class Interpolation(AttributeRun):
     """One run of interpolating."""
 
     name = "interpolate_attribute"
+    call = "interpolate"
     suffix = "_interpolated"
     done_word = "Interpolated"
     needs = Needs(coordinates=False, selection=False)

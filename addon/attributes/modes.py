@@ -40,6 +40,7 @@ class VibrationModes(Run):
     """One run of vibration modes, on whole meshes."""
 
     name = "vibration_modes"
+    call = "vibration_modes"
     counted = "modes"
     needs = Needs(coordinates=False, selection=False)
 

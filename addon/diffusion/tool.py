@@ -40,6 +40,7 @@ class DiffusionCurves(Run):
     """One run of diffusion curves, on whole meshes."""
 
     name = "diffusion_curves"
+    call = "diffusion_curves"
     needs = Needs(coordinates=False, selection=False)
 
     def prepare(self, obj: bpy.types.Object) -> DiffusionPart:

@@ -15,6 +15,7 @@ from ..blender.mesh_state import ChangedError, MeshState
 from ..blender.refusals import RefusedError
 from ..blender.selection import MOVES
 from .job import Job, Task, store_summary
+from .preflight import reason_too_large
 
 NOT_BEGUN = "not begun"
 FAILED = "failed"
@@ -46,6 +47,8 @@ class Run(ABC):
 
     name: ClassVar[str]
     """The tool's name in the summary."""
+    call: ClassVar[str]
+    """The function of the package that does it."""
     counted: ClassVar[str] = "iterations"
     """What the panel calls the steps of the summary."""
     needs = MOVES
@@ -73,6 +76,9 @@ class Run(ABC):
     def _prepare_all(self, objects: Sequence[bpy.types.Object]) -> None:
         for obj in objects:
             try:
+                reason = reason_too_large(obj, self.call)
+                if reason is not None:
+                    raise RefusedError(reason)
                 self.parts.append(self.prepare(obj))
             except RefusedError as refusal:
                 self.skipped.append(str(refusal))

@@ -57,6 +57,7 @@ class HoleFilling(Run):
     """One run of filling holes."""
 
     name = "fill_holes"
+    call = "fill_holes"
 
     def __init__(
         self, objects: Sequence[bpy.types.Object], settings: object, skipped: Sequence[str] = ()

@@ -82,6 +82,7 @@ class Segmenting(Run):
     """One run of segmenting."""
 
     name = "segment"
+    call = "segment"
     needs = Needs(coordinates=False)
 
     def prepare(self, obj: bpy.types.Object) -> SegmentPart:

@@ -44,6 +44,7 @@ class Stylization(Run):
     """One run of stylize: the flow on each mesh, its steps shown as they are done, then the last steps."""
 
     name = "stylize"
+    call = "stylize"
     counted = "steps"
     in_object_mode = False
 
