@@ -32,7 +32,14 @@ def parameters_of(function):
 
 
 def test_stubs_name_what_the_package_exports():
-    exceptions = {"ArgumentError", "Cancelled", "MeshError", "RidgeformError", "SolveError"}
+    exceptions = {
+        "ArgumentError",
+        "Cancelled",
+        "MemoryLimitError",
+        "MeshError",
+        "RidgeformError",
+        "SolveError",
+    }
     assert set(ridgeform.__all__) == exceptions | set(FUNCTIONS) | set(CLASSES) | {"__version__"}
     assert (Path(ridgeform.__file__).parent / "py.typed").exists()
 
