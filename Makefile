@@ -3,7 +3,8 @@ PYTHON ?= python3
 RUN = @$(PYTHON) scripts/setup_env.py
 
 .PHONY: help demo test test-all-blenders lint workflows notices advisories bench bench-holes bench-segments \
-	bench-memory bench-limits bench-growth bench-latency bench-files fuzz fuzz-sequences extension wheel release sizes docs fixtures pictures gallery
+	bench-memory bench-limits bench-growth bench-latency bench-files bench-parts fuzz fuzz-sequences \
+	extension wheel release sizes docs fixtures pictures gallery
 
 help:
 	@echo "make demo        stylize a real scan in Blender, without a window: out/demo.png, out/demo.blend"
@@ -24,6 +25,7 @@ help:
 	@echo "make bench-files     every format when writing fails: docs/reliability.md"
 	@echo "make fuzz        random calls of wheel and core, sequences in Blender, for MINUTES=10"
 	@echo "make fuzz-sequences  sequences in Blender alone: docs/reliability.md"
+	@echo "make bench-parts DATA=folder  divide shapes whose parts people have named: benchmarks/parts.md"
 	@echo "make wheel       build the Python wheel"
 	@echo "make extension   build and check the Blender extension: .ridgeform/extension/"
 	@echo "                 WHEELS=folder: with wheels built elsewhere, for other platforms too"
@@ -82,6 +84,9 @@ fuzz-sequences:
 
 fuzz:
 	$(RUN) scripts/fuzz.py $(or $(MINUTES),10)
+
+bench-parts:
+	$(RUN) benchmarks/parts.py $(DATA) $(ARGS)
 
 extension:
 	$(RUN) scripts/build_extension.py $(if $(WHEELS),--wheels $(WHEELS))

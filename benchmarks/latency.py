@@ -72,6 +72,7 @@ def calls(n_vertices: int) -> dict[str, Call]:
         "vibration modes": lambda p: r.vibration_modes(mesh, 6, progress=p, **on_one),
         "segment": lambda p: r.segment(mesh, progress=p, **on_one),
         "segment a signal": lambda p: r.segment(mesh, values=paint, progress=p, **on_one),
+        "parts": lambda p: r.parts(mesh, progress=p, **on_one),
         "fill holes": lambda p: r.fill_holes(mesh, sharpness=0.5, outer=True, progress=p, **on_one),
         "remesh": lambda p: r.remesh(mesh, iterations=6, progress=p),
         "remesh, finer": lambda p: r.remesh(mesh, edge_length=0.4, iterations=3, progress=p),

@@ -32,6 +32,10 @@ print(result.status, result.energy[0], result.energy[-1], result.vertices.shape)
 found = ridgeform.segment(mesh)
 print(found.n_segments, np.bincount(found.labels))  # the two sides of the valley
 
+# %% parts
+limbs = ridgeform.parts(mesh, n_parts=2)
+print(limbs.n_parts, limbs.range, limbs.labels_at(1).max())
+
 # %% find_holes
 middle = (np.abs(vertices[corner, :2]) < 0.3).all(axis=1)
 open_mesh = ridgeform.Mesh(vertices, faces[~np.tile(middle, 2)])

@@ -12,7 +12,10 @@ GROUPS = {
     "Meshes": (
         "Mesh", "MeshReport", "find_holes", "Hole", "boundary_loops", "weld", "orient", "remesh", "Remeshed",
     ),
-    "Shapes": ("stylize", "Stylized", "fill_holes", "Filled", "FilledHole", "segment", "Segmentation"),
+    "Shapes": (
+        "stylize", "Stylized", "fill_holes", "Filled", "FilledHole", "segment", "Segmentation",
+        "parts", "Parts",
+    ),
     "Functions on surfaces": ("denoise", "interpolate", "vibration_modes", "Solution"),
     "Diffusion curves": (
         "diffusion_curves", "DiffusionCurves", "redraw", "Redrawn", "smooth_curves", "trace_curves",

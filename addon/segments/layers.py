@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Segments as attributes, face sets, vertex groups and edge marks."""
+"""Segments as attributes, face sets and edge marks."""
 
 from collections.abc import Iterable
 
@@ -14,8 +14,6 @@ INDICATOR = "ridgeform_indicator"
 MARKED = "ridgeform_marked"
 """The edge attribute that says which marks are ours: a bit for each of `MARKS`."""
 FACE_SET = ".sculpt_face_set"
-GROUP = "ridgeform_segment_"
-"""What names of vertex groups begin with; the number of the segment follows."""
 MARKS = {"SEAMS": (1, "use_seam"), "SHARP": (2, "use_edge_sharp")}
 """Kinds of marks: their bit, and Blender's name of the flag."""
 _KINDS = {"INT": np.int32, "FLOAT": np.float32}
@@ -58,26 +56,10 @@ def write_face_sets(mesh: bpy.types.Mesh, labels: np.ndarray, taking: np.ndarray
     write(mesh, FACE_SET, "INT", "FACE", sets)
 
 
-def write_groups(obj: bpy.types.Object, labels: np.ndarray) -> None:
-    """Make each segment of all labels (f,) a vertex group, and take away those of an earlier run."""
-    mesh = obj.data
-    for group in [group for group in obj.vertex_groups if _is_own(group.name)]:
-        obj.vertex_groups.remove(group)
-    _, vertices, _ = mesh_io.face_corners(mesh)
-    corner_labels = labels[_corner_faces(mesh)]
-    for segment in np.unique(labels[labels >= 0]).tolist():
-        group = obj.vertex_groups.new(name=f"{GROUP}{segment}")
-        group.add(np.unique(vertices[corner_labels == segment]).tolist(), 1.0, "REPLACE")
-
-
-def _is_own(name: str) -> bool:
-    return name.startswith(GROUP) and name.removeprefix(GROUP).isdecimal()
-
-
 def border_edges(mesh: bpy.types.Mesh, labels: np.ndarray) -> np.ndarray:
     """Which edges (k,) bool lie between faces of two segments; faces with the label -1 do not count."""
     _, _, edge = mesh_io.face_corners(mesh)
-    corner_labels = labels[_corner_faces(mesh)]
+    corner_labels = labels[corner_faces(mesh)]
     counts = corner_labels >= 0
     low = np.full(len(mesh.edges), np.iinfo(np.int32).max)
     high = np.full(len(mesh.edges), -1)
@@ -105,11 +87,11 @@ def edges_within(mesh: bpy.types.Mesh, taking: np.ndarray) -> np.ndarray:
     """Which edges (k,) bool have only faces that take part."""
     _, _, edge = mesh_io.face_corners(mesh)
     within = np.ones(len(mesh.edges), bool)
-    within[edge[~taking[_corner_faces(mesh)]]] = False
+    within[edge[~taking[corner_faces(mesh)]]] = False
     return within
 
 
-def _corner_faces(mesh: bpy.types.Mesh) -> np.ndarray:
+def corner_faces(mesh: bpy.types.Mesh) -> np.ndarray:
     """The face (c,) of each corner."""
     totals = np.empty(len(mesh.polygons), np.int32)
     mesh.polygons.foreach_get("loop_total", totals)

@@ -1,17 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Segments as objects of their own."""
 
+import bmesh
 import bpy
 import numpy as np
 
 from . import layers, slots
 
+CUT = "ridgeform_cut"
+"""The edge attribute that says where a mesh was cut, while it is being separated."""
 
-def separate(obj: bpy.types.Object, labels: np.ndarray) -> list[bpy.types.Object]:
+
+def separate(obj: bpy.types.Object, labels: np.ndarray, caps: bool = False) -> list[bpy.types.Object]:
     """Make an object of each segment; the first stays, and faces without a segment stay with it.
 
-    All that lies on the mesh goes along; own material slots that a part does not use go. Returns all parts.
+    All that lies on the mesh goes along; own material slots that a part does not use go. With `caps` the cuts
+    are closed on both sides; borders that were open before stay open. Returns all parts.
     """
+    if caps:
+        layers.write(obj.data, CUT, "INT", "EDGE", layers.border_edges(obj.data, labels).astype(np.int32))
     context = bpy.context
     active, chosen = context.view_layer.objects.active, list(context.selected_objects)
     parts = [obj]
@@ -33,6 +40,8 @@ def separate(obj: bpy.types.Object, labels: np.ndarray) -> list[bpy.types.Object
             item.select_set(True)
         context.view_layer.objects.active = active
     for part in parts:
+        if caps:
+            _cap(part.data)
         index = np.zeros(len(part.data.polygons), np.int32)
         part.data.polygons.foreach_get("material_index", index)
         slots.remove_unused(part.data, index)
@@ -52,4 +61,24 @@ def _select_faces(mesh: bpy.types.Mesh, chosen: np.ndarray) -> None:
     mesh.edges.foreach_set("select", np.zeros(len(mesh.edges), bool))
     mesh.polygons.foreach_set("hide", np.zeros(len(mesh.polygons), bool))
     mesh.polygons.foreach_set("select", chosen)
+    mesh.update()
+
+
+def _cap(mesh: bpy.types.Mesh) -> None:
+    """Close the loops of cut edges with flat-shaded triangles between their vertices."""
+    edited = bmesh.new()
+    try:
+        edited.from_mesh(mesh)
+        layer = edited.edges.layers.int[CUT]
+        edges = [edge for edge in edited.edges if edge[layer] and edge.is_boundary]
+        materials = {edge: edge.link_faces[0].material_index for edge in edges}
+        faces = bmesh.ops.holes_fill(edited, edges=edges, sides=0)["faces"]
+        for face in faces:
+            face.smooth = False
+            face.material_index = next(materials[edge] for edge in face.edges if edge in materials)
+        bmesh.ops.triangulate(edited, faces=faces)
+        edited.edges.layers.int.remove(layer)
+        edited.to_mesh(mesh)
+    finally:
+        edited.free()
     mesh.update()

@@ -16,15 +16,45 @@ from ..framework.settings import (
 )
 
 
+def of_faces(settings: object) -> bool:
+    """Whether segments are faces."""
+    return settings.kind == "FACES"
+
+
+def of_parts(settings: object) -> bool:
+    """Whether segments are parts."""
+    return settings.kind == "PARTS"
+
+
 def _width(name: str, description: str, *, default: float) -> Setting:
     """A width of the bands around borders."""
-    given = {"min": 1e-5, "max": 10.0, "precision": 4, "section": shared.EXPERT}
+    given = {"min": 1e-5, "max": 10.0, "precision": 4, "section": shared.EXPERT, "shown": of_faces}
     return number(name, description, default=default, **given)
 
 
 class SegmentSettings(Settings):
     """The settings of segmenting."""
 
+    kind: choice(
+        "Kind",
+        "What counts as a segment",
+        (
+            (
+                "FACES",
+                "Faces",
+                "What creases and steps enclose: sides, walls, and roofs. For buildings, machine parts, and "
+                "furniture",
+            ),
+            (
+                "PARTS",
+                "Parts",
+                "Limbs, heads, and handles, cut through hollows where it is short. For characters, animals, "
+                "and everything that has limbs",
+            ),
+        ),
+        default="FACES",
+        expand=True,
+    )
     source: choice(
         "By",
         "What the segments are found on",
@@ -38,6 +68,7 @@ class SegmentSettings(Settings):
         ),
         default="SHAPE",
         flag=None,
+        shown=of_faces,
     )
     attribute: data_name(
         "Attribute",
@@ -45,6 +76,7 @@ class SegmentSettings(Settings):
         search=search_names,
         active=lambda settings: settings.source == "ATTRIBUTE",
         implies={"source": "ATTRIBUTE"},
+        shown=of_faces,
     )
     length_weight: number(
         "Border Cost",
@@ -57,6 +89,19 @@ class SegmentSettings(Settings):
         soft_min=0.05,
         soft_max=3.0,
         precision=2,
+        shown=of_faces,
+    )
+    coarseness: number(
+        "Coarseness",
+        "How much a cut must be worth: short against what it cuts off, and through hollows. Larger values "
+        "give fewer parts. Cuts of about the same worth, as of two arms, are made all or none",
+        default=1.0,
+        min=0.01,
+        max=100.0,
+        soft_min=0.5,
+        soft_max=4.0,
+        precision=2,
+        shown=of_parts,
     )
     use_count: boolean("Set Number", "Choose the number of segments", flag=None)
     count: integer(
@@ -106,6 +151,33 @@ class SegmentSettings(Settings):
         default={"MATERIALS"},
         flag="--make",
     )
+    transition: number(
+        "Transition",
+        "Width of the band around a border in which the weights of vertex groups change from 0 to 1, for "
+        "rigging. 0 gives every vertex the full weight of its segment",
+        default=0.0,
+        min=0.0,
+        soft_max=10.0,
+        precision=3,
+        subtype="DISTANCE",
+        active=lambda settings: "VERTEX_GROUPS" in settings.outputs,
+    )
+    use_caps: boolean(
+        "Cap Cuts",
+        "Close the cuts of separate objects with flat faces, so that they can be printed",
+        active=lambda settings: "OBJECTS" in settings.outputs,
+    )
+    existing: choices(
+        "Keep Borders",
+        "Borders of the mesh that cuts follow wherever they can",
+        (
+            ("SHARP", "Sharp", "Edges marked as sharp"),
+            ("SEAMS", "Seams", "Seams"),
+            ("MATERIALS", "Materials", "Edges between faces of different materials"),
+        ),
+        flag="--keep-borders",
+        shown=of_parts,
+    )
     ridge_group: shared.RIDGE_GROUP.but(
         name="Borders",
         description="Vertex group painted where borders should run. Unpainted areas are neutral",
@@ -122,6 +194,7 @@ class SegmentSettings(Settings):
         min=0,
         soft_max=200,
         section=shared.EXPERT,
+        shown=of_faces,
     )
     method: choice(
         "Method",
@@ -137,6 +210,7 @@ class SegmentSettings(Settings):
         ),
         default="fitted",
         section=shared.EXPERT,
+        shown=of_faces,
     )
     cut_threshold: factor(
         "Threshold",
@@ -144,16 +218,18 @@ class SegmentSettings(Settings):
         "apart where it is below this value: higher values cut along weaker borders as well",
         default=0.6,
         section=shared.EXPERT,
+        shown=of_faces,
         active=lambda settings: settings.method == "paper",
     )
     use_fidelity: shared.USE_FIDELITY.but(
-        description="Set the fidelity weight of the paper instead of finding it from the noise of the mesh"
+        description="Set the fidelity weight of the paper instead of finding it from the noise of the mesh",
+        shown=of_faces,
     )
     fidelity: shared.fidelity(
         "Fidelity weight of the paper (Rowe et al. 2024, eq. 41): larger values stay closer to the surface, "
         "noise included",
         default=1000.0,
-    )
+    ).but(shown=of_faces)
     epsilon_start: _width(
         "First Width",
         "Initial width of the bands around borders (ε of the paper), in the unit below. Halved until the "
@@ -176,16 +252,19 @@ class SegmentSettings(Settings):
         ),
         default="extent",
         section=shared.EXPERT,
+        shown=of_faces,
     )
-    solver: shared.SOLVER
-    max_iterations: shared.MAX_ITERATIONS
+    solver: shared.SOLVER.but(shown=of_faces)
+    max_iterations: shared.MAX_ITERATIONS.but(shown=of_faces)
 
 
 PRESETS = {
-    "Faces": {"length_weight": 0.5},
-    "Large Parts": {"length_weight": 1.2},
-    "Details": {"length_weight": 0.2},
+    "Faces": {"kind": "FACES", "length_weight": 0.5},
+    "Parts": {"kind": "PARTS", "coarseness": 1.0, "use_count": False},
+    "Large Parts": {"kind": "FACES", "length_weight": 1.2},
+    "Details": {"kind": "FACES", "length_weight": 0.2},
     "Paper 2024": {
+        "kind": "FACES",
         "method": "paper",
         "use_count": False,
         "min_faces": 20,
@@ -197,8 +276,8 @@ PRESETS = {
         "scale": "bounding_box",
     },
 }
-"""Shipped presets: the faces that a person would name; few and large ones; borders along weak ridges as
-well; the method as published."""
+"""Shipped presets: the faces that a person would name; limbs; few and large faces; borders along weak ridges
+as well; the method as published."""
 
 
 def segment_options(settings: object) -> dict[str, object]:
@@ -218,3 +297,8 @@ def segment_options(settings: object) -> dict[str, object]:
         "solver": settings.solver,
         "max_iterations": settings.max_iterations or None,
     }
+
+
+def parts_options(settings: object) -> dict[str, object]:
+    """The keyword arguments of `ridgeform.parts` that the settings stand for, the same for every mesh."""
+    return {"coarseness": settings.coarseness}

@@ -24,9 +24,10 @@ from ..framework.sources import (
     varying_means,
 )
 from ..framework.surface import Surface, painted_ridges, surface_of
-from . import layers, slots
+from . import groups, layers, slots
+from .existing import border_weights
 from .parts import separate
-from .settings import segment_options
+from .settings import of_parts, parts_options, segment_options
 
 SUFFIX = "_sharpened"
 KEY_NAME = "Sharpened"
@@ -95,9 +96,14 @@ class Segmenting(Run):
         surface = surface_of(obj)
         weld = surface.weld
         faces = mesh_io.triangle_faces(obj.data)[weld.kept]
-        options = segment_options(self.settings)
+        parts = of_parts(self.settings)
+        options = parts_options(self.settings) if parts else segment_options(self.settings)
         source, columns = None, None
-        if self.settings.source == "ATTRIBUTE":
+        if parts:
+            weights = border_weights(obj.data, self.settings.existing, weld.kept)
+            if weights is not None:
+                options["edge_weights"] = weights
+        elif self.settings.source == "ATTRIBUTE":
             source = source_of(obj, self.settings, (SUFFIX,))
             columns, values = varying_means(obj, source, weld)
             options["values"] = as_argument(values)
@@ -106,7 +112,7 @@ class Segmenting(Run):
             options["face_weights"] = weights
         if not taking.all():
             options["faces"] = taking[faces]
-        task = Task(obj.name, partial(_segmented, surface, options), counted="iteration")
+        task = Task(obj.name, partial(_segmented, surface, self.settings.kind, options), counted="iteration")
         part = SegmentPart(
             obj,
             task,
@@ -147,16 +153,16 @@ class Segmenting(Run):
             borders = layers.border_edges(mesh, labels)
             layers.mark_borders(mesh, borders, layers.edges_within(mesh, part.taking), marks)
         if "VERTEX_GROUPS" in outputs:
-            layers.write_groups(part.object, whole)
-        if "INDICATOR" in outputs:
+            groups.write_groups(part.object, whole, self.settings.transition)
+        if "INDICATOR" in outputs and not of_parts(self.settings):
             layers.write(mesh, layers.INDICATOR, "FLOAT", "FACE", part.face_means(found.indicator))
-        if "SHARPENED" in outputs:
+        if "SHARPENED" in outputs and not of_parts(self.settings):
             _write_sharpened(part)
         if "MATERIALS" in outputs:
             slots.assign(mesh, labels, taking)
         mesh.update()
         if "OBJECTS" in outputs and not self._in_edit_mode:
-            _separate(part, labels)
+            _separate(part, labels, self.settings.use_caps)
 
     def _notes(self, part: SegmentPart) -> list[str]:
         notes = []
@@ -167,6 +173,10 @@ class Segmenting(Run):
             notes.append("the tolerance was not reached")
         elif part.task.result.status == "stopped":
             notes.append("stopped early, the result so far is kept")
+        if of_parts(self.settings) and {"INDICATOR", "SHARPENED"} & set(self.settings.outputs):
+            notes.append("parts have no indicator and no sharpened surface")
+        if of_parts(self.settings) and self.settings.source == "ATTRIBUTE":
+            notes.append("parts are found on the shape, not on an attribute")
         if "OBJECTS" in self.settings.outputs and self._in_edit_mode:
             notes.append("segments become objects only in Object Mode")
         return notes
@@ -178,8 +188,7 @@ class Segmenting(Run):
             "attribute": part.source.name if part.source is not None else None,
             "segments": part.n_segments,
             "possible": list(map(int, found.range)),
-            "noise": float(found.noise),
-            "steps": int(found.alternations),
+            **({} if of_parts(self.settings) else _course(found)),
             "status": str(found.status),
         }
 
@@ -207,7 +216,14 @@ class Segmenting(Run):
         return f"{counted(count, 'segment')} on {where} ({fewest} to {most} are possible), {seconds:.1f} s"
 
 
-_known: OrderedDict[bytes, ridgeform.Segmentation] = OrderedDict()
+def _course(found: ridgeform.Segmentation) -> dict[str, object]:
+    """The noise that was found, and how often the functional took turns."""
+    return {"noise": float(found.noise), "steps": int(found.alternations)}
+
+
+Found = ridgeform.Segmentation | ridgeform.Parts
+
+_known: OrderedDict[bytes, Found] = OrderedDict()
 
 
 def forget() -> None:
@@ -216,14 +232,15 @@ def forget() -> None:
 
 
 def _segmented(
-    surface: Surface, options: dict[str, object], progress: ridgeform.Progress
-) -> ridgeform.Segmentation:
+    surface: Surface, kind: str, options: dict[str, object], progress: ridgeform.Progress
+) -> Found:
     """The result for a mesh and options; the same ones again are found by all that goes in, bit by bit."""
-    key = _digest(surface, options)
+    key = _digest(surface, options | {"kind": kind})
     if key in _known:
         _known.move_to_end(key)
         return _known[key]
-    found = ridgeform.segment(surface.mesh, progress=progress, **options)
+    call = ridgeform.parts if kind == "PARTS" else ridgeform.segment
+    found = call(surface.mesh, progress=progress, **options)
     if found.status != "stopped":
         _known[key] = found
         while len(_known) > MEMORY:
@@ -261,7 +278,7 @@ def _write_sharpened(part: SegmentPart) -> None:
     attribute_io.write_values(part.object, part.source, limited.astype(np.float32), name)
 
 
-def _separate(part: SegmentPart, labels: np.ndarray) -> None:
-    made = separate(part.object, labels)
+def _separate(part: SegmentPart, labels: np.ndarray, caps: bool) -> None:
+    made = separate(part.object, labels, caps)
     if len(made) > 1:
         part.warnings.append(f"separated into {len(made)} objects")

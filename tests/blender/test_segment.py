@@ -8,7 +8,7 @@ import ridgeform
 from bl_ext.user_default.ridgeform.blender import attribute_io, mesh_io
 from bl_ext.user_default.ridgeform.framework import job
 from bl_ext.user_default.ridgeform.framework.settings import defaults_of
-from bl_ext.user_default.ridgeform.segments import layers, slots, tool
+from bl_ext.user_default.ridgeform.segments import groups, layers, slots, tool
 from bl_ext.user_default.ridgeform.segments.settings import SegmentSettings, segment_options
 from known_shapes import shapes
 from modal_kit import begin, event, poll_to_the_end
@@ -182,7 +182,7 @@ def test_face_sets_groups_and_indicator():
     assert same_partition(sets, truth)
     assert sets.min() == 1
     assert len(obj.vertex_groups) == 1 + SIDES
-    group = obj.vertex_groups[layers.GROUP + "0"]
+    group = obj.vertex_groups[groups.GROUP + "0"]
     inside = np.unique([v for face in obj.data.polygons if sets[face.index] == 1 for v in face.vertices])
     weights = mesh_io.group_weights(obj, group.name)
     assert np.array_equal(np.flatnonzero(weights == 1), inside)
@@ -191,7 +191,7 @@ def test_face_sets_groups_and_indicator():
     assert kit.same_bits(indicator, expected(obj).indicator.astype(np.float32))
     bpy.ops.ridgeform.segment(outputs={"VERTEX_GROUPS"}, use_count=True, count=2)
     names = [group.name for group in obj.vertex_groups]
-    assert names == [mine.name, layers.GROUP + "0", layers.GROUP + "1"]
+    assert names == [mine.name, groups.GROUP + "0", layers.GROUP + "1"]
 
 
 def test_the_sharpened_surface_is_a_shape_key():

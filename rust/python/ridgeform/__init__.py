@@ -1,12 +1,13 @@
 """Ridgeform: the L1 surface Hessian as a modeler's tool.
 
 Make a `Mesh` from arrays, then call a function per problem: `stylize` turns it piecewise flat, `segment`
-finds the parts that it is made of, `fill_holes` closes holes so that the ridges around them go on,
-`denoise` and `interpolate` find functions on it with sparse second derivatives, `vibration_modes` those of
-least energy, `diffusion_curves` the few curves that redraw a painted surface, and `remesh` evens out its
-triangles; `hessian` and its companions are the operators behind them. Arrays of any numeric dtype and
-memory order go in; fresh C-contiguous `float64` and `int32` arrays come out. Long calls release the
-interpreter lock, report to a `Progress`, and hear Ctrl-C. Every failure is a `RidgeformError`.
+finds the faces that it is made of and `parts` its limbs, `fill_holes` closes holes so that the ridges
+around them go on, `denoise` and `interpolate` find functions on it with sparse second derivatives,
+`vibration_modes` those of least energy, `diffusion_curves` the few curves that redraw a painted surface,
+and `remesh` evens out its triangles; `hessian` and its companions are the operators behind them. Arrays of
+any numeric dtype and memory order go in; fresh C-contiguous `float64` and `int32` arrays come out. Long
+calls release the interpreter lock, report to a `Progress`, and hear Ctrl-C. Every failure is a
+`RidgeformError`.
 
 Source: Rowe, Jacobson and Stein, Sharpening and Sparsifying with Surface Hessians, SIGGRAPH Asia 2024.
 """
@@ -21,6 +22,7 @@ from ._native import (
     Hole,
     Mesh,
     MeshReport,
+    Parts,
     Progress,
     Redrawn,
     Remeshed,
@@ -43,6 +45,7 @@ from ._native import (
     memory_available,
     memory_estimate,
     orient,
+    parts,
     redraw,
     remesh,
     segment,
@@ -66,6 +69,7 @@ __all__ = [
     "Mesh",
     "MeshError",
     "MeshReport",
+    "Parts",
     "Progress",
     "Redrawn",
     "Remeshed",
@@ -90,6 +94,7 @@ __all__ = [
     "memory_available",
     "memory_estimate",
     "orient",
+    "parts",
     "redraw",
     "remesh",
     "segment",

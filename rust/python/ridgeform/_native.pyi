@@ -160,6 +160,22 @@ class Segmentation:
     def labels_at(self, n_segments: int) -> Indices: ...
 
 @final
+class Parts:
+    @property
+    def labels(self) -> Indices: ...
+    @property
+    def n_parts(self) -> int: ...
+    @property
+    def boundary_edges(self) -> Indices: ...
+    @property
+    def status(self) -> Literal["solved", "stopped"]: ...
+    @property
+    def range(self) -> tuple[int, int]: ...
+    @property
+    def costs(self) -> Floats: ...
+    def labels_at(self, n_parts: int) -> Indices: ...
+
+@final
 class Stylized:
     @property
     def vertices(self) -> Floats: ...
@@ -363,6 +379,17 @@ def segment(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Segmentation: ...
+def parts(
+    mesh: Mesh,
+    *,
+    n_parts: int | None = None,
+    coarseness: float = 1.0,
+    face_weights: ArrayLike | None = None,
+    edge_weights: ArrayLike | None = None,
+    faces: ArrayLike | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Parts: ...
 def stylize(
     mesh: Mesh,
     *,

@@ -22,6 +22,7 @@ mod modes;
 mod numbers;
 mod operators;
 mod options;
+mod parts;
 mod progress;
 mod remesh;
 mod scalar;
@@ -43,6 +44,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<matrix::SparseMatrix>()?;
     module.add_class::<progress::Progress>()?;
     module.add_class::<segment::Segmentation>()?;
+    module.add_class::<parts::Parts>()?;
     module.add_class::<solution::Solution>()?;
     module.add_class::<holes::Hole>()?;
     module.add_class::<stylize::Stylized>()?;
@@ -65,6 +67,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(interpolate::interpolate, module)?)?;
     module.add_function(wrap_pyfunction!(modes::vibration_modes, module)?)?;
     module.add_function(wrap_pyfunction!(segment::segment, module)?)?;
+    module.add_function(wrap_pyfunction!(parts::parts, module)?)?;
     module.add_function(wrap_pyfunction!(stylize::stylize, module)?)?;
     module.add_function(wrap_pyfunction!(remesh::remesh, module)?)?;
     module.add_function(wrap_pyfunction!(diffusion_curves::diffusion_curves, module)?)?;

@@ -1,9 +1,12 @@
 //! The closest point of a surface, by a tree of boxes.
 
-use crate::mesh::vector::{add, area_vector, between, centroid, dot, norm, scale, sub, Point};
+use crate::mesh::vector::{add, area_vector, between, centroid, cross, dot, norm, scale, sub, Point};
 
 /// Triangles a leaf holds: fewer make a deeper tree, more make more distances; 4 was fastest by a little.
 const LEAF: usize = 4;
+
+/// How far outside a triangle a ray still meets it, in parts of its edges: so that none slips through between two.
+const EDGE: f64 = 1e-9;
 
 /// A point on one of the triangles.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -110,6 +113,34 @@ impl ClosestPoint {
         best
     }
 
+    /// The first triangle that the ray from `from` along `direction` meets farther than `start` away, and how far, in lengths of
+    /// `direction`.
+    #[must_use]
+    pub fn first_hit(&self, from: Point, direction: Point, start: f64) -> Option<(f64, u32)> {
+        let mut best: Option<(f64, u32)> = None;
+        let mut stack = Vec::with_capacity(64);
+        if !self.nodes.is_empty() {
+            stack.push(0);
+        }
+        while let Some(n) = stack.pop() {
+            let node = &self.nodes[n];
+            if !node.is_met(from, direction, [start, best.map_or(f64::INFINITY, |found| found.0)]) {
+                continue;
+            }
+            if node.count == 0 {
+                stack.extend([node.start as usize, n + 1]);
+                continue;
+            }
+            for &triangle in &self.order[node.start as usize..(node.start + node.count) as usize] {
+                let met = ray_meets(from, direction, self.triangles[triangle as usize]);
+                if let Some(far) = met.filter(|far| *far > start && best.is_none_or(|found| *far < found.0)) {
+                    best = Some((far, triangle));
+                }
+            }
+        }
+        best
+    }
+
     /// The corners of a triangle.
     #[must_use]
     pub fn triangle(&self, t: u32) -> [Point; 3] {
@@ -118,9 +149,35 @@ impl ClosestPoint {
 }
 
 impl Node {
+    /// Whether a ray goes through the box between two distances.
+    fn is_met(&self, from: Point, direction: Point, [mut near, mut far]: [f64; 2]) -> bool {
+        for k in 0..3 {
+            let [p, q] = [self.low, self.high].map(|corner| (corner[k] - from[k]) / direction[k]);
+            // A ray along a side of the box divides zero by zero; such a pair of planes does not count.
+            if p.is_nan() || q.is_nan() {
+                continue;
+            }
+            near = near.max(p.min(q));
+            far = far.min(p.max(q));
+        }
+        near <= far
+    }
+
     fn squared_distance(&self, p: Point) -> f64 {
         (0..3).map(|k| (self.low[k] - p[k]).max(p[k] - self.high[k]).max(0.0).powi(2)).sum()
     }
+}
+
+/// Where a ray meets a triangle, in lengths of `direction` (Möller and Trumbore 1997).
+fn ray_meets(from: Point, direction: Point, [a, b, c]: [Point; 3]) -> Option<f64> {
+    let (u, v) = (sub(b, a), sub(c, a));
+    let across = cross(direction, v);
+    let volume = dot(u, across);
+    let out = sub(from, a);
+    let around = cross(out, u);
+    let [first, second, far] = [dot(out, across), dot(direction, around), dot(v, around)].map(|x| x / volume);
+    // A ray in the plane of the triangle gives no numbers here, and fails.
+    (first >= -EDGE && second >= -EDGE && first + second <= 1.0 + EDGE).then_some(far)
 }
 
 /// The point of the triangle closest to `p` (Ericson 2005, section 5.1.5).

@@ -15,9 +15,6 @@ const AT_ONCE: usize = 4;
 /// Vectors in the subspace beyond those asked for: as many again and some; modes of a surface then converge by 4 to 10 a round.
 const SPARE: usize = 8;
 
-/// Residual `‖(Q + σM)⁻¹ M u − ρ u‖ / ρ` of a vector that is done.
-const ACCURACY: f64 = 1e-8;
-
 /// On meshes with slivers rounding in the factor ends the convergence before that; below this residual it is taken for the
 /// end when it has not halved for so many rounds.
 const ACCURACY_OF_ROUNDING: f64 = 1e-4;
@@ -52,6 +49,8 @@ pub struct Pencil<'a> {
     pub mass: &'a [f64],
     /// About how large the smallest positive eigenvalues are.
     pub scale: f64,
+    /// The residual `‖(Q + σM)⁻¹ M u − ρ u‖ / ρ` of a vector that is done.
+    pub accuracy: f64,
     /// The most bytes that the factor may take.
     pub memory_limit: Option<usize>,
 }
@@ -92,7 +91,7 @@ impl Pencil<'_> {
             let residual = block[..count].iter().zip(&next).map(|(x, y)| self.residual(x, y)).fold(0.0, f64::max);
             at_rest = if residual < 0.5 * best { 0 } else { at_rest + 1 };
             best = if at_rest == 0 { residual } else { best };
-            let settled = residual <= ACCURACY || best <= ACCURACY_OF_ROUNDING && at_rest >= ROUNDS_AT_REST;
+            let settled = residual <= self.accuracy || best <= ACCURACY_OF_ROUNDING && at_rest >= ROUNDS_AT_REST;
             if round > 0 && settled {
                 values.truncate(count);
                 let vectors = Columns { n_rows: n, n_columns: count, data: block[..count].concat() };

@@ -1,5 +1,5 @@
 //! What a user asks for, one file each: scattered data interpolation, denoising, vibration modes,
-//! stylization, segmentation, diffusion curves.
+//! stylization, segmentation, parts, diffusion curves.
 
 pub(crate) mod answer;
 mod denoise;
@@ -8,8 +8,10 @@ mod energy_options;
 mod fill_holes;
 mod heights;
 mod interpolate;
+mod minimum_cut;
 mod modes;
 mod options;
+mod parts;
 mod scalar;
 mod scale;
 mod segment;
@@ -29,6 +31,7 @@ pub use fill_holes::{
 pub use interpolate::interpolate;
 pub use modes::{vibration_modes, ModeOptions, Modes};
 pub use options::SolveOptions;
+pub use parts::{parts, Parts, PartsOptions};
 pub use scalar::ScalarOptions;
 pub use scale::Scale;
 pub use segment::{segment, Hierarchy, SegmentMethod, SegmentOptions, Segmentation};

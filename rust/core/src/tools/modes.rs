@@ -18,6 +18,9 @@ use crate::{Error, Result};
 /// 1e-16 and less, the first of the others at 1e-3 and more.
 const KERNEL: f64 = 1e-9;
 
+/// How exact eigenvectors are: see [`Pencil::accuracy`].
+const ACCURACY: f64 = 1e-8;
+
 /// Alternations of a mode at most; they take 3 to 12.
 const MOST_ALTERNATIONS: usize = 60;
 
@@ -146,6 +149,7 @@ impl Sequence<'_> {
             weights,
             mass: self.mass,
             scale,
+            accuracy: ACCURACY,
             memory_limit: self.settings.memory_limit,
         }
     }

@@ -178,9 +178,6 @@ pub(super) const BEND_OVER_A_RIDGE: f64 = 0.5;
 /// Passes over all borders: where three segments meet, the second pass sees what the first has done.
 pub(super) const STRAIGHTEN_PASSES: usize = 2;
 
-/// Flow below this part of the largest capacity is rounding.
-pub(super) const FLOW_ROUNDING: f64 = 1e-9;
-
 // Flat sides under little noise.
 
 /// Noise between these parts of a mean edge: below the first the shape is exact, and above the second normals no longer tell.

@@ -1,6 +1,5 @@
 //! From the finest segmentation to one segment for each connected part: nested, one merge after the other.
 
-use super::merge::Merge;
 use super::surface::contiguous;
 use crate::{Error, Result};
 
@@ -16,21 +15,24 @@ pub struct Hierarchy {
 }
 
 impl Hierarchy {
-    /// `leaves` are contiguous labels; strengths of merges become ascending by their running maximum.
-    pub(super) fn new(leaves: Vec<u32>, n_leaves: usize, merges: &[Merge]) -> Self {
+    /// `leaves` are contiguous labels; of each merge the segment kept, the one gone, and the strength, which becomes ascending by
+    /// the running maximum.
+    pub(in crate::tools) fn new(
+        leaves: Vec<u32>,
+        n_leaves: usize,
+        merges: impl IntoIterator<Item = ([u32; 2], f64)>,
+    ) -> Self {
         let mut most = 0.0_f64;
-        let strengths = merges
-            .iter()
-            .map(|merge| {
-                most = most.max(merge.strength);
-                most
-            })
-            .collect();
-        Self { leaves, n_leaves, merges: merges.iter().map(|m| [m.kept, m.gone]).collect(), strengths }
+        let ascending = |(pair, strength): ([u32; 2], f64)| {
+            most = most.max(strength);
+            (pair, most)
+        };
+        let (merges, strengths) = merges.into_iter().map(ascending).unzip();
+        Self { leaves, n_leaves, merges, strengths }
     }
 
     /// The same for a mesh of which only some faces took part: face `i` of this hierarchy is face `faces[i]` there, of `n_faces`.
-    pub(super) fn spread(mut self, faces: &[u32], n_faces: usize) -> Self {
+    pub(in crate::tools) fn spread(mut self, faces: &[u32], n_faces: usize) -> Self {
         let mut leaves = vec![u32::MAX; n_faces];
         for (&face, leaf) in faces.iter().zip(&self.leaves) {
             leaves[face as usize] = *leaf;
@@ -79,9 +81,8 @@ mod tests {
 
     #[test]
     fn takes_as_many_merges_as_it_needs() {
-        let merges =
-            [(0, 1, 0.3), (2, 3, 0.2), (0, 2, 0.5)].map(|(kept, gone, strength)| Merge { kept, gone, strength });
-        let hierarchy = Hierarchy::new(vec![0, 1, 2, 3, 0], 4, &merges);
+        let merges = [([0, 1], 0.3), ([2, 3], 0.2), ([0, 2], 0.5)];
+        let hierarchy = Hierarchy::new(vec![0, 1, 2, 3, 0], 4, merges);
         assert_eq!(hierarchy.range(), [4, 1]);
         assert_eq!(hierarchy.strengths(), [0.3, 0.3, 0.5]);
         assert_eq!(hierarchy.labels_at(9).unwrap(), [0, 1, 2, 3, 0]);

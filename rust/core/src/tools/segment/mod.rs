@@ -8,7 +8,6 @@
 
 mod constants;
 mod crease;
-mod cut;
 mod divide;
 mod exact;
 mod explain;
@@ -222,7 +221,7 @@ fn whole(
 }
 
 /// The vertices of the edges between faces of different labels, −1 not counted as one.
-fn boundary_edges(mesh: &Mesh, labels: &[i32]) -> Vec<[u32; 2]> {
+pub(super) fn boundary_edges(mesh: &Mesh, labels: &[i32]) -> Vec<[u32; 2]> {
     let connectivity = mesh.connectivity();
     let between = |h: usize| {
         connectivity.mate(h).is_some_and(|mate| {

@@ -186,7 +186,7 @@ impl<'a> Passes<'a> {
         let mut current = finest.clone();
         rename(&mut current, &merges);
         merges.extend(merging.all(&mut current)?);
-        Ok(Hierarchy::new(finest, n_leaves, &merges))
+        Ok(Hierarchy::new(finest, n_leaves, merges.iter().map(|m| ([m.kept, m.gone], m.strength))))
     }
 
     /// Each leaf belongs to the segment that has most of its faces; faces elsewhere go to the nearest leaf of their own segment.

@@ -6,11 +6,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::constants::{BAND_ROWS, BEND_OVER_A_RIDGE, STRAIGHTEN_PASSES};
-use super::cut::Graph;
 use super::patches::Plane;
 use super::surface::{members, Surface};
 use crate::mesh::vector::{add, distance, dot, sub, unit, Point};
 use crate::progress::Progress;
+use crate::tools::minimum_cut::Graph;
 use crate::Result;
 
 /// What borders cost.

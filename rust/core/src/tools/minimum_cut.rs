@@ -1,10 +1,12 @@
 //! The minimum cut of a small undirected graph between two sides, by augmenting shortest paths (Dinic 1970).
 
-use super::constants::FLOW_ROUNDING;
 use std::collections::VecDeque;
 
 /// A node that belongs to no side yet.
 const UNSEEN: u32 = u32::MAX;
+
+/// Flow below this part of the largest capacity is rounding.
+const FLOW_ROUNDING: f64 = 1e-9;
 
 /// An undirected graph with capacities.
 pub(super) struct Graph {

@@ -1,0 +1,79 @@
+//! From clusters back to faces: the borders between parts, drawn along edges of the mesh and pulled tight
+//! there.
+
+use super::constants::CLUSTERS_WIDE;
+use super::cut::{area_of, cost};
+use super::division::Division;
+use super::graph::{Graph, NONE};
+use super::tighten::moved;
+use crate::progress::Progress;
+use crate::Result;
+
+/// The part of every face after all divisions, numbered as they are: each border the shortest one in its
+/// band.
+///
+/// # Errors
+/// [`crate::Error::Cancelled`].
+pub(super) fn drawn(
+    graph: &Graph,
+    clusters: &[u32],
+    n_clusters: usize,
+    divisions: &[Division],
+    progress: &Progress,
+) -> Result<(Vec<u32>, Vec<f64>)> {
+    let mut labels = vec![0_u32; graph.n_nodes()];
+    let width = CLUSTERS_WIDE * (graph.area() / n_clusters as f64).sqrt();
+    // The part of each cluster, as divisions go on.
+    let mut owners = vec![0_u32; n_clusters];
+    let mut costs: Vec<f64> = Vec::with_capacity(divisions.len());
+    let mut place = vec![NONE; graph.n_nodes()];
+    for (number, division) in (1..).zip(divisions) {
+        progress.check()?;
+        division.gone.iter().for_each(|&cluster| owners[cluster as usize] = number);
+        let faces: Vec<u32> = (0..graph.n_nodes() as u32).filter(|&f| labels[f as usize] == division.part).collect();
+        let part = graph.subgraph(&faces, &mut place);
+        let owner = |f: u32| owners[clusters[f as usize] as usize];
+        let mut side = spread_out(&part, faces.iter().map(|&f| owner(f)), [division.part, number]);
+        if n_clusters < graph.n_nodes() {
+            side = moved(&part, &side, width).unwrap_or(side);
+        }
+        keep_whole(&part, &mut side);
+        let before = costs.last().copied().unwrap_or(0.0);
+        costs.push(cost(&part, &side).max(before));
+        faces.iter().zip(&side).filter(|(_, side)| **side).for_each(|(&f, _)| labels[f as usize] = number);
+    }
+    Ok((labels, costs))
+}
+
+/// Which faces are on the second side, by the parts of their clusters; faces of clusters that are in
+/// neither, since an earlier border was moved over them, go with the nearest.
+fn spread_out(part: &Graph, owners: impl Iterator<Item = u32>, sides: [u32; 2]) -> Vec<bool> {
+    let owners: Vec<u32> = owners.collect();
+    let known: Vec<u32> = (0..owners.len() as u32).filter(|&f| sides.contains(&owners[f as usize])).collect();
+    let (_, nearest) = part.nearest(&known, f64::INFINITY, |edge| edge.distance);
+    let second = |&seed: &u32| known.get(seed as usize).is_some_and(|&f| owners[f as usize] == sides[1]);
+    nearest.iter().map(second).collect()
+}
+
+/// Gives all pieces of a side but its largest to the other one.
+fn keep_whole(part: &Graph, side: &mut [bool]) {
+    let (pieces, count) = part.pieces(|e| side[e.ends[0] as usize] == side[e.ends[1] as usize]);
+    if count <= 2 {
+        return;
+    }
+    let mut largest = [(0.0, NONE); 2];
+    for piece in 0..count as u32 {
+        let members: Vec<bool> = pieces.iter().map(|p| *p == piece).collect();
+        let area = area_of(part, &members);
+        let Some(first) = members.iter().position(|m| *m) else { continue };
+        let held = &mut largest[usize::from(side[first])];
+        if area > held.0 {
+            *held = (area, piece);
+        }
+    }
+    for (side, piece) in side.iter_mut().zip(&pieces) {
+        if largest[usize::from(*side)].1 != *piece {
+            *side = !*side;
+        }
+    }
+}

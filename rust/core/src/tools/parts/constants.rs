@@ -1,0 +1,140 @@
+//! What is a part: every threshold, with its reason. Lengths are parts of the square root of the area.
+//!
+//! Where figures stand, they are Rand errors (× 100, less is better) on 48 shapes of the Princeton
+//! Segmentation Benchmark.
+
+// Faces of any mesh.
+
+/// Faces without area take this part of the whole, so that every face has a place.
+pub(super) const LEAST_AREA: f64 = 1e-9;
+
+/// The residual, relative; and the most iterations, which take some twenty, and a hundred where most faces
+/// carry no mass.
+pub(super) const DIFFUSION_RESIDUAL: f64 = 1e-4;
+pub(super) const MOST_ITERATIONS: usize = 300;
+
+// What a border costs, in units of the square root of the area.
+
+/// Normals are smoothed over, and bends measured on, this part of the square root of the area: 0.03 blurs
+/// fingers away (Rand error 11.9 against 11.3 on a quarter of the shapes of the Princeton benchmark).
+pub(super) const BEND_SCALE: f64 = 0.02;
+
+/// A hollow that bends by this over its scale costs a third of a flat border, in radians; 0.3 finds fewer
+/// joints (12.7 against 11.3).
+pub(super) const BEND_OF_A_THIRD: f64 = 0.15;
+
+/// Of a bend between faces farther apart than the scale that share counts which falls to it, so that coarse
+/// meshes of smooth shapes have no more hollows than fine ones; but at least this part, since large faces of
+/// modeled shapes meet in edges.
+pub(super) const LEAST_SHARE: f64 = 0.2;
+
+/// The thickness is smoothed over, and its change measured on, this.
+pub(super) const THICKNESS_SCALE: f64 = 0.03;
+
+/// A change of the logarithm of the thickness by this over its scale costs a third as well. Without it
+/// smooth joints of fish, birds and four-legged animals are missed (10.9 against 10.6).
+pub(super) const CHANGE_OF_A_THIRD: f64 = 0.5;
+
+/// The least that a border costs, so that short ones win among hollows: 0.01 and 0.2 are worse (14.1 and
+/// 11.8 against 10.9).
+pub(super) const HOLLOW: f64 = 0.1;
+
+// Looking inside.
+
+/// Rays within 60 degrees of the normal, spread evenly over that cone.
+pub(super) const RAYS: usize = 16;
+pub(super) const LEAST_COSINE: f64 = 0.5;
+
+/// Rays start this far inside, in parts of the square root of the area.
+pub(super) const RAY_START: f64 = 1e-4;
+
+/// Fewer rays than this part that leave the shape from inside give no thickness: an open sheet has none.
+pub(super) const LEAST_RAYS: f64 = 0.25;
+
+/// So many faces at equal steps of area are looked under; the thickness is smoothed over more than lies
+/// between them.
+pub(super) const SAMPLES: usize = 4000;
+
+/// The mass of faces that were not looked under, against that of those which were: they follow their
+/// neighbors.
+pub(super) const UNSEEN: f64 = 1e-3;
+
+/// Costs and distances below this part of the shape's size are rounding: edges of degenerate faces.
+pub(super) const ROUNDING: f64 = 1e-9;
+
+// Gaps.
+
+/// From a large piece so many of its faces look for what is near.
+pub(super) const LOOKOUTS: usize = 200;
+
+// Clusters.
+
+/// So many clusters of equal area: a limb of a hundredth of the area has thirty.
+pub(super) const CLUSTERS: usize = 3000;
+
+/// Meshes of up to this many times as many faces are taken as they are.
+pub(super) const AS_IT_IS: f64 = 1.5;
+
+/// Rounds of moving seeds into the middle of their clusters (Lloyd 1982).
+pub(super) const CENTERINGS: usize = 2;
+
+/// How much farther a step across the dearest hollow is, so that clusters end there.
+pub(super) const LEAST_OPENNESS: f64 = 1e-3;
+
+// Dividing.
+
+/// Nothing smaller than this part of the shape is a part of its own: a toe of a figure.
+pub(super) const LEAST_PART: f64 = 3e-4;
+
+/// So many parts the finest division has, unless more are asked for.
+pub(super) const MOST_PARTS: usize = 40;
+
+// Cuts.
+
+/// The cost of a cut falls with the area of the smaller side to this power: 0.5 would make it free of
+/// scale and take fingertips before arms (Rand error at the usual count 18.8 against 12.6 on half of the
+/// shapes); 0.8 gains nothing.
+pub(super) const AREA_POWER: f64 = 0.7;
+
+/// A cut between sides whose mean thickness differs by this, in logarithms, costs a third: a wing and a body
+/// are two parts however softly they meet. Without it 10.9 as found, with it and no other thickness 10.5 where
+/// parts are merged from the bottom up.
+pub(super) const STEP: f64 = 1.0;
+
+/// Eigenfunctions that are swept: more find no better cuts at a part's first division, and later ones have
+/// their own.
+pub(super) const FUNCTIONS: usize = 4;
+
+/// How exact they need to be: their level sets are only where a cut starts.
+pub(super) const FUNCTION_ACCURACY: f64 = 1e-3;
+
+/// Cheapest levels of each that are looked at, apart by [`LEVELS_APART`] of the smaller side.
+pub(super) const LEVELS: usize = 3;
+pub(super) const LEVELS_APART: f64 = 0.08;
+
+/// So many of all cuts found are drawn tight; two that differ in less than [`SAME_CUT`] of the part are
+/// one.
+pub(super) const TIGHTENED: usize = 4;
+pub(super) const SAME_CUT: f64 = 0.02;
+
+/// Parts of fewer patches are not divided.
+pub(super) const LEAST_PATCHES: usize = 6;
+
+/// The band reaches this part of the smaller side's size to both sides.
+pub(super) const BAND: f64 = 0.25;
+
+/// At most so many times in a row.
+pub(super) const TIGHTENINGS: usize = 2;
+
+// Borders and count.
+
+/// A border moves within so many clusters' widths: they end where the border between faces might as well
+/// lie.
+pub(super) const CLUSTERS_WIDE: f64 = 2.0;
+
+/// The count is where the cost rises most between this much less and more than the limit: limbs that
+/// are alike then come and go together, and a little noise or another density changes no count.
+pub(super) const PLAY: f64 = 1.15;
+
+/// A cut may cost so much at a coarseness of 1: `length / area^0.7` of a shape of area 1.
+pub(super) const COST: f64 = 1.8;

@@ -1,0 +1,47 @@
+//! What a border costs for its length: less in a hollow (minima rule: Hoffman and Richards 1984), and
+//! where the thickness changes.
+//!
+//! Both are judged over a scale, not an edge, so that neither noise nor a finer mesh makes them.
+
+use rayon::prelude::*;
+
+use super::constants::{BEND_OF_A_THIRD, BEND_SCALE, CHANGE_OF_A_THIRD, HOLLOW, LEAST_SHARE, THICKNESS_SCALE};
+use super::diffusion::{diffused, Link};
+use super::graph::{Edge, Graph};
+use super::surface::Surface;
+use super::thickness::thickness;
+use crate::mesh::vector::{dot, sub, unit};
+use crate::progress::Progress;
+use crate::Result;
+
+/// The faces as a graph whose edges cost what borders cost.
+///
+/// # Errors
+/// [`crate::Error::Cancelled`].
+pub(super) fn border_graph(surface: &Surface, progress: &Progress) -> Result<Graph> {
+    let flow = |length: f64, distance: f64| length / distance.max(f64::MIN_POSITIVE);
+    let links: Vec<Link> = surface.joints.iter().map(|j| (j.faces, flow(j.length, j.distance))).collect();
+    let smooth = diffused(&surface.areas, &links, BEND_SCALE, surface.normals.clone());
+    let normals: Vec<_> = smooth.into_iter().map(unit).collect();
+    progress.check()?;
+    let thickness = thickness(surface, &normals, &links, THICKNESS_SCALE, progress)?;
+    let edges = surface.joints.par_iter().map(|joint| {
+        let [f, g] = joint.faces.map(|f| f as usize);
+        let across = sub(surface.centers[g], surface.centers[f]);
+        let squared = dot(across, across);
+        // The curvature across the edge, hollow positive, times the scale.
+        let turn = if squared > 0.0 { -dot(sub(normals[g], normals[f]), across) / squared.sqrt() } else { 0.0 };
+        let bend = turn.max(0.0) * (BEND_SCALE / squared.sqrt()).max(LEAST_SHARE);
+        let slope = (thickness[g] - thickness[f]).abs() / joint.distance.max(f64::MIN_POSITIVE);
+        let change = slope * THICKNESS_SCALE.max(joint.distance);
+        let part = (-(bend / BEND_OF_A_THIRD).powi(2) - (change / CHANGE_OF_A_THIRD).powi(2)).exp().max(HOLLOW);
+        Edge {
+            ends: joint.faces,
+            length: joint.length,
+            cost: part * joint.weight * joint.length,
+            distance: joint.distance,
+        }
+    });
+    let edges = edges.collect();
+    Ok(Graph::new(surface.areas.clone(), surface.centers.clone(), edges).with_thickness(thickness))
+}

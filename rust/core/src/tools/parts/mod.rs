@@ -1,0 +1,96 @@
+//! Parts: limbs, heads and handles, as people name them.
+//!
+//! People cut where a closed curve is short against what it cuts off, runs through hollows, or where the
+//! thickness changes. The faces become a graph whose edges cost that ([`surface`], [`hollows`],
+//! [`thickness`]), pieces that nothing joins are joined to what is near ([`stitch`]), large meshes become
+//! a few thousand [`clusters`]. Then the part with the cheapest [`cut`] is divided, over and over
+//! ([`division`]); the borders are drawn on the faces ([`borders`]), and the count is chosen ([`choice`]).
+
+mod borders;
+mod choice;
+mod clusters;
+mod constants;
+mod cut;
+mod diffusion;
+mod division;
+mod graph;
+mod hollows;
+mod options;
+mod stitch;
+mod surface;
+mod thickness;
+mod tighten;
+
+pub use options::PartsOptions;
+
+use crate::mesh::Mesh;
+use crate::progress::{Progress, Report};
+use crate::solve::Status;
+use crate::tools::segment::{boundary_edges, Hierarchy};
+use crate::Result;
+use division::Division;
+use surface::Surface;
+
+/// What came out of a division into parts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parts {
+    /// The part of each face, from 0 in the order of their first faces; −1 for faces that took no part.
+    pub labels: Vec<i32>,
+    /// How many parts there are.
+    pub n_parts: usize,
+    /// The vertices of the edges between parts.
+    pub boundary_edges: Vec<[u32; 2]>,
+    /// Coarser and finer divisions, nested; the strength of a border is one over what its cut costs.
+    pub hierarchy: Hierarchy,
+    /// `Solved`, or `Stopped` if the caller asked to finish early: then with fewer parts at most.
+    pub status: Status,
+}
+
+/// Divides the faces of `mesh` into the parts that people would name.
+///
+/// Meshes of any kind: vertices at the same place count as one, normals are turned to agree, pieces are
+/// joined to what is near.
+///
+/// # Errors
+/// [`crate::error::MeshError::NoPositions`], [`crate::error::MeshError::NoFaces`], arguments of the wrong
+/// shape or range, [`crate::Error::Cancelled`], and the errors of the eigenproblems.
+pub fn parts(mesh: &Mesh, options: &PartsOptions, progress: &Progress) -> Result<Parts> {
+    options.check(mesh)?;
+    options.solve().run(|| found(mesh, options, progress))
+}
+
+fn found(mesh: &Mesh, options: &PartsOptions, progress: &Progress) -> Result<Parts> {
+    let n_faces = mesh.connectivity().n_faces();
+    let faces: Vec<u32> = match &options.faces {
+        None => (0..n_faces as u32).collect(),
+        Some(mask) => (0..n_faces as u32).filter(|&f| mask[f as usize]).collect(),
+    };
+    say(progress, "measuring");
+    let surface = Surface::new(mesh, &faces, |h| options.weight(h))?;
+    let graph = hollows::border_graph(&surface, progress)?;
+    let graph = stitch::stitched(&surface, graph);
+    let (clusters, n_clusters) = clusters::clusters(&graph, progress)?;
+    let coarse = graph.quotient(&clusters, n_clusters);
+    say(progress, "dividing");
+    let divisions = division::divisions(&coarse, options.n_parts, progress)?;
+    say(progress, "drawing borders");
+    let (leaves, costs) = borders::drawn(&graph, &clusters, n_clusters, &divisions, progress)?;
+    let hierarchy = nested(leaves, &divisions, &costs).spread(&faces, n_faces);
+    let n_parts = options.n_parts.unwrap_or_else(|| choice::count(&costs, options.most_cost()));
+    let n_parts = n_parts.min(hierarchy.range()[0]);
+    let labels = hierarchy.labels_at(n_parts)?;
+    let status = if progress.is_finishing() { Status::Stopped } else { Status::Solved };
+    Ok(Parts { boundary_edges: boundary_edges(mesh, &labels), labels, n_parts, hierarchy, status })
+}
+
+/// The divisions undone from the last on, given what they cost.
+fn nested(leaves: Vec<u32>, divisions: &[Division], costs: &[f64]) -> Hierarchy {
+    let pairs = (1..).zip(divisions).map(|(number, division)| [division.part, number]);
+    let strengths = costs.iter().map(|cost| 1.0 / cost.max(f64::MIN_POSITIVE));
+    let merges: Vec<([u32; 2], f64)> = pairs.zip(strengths).collect();
+    Hierarchy::new(leaves, divisions.len() + 1, merges.into_iter().rev())
+}
+
+fn say(progress: &Progress, stage: &str) {
+    progress.report(Report { stage: stage.into(), ..Report::default() });
+}

@@ -1,0 +1,79 @@
+//! How to find parts.
+
+use super::constants::COST;
+use crate::mesh::Mesh;
+use crate::tools::options::{check_weights, SolveOptions};
+use crate::{Error, Result};
+
+/// How to find parts.
+#[derive(Debug, Clone)]
+pub struct PartsOptions {
+    /// How many parts are wanted; as many as the coarseness makes where `None`.
+    pub n_parts: Option<usize>,
+    /// How much cheaper cuts must be than is usual, 1: larger finds fewer parts. A cut costs the length of its
+    /// border, in hollows down to a tenth of it, over the 0.7th power of the area that it cuts off, both in
+    /// units of the whole area; up to 1.8 over the coarseness it is made.
+    pub coarseness: f64,
+    /// What borders cost in each face, 1 neutral, smaller where they are welcome.
+    pub face_weights: Option<Vec<f64>>,
+    /// What borders cost along each edge, one row a face, column `i` opposite corner `i`; the mean of both
+    /// faces' entries counts.
+    pub edge_weights: Option<Vec<[f64; 3]>>,
+    /// The faces to divide; all where `None`.
+    pub faces: Option<Vec<bool>>,
+    /// Threads to use; all where `None`. The result does not depend on it.
+    pub threads: Option<usize>,
+}
+
+impl Default for PartsOptions {
+    fn default() -> Self {
+        Self { n_parts: None, coarseness: 1.0, face_weights: None, edge_weights: None, faces: None, threads: None }
+    }
+}
+
+impl PartsOptions {
+    pub(super) fn check(&self, mesh: &Mesh) -> Result<()> {
+        let m = mesh.connectivity().n_faces();
+        if !(self.coarseness > 0.0 && self.coarseness.is_finite()) {
+            return Err(Error::argument("coarseness", format!("is {}; it must be positive", self.coarseness)));
+        }
+        if self.n_parts == Some(0) {
+            return Err(Error::argument("n_parts", "is 0; ask for at least one part"));
+        }
+        self.solve().settings()?;
+        check_weights("face_weights", self.face_weights.as_ref(), m, "face")?;
+        if let Some(weights) = &self.edge_weights {
+            if weights.len() != m {
+                let problem = format!("has {} rows, expected one per face: {m}", weights.len());
+                return Err(Error::argument("edge_weights", problem));
+            }
+            check_weights("edge_weights", Some(&weights.as_flattened().to_vec()), 3 * m, "halfedge")?;
+        }
+        match &self.faces {
+            Some(faces) if faces.len() != m => {
+                let problem = format!("has {} entries, expected one per face: {m}", faces.len());
+                Err(Error::argument("faces", problem))
+            }
+            Some(faces) if !faces.contains(&true) => {
+                Err(Error::argument("faces", "names no face; give at least one, or None for all"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Up to which cost cuts are made.
+    pub(super) fn most_cost(&self) -> f64 {
+        COST / self.coarseness
+    }
+
+    /// The threads, checked where they are started.
+    pub(super) fn solve(&self) -> SolveOptions {
+        SolveOptions { threads: self.threads, ..SolveOptions::default() }
+    }
+
+    /// What a border along halfedge `h` costs, by its face's and its own weight.
+    pub(super) fn weight(&self, h: usize) -> f64 {
+        self.edge_weights.as_ref().map_or(1.0, |w| w[h / 3][h % 3])
+            * self.face_weights.as_ref().map_or(1.0, |w| w[h / 3])
+    }
+}

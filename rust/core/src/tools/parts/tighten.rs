@@ -1,0 +1,47 @@
+//! A cut pulled tight: the minimum cut in a band around it.
+
+use super::constants::{BAND, TIGHTENINGS};
+use super::cut::{area_of, cost, is_whole};
+use super::graph::{Graph, NONE};
+use crate::tools::minimum_cut;
+
+/// The cut moved to where it costs least within its band, as long as that makes it cheaper and both sides
+/// stay connected.
+pub(super) fn tightened(graph: &Graph, mut side: Vec<bool>) -> Vec<bool> {
+    let area = area_of(graph, &side);
+    let width = BAND * area.min(graph.area() - area).max(0.0).sqrt();
+    for _ in 0..TIGHTENINGS {
+        match moved(graph, &side, width) {
+            Some(better) if is_whole(graph, &better) && cost(graph, &better) < cost(graph, &side) => side = better,
+            _ => break,
+        }
+    }
+    side
+}
+
+/// The minimum cut between what lies farther than `width` from the border on one side, and on the other;
+/// nothing where one of them is empty.
+pub(super) fn moved(graph: &Graph, side: &[bool], width: f64) -> Option<Vec<bool>> {
+    let parted = |ends: [u32; 2]| side[ends[0] as usize] != side[ends[1] as usize];
+    let front: Vec<u32> = graph.edges.iter().filter(|e| parted(e.ends)).flat_map(|e| e.ends).collect();
+    let (distances, _) = graph.nearest(&front, width, |edge| edge.distance);
+    // The far sides are nodes 0 and 1; those of the band follow.
+    let mut names = vec![NONE; side.len()];
+    let (mut count, mut far) = (2, [false; 2]);
+    for (name, (&side, distance)) in names.iter_mut().zip(side.iter().zip(&distances)) {
+        if distance.is_finite() {
+            *name = count;
+            count += 1;
+        } else {
+            *name = u32::from(side);
+            far[usize::from(side)] = true;
+        }
+    }
+    if far != [true; 2] {
+        return None;
+    }
+    let named = graph.edges.iter().map(|e| (e.ends.map(|end| names[end as usize]), e.cost));
+    let edges: Vec<([u32; 2], f64)> = named.filter(|(ends, _)| ends[0] != ends[1]).collect();
+    let cut = minimum_cut::Graph::new(count as usize, &edges).cut(1, 0);
+    Some(names.iter().map(|&name| cut[name as usize]).collect())
+}

@@ -1,0 +1,251 @@
+"""`parts`: known limbs found again at every density, what each keyword does, and what is refused."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import ridgeform
+from known_shapes import limbs, segment_shapes, shapes
+from known_shapes.segment_shapes import adjusted_rand_index
+
+SOURCES = Path(__file__).parents[2] / "blend_fixtures/sources"
+
+
+def source(name):
+    with np.load(SOURCES / f"{name}.npz") as data:
+        return data["vertices"].astype(float), data["faces"].astype(np.int64)
+
+
+def pieces_of(faces, labels):
+    """How many connected pieces each part has."""
+    first, second, _ = segment_shapes.face_pairs(faces)
+    same = labels[first] == labels[second]
+    pieces = segment_shapes.pieces(len(faces), first[same], second[same])
+    return np.array([len(np.unique(pieces[labels == part])) for part in np.unique(labels)])
+
+
+def areas_of(vertices, faces, labels):
+    a, b, c = (vertices[faces[:, i]] for i in range(3))
+    return np.bincount(labels, 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1))
+
+
+@pytest.fixture(scope="module")
+def ball():
+    return limbs.ball_with_limbs(4)
+
+
+@pytest.fixture(scope="module")
+def found(ball):
+    return ridgeform.parts(ridgeform.Mesh(*ball[:2]))
+
+
+@pytest.mark.parametrize("levels", [4, 5])
+def test_the_limbs_of_a_ball_are_found_at_every_density_turned_and_under_noise(levels):
+    vertices, faces, truth = limbs.ball_with_limbs(levels)
+    plain = ridgeform.parts(ridgeform.Mesh(vertices, faces))
+    assert plain.n_parts == 5
+    assert adjusted_rand_index(plain.labels, truth) >= 0.95
+    turned = ridgeform.parts(ridgeform.Mesh(vertices @ shapes.random_rotation(3).T, faces))
+    assert adjusted_rand_index(turned.labels, plain.labels) >= 0.95
+    noisy = shapes.add_noise(vertices, faces, 0.1, seed=2)
+    noisy = ridgeform.parts(ridgeform.Mesh(noisy, faces), n_parts=5)
+    assert adjusted_rand_index(noisy.labels, plain.labels) >= 0.95
+
+
+def test_limbs_that_are_mirror_images_are_cut_alike(ball, found):
+    vertices, faces, _ = ball
+    areas = np.sort(areas_of(vertices, faces, found.labels))
+    assert np.ptp(areas[:4]) <= 0.02 * areas[0]
+    assert found.costs[:4] == pytest.approx(np.full(4, found.costs[0]), rel=0.1)
+
+
+def test_divisions_are_nested_and_their_parts_connected_at_every_count(ball, found):
+    _, faces, _ = ball
+    fewest, most = found.range
+    assert fewest == 1
+    assert most >= 8
+    assert found.labels_at(1).max() == 0
+    finer = found.labels_at(most)
+    for count in range(most - 1, 0, -1):
+        labels = found.labels_at(count)
+        assert np.array_equal(np.unique(labels), np.arange(count))
+        assert len(np.unique(np.stack([finer, labels]), axis=1).T) == count + 1
+        assert (pieces_of(faces, labels) == 1).all()
+        finer = labels
+    assert len(found.costs) == most - 1
+    assert (np.diff(found.costs) >= 0).all()
+    assert np.array_equal(found.labels, found.labels_at(found.n_parts))
+
+
+def test_the_result_is_complete_and_consistent(ball, found):
+    _, faces, _ = ball
+    assert found.labels.shape == (len(faces),)
+    one, other, edges = segment_shapes.face_pairs(faces)
+    between = found.labels[one] != found.labels[other]
+    expected = {tuple(sorted(edge)) for edge in edges[between].tolist()}
+    assert {tuple(sorted(edge)) for edge in found.boundary_edges.tolist()} == expected
+    assert found.status == "solved"
+    assert repr(found) == f"<ridgeform.Parts: 5 parts of 1 to {found.range[1]}, solved>"
+
+
+def test_a_larger_coarseness_gives_fewer_parts_and_a_count_is_kept(ball):
+    mesh = ridgeform.Mesh(*ball[:2])
+    counts = [ridgeform.parts(mesh, coarseness=c).n_parts for c in (30.0, 1.5, 0.1)]
+    assert counts[0] == 1
+    assert counts[1] == 5
+    assert counts[2] > 5
+    assert ridgeform.parts(mesh, n_parts=3).n_parts == 3
+
+
+def test_a_character_has_a_head_and_legs_where_asked_for_few_parts():
+    vertices, faces = source("spot_low_resolution")
+    found = ridgeform.parts(ridgeform.Mesh(vertices, faces))
+    assert 3 <= found.n_parts <= 20
+    assert (pieces_of(faces, found.labels_at(8)) == 1).all()
+
+
+def test_the_same_bits_on_any_number_of_threads(ball):
+    mesh = ridgeform.Mesh(*ball[:2])
+    first, second = (ridgeform.parts(mesh, threads=n) for n in (1, 2))
+    np.testing.assert_array_equal(first.labels, second.labels)
+    np.testing.assert_array_equal(first.costs, second.costs)
+
+
+def test_sizes_and_places_change_nothing(ball, found):
+    vertices, faces, _ = ball
+    large = ridgeform.parts(ridgeform.Mesh(1e3 * vertices + 7.0, faces))
+    assert adjusted_rand_index(large.labels, found.labels) >= 0.99
+
+
+def test_pieces_are_parts_or_belong_to_what_is_near(ball):
+    vertices, faces, _ = ball
+    n = len(vertices)
+    small, small_faces = shapes.icosphere(1)
+    speck = 0.001 * small + vertices[0]
+    pair = ridgeform.Mesh(
+        np.concatenate([vertices, vertices + np.array([6.0, 0.0, 0.0]), speck]),
+        np.concatenate([faces, faces + n, small_faces + 2 * n]),
+    )
+    two = ridgeform.parts(pair, n_parts=2).labels
+    m = len(faces)
+    assert len(np.unique(two[:m])) == len(np.unique(two[m : 2 * m])) == 1
+    assert two[0] != two[m]
+    nearest = np.flatnonzero((faces == 0).any(axis=1))[0]
+    assert (two[2 * m :] == two[nearest]).all()
+
+
+def test_loose_triangles_of_one_surface_are_divided_as_that_surface(ball, found):
+    vertices, faces, _ = ball
+    loose = np.arange(3 * len(faces)).reshape(-1, 3)
+    result = ridgeform.parts(ridgeform.Mesh(vertices[faces].reshape(-1, 3), loose))
+    assert adjusted_rand_index(result.labels, found.labels) >= 0.99
+
+
+def test_faces_that_run_the_other_way_change_nothing(ball, found):
+    vertices, faces, _ = ball
+    mixed = faces.copy()
+    mixed[::3] = mixed[::3, ::-1]
+    result = ridgeform.parts(ridgeform.Mesh(vertices, mixed))
+    assert adjusted_rand_index(result.labels, found.labels) >= 0.99
+
+
+def test_real_files_get_parts(ball):
+    vertices, faces, truth = ball
+    rng = np.random.default_rng(0)
+    kept = ~((truth == 0) & (np.linalg.norm(vertices[faces].mean(axis=1), axis=1) > 2.3))
+    opened = faces[kept]
+    doubled = np.concatenate([faces, faces[::50]])
+    degenerate = np.concatenate([faces, np.stack([faces[:40, 0], faces[:40, 0], faces[:40, 1]], axis=1)])
+    fin = np.concatenate([faces, np.stack([faces[:30, 0], faces[:30, 1], rng.integers(0, 900, 30)], axis=1)])
+    soup = rng.integers(0, len(vertices), (300, 3))
+    for given in (opened, doubled, degenerate, fin):
+        result = ridgeform.parts(ridgeform.Mesh(vertices, given), n_parts=5)
+        sound = np.arange(min(len(given), len(faces)))
+        known = truth if len(given) >= len(faces) else truth[kept]
+        assert adjusted_rand_index(result.labels[sound], known) >= 0.9
+        assert np.array_equal(np.unique(result.labels), np.arange(5))
+    result = ridgeform.parts(ridgeform.Mesh(vertices, soup))
+    assert np.array_equal(np.unique(result.labels), np.arange(result.n_parts))
+    for tiny in (shapes.tetrahedron(), shapes.three_faces_on_an_edge(), shapes.moebius_strip()):
+        assert ridgeform.parts(ridgeform.Mesh(*tiny)).n_parts >= 1
+
+
+def test_flat_and_round_shapes_are_one_part():
+    for shape in (shapes.icosphere(3), shapes.grid(20, 20)):
+        assert ridgeform.parts(ridgeform.Mesh(*shape)).n_parts == 1
+
+
+def test_paint_attracts_cuts_and_keeps_them_away(ball):
+    vertices, faces, truth = ball
+    mesh = ridgeform.Mesh(vertices, faces)
+    far = np.linalg.norm(vertices[faces].mean(axis=1), axis=1)
+    ring = (truth == 0) & (np.abs(far - 1.8) < 0.2)
+    there = ridgeform.parts(mesh, n_parts=2, face_weights=np.where(ring, 1e-3, 1.0)).labels
+    at = ridgeform.parts(mesh, n_parts=2).labels
+    assert len(np.unique(there[ring])) == 2
+    assert len(np.unique(at[ring])) == 1
+    base = np.where((truth == limbs.BODY) | (truth == 0), 50.0, 1.0)
+    away = ridgeform.parts(mesh, n_parts=4, face_weights=base).labels
+    # Three limbs come off; the one in paint stays with the body.
+    assert len(np.unique(away[(truth == 0) | (truth == limbs.BODY)])) == 1
+
+
+def test_edges_that_are_borders_already_are_cut_along(ball):
+    vertices, faces, truth = ball
+    far = np.linalg.norm(vertices[faces].mean(axis=1), axis=1)
+    tip = (truth == 1) & (far > 1.7)
+    weights = np.ones((len(faces), 3))
+    first, second, edges = segment_shapes.face_pairs(faces)
+    rim = {tuple(sorted(edge)) for edge in edges[tip[first] != tip[second]].tolist()}
+    for f, face in enumerate(faces.tolist()):
+        for i in range(3):
+            if tuple(sorted((face[(i + 1) % 3], face[(i + 2) % 3]))) in rim:
+                weights[f, i] = 0.0
+    labels = ridgeform.parts(ridgeform.Mesh(vertices, faces), n_parts=2, edge_weights=weights).labels
+    assert adjusted_rand_index(labels, tip.astype(int)) >= 0.99
+
+
+def test_only_the_faces_named_take_part(ball):
+    vertices, faces, truth = ball
+    mask = truth != 2
+    found = ridgeform.parts(ridgeform.Mesh(vertices, faces), faces=mask)
+    assert ((found.labels == -1) == ~mask).all()
+    assert adjusted_rand_index(found.labels[mask], truth[mask]) >= 0.95
+
+
+@pytest.mark.parametrize(
+    ("keywords", "culprit"),
+    [
+        ({"n_parts": 0}, "n_parts"),
+        ({"coarseness": 0.0}, "coarseness"),
+        ({"coarseness": np.nan}, "coarseness"),
+        ({"face_weights": [1.0]}, "face_weights"),
+        ({"edge_weights": [[1.0, 1.0, 1.0]]}, "edge_weights"),
+        ({"faces": np.zeros(5120, bool)}, "faces"),
+        ({"threads": 0}, "threads"),
+    ],
+)
+def test_what_cannot_be_is_refused_by_name(ball, keywords, culprit):
+    with pytest.raises(ridgeform.ArgumentError, match=culprit):
+        ridgeform.parts(ridgeform.Mesh(*ball[:2]), **keywords)
+
+
+def test_a_mesh_without_positions_or_area_is_refused():
+    vertices, faces = shapes.tetrahedron()
+    lengths = ridgeform.Mesh(vertices, faces).edge_lengths
+    with pytest.raises(ridgeform.MeshError):
+        ridgeform.parts(ridgeform.Mesh.from_edge_lengths(faces, lengths))
+    with pytest.raises(ridgeform.MeshError):
+        ridgeform.parts(ridgeform.Mesh(np.zeros((3, 3)), [[0, 1, 2]]))
+
+
+def test_a_call_can_be_cancelled_and_finished_early(ball):
+    mesh = ridgeform.Mesh(*ball[:2])
+    cancelled, finishing = ridgeform.Progress(), ridgeform.Progress()
+    cancelled.cancel()
+    with pytest.raises(ridgeform.Cancelled):
+        ridgeform.parts(mesh, progress=cancelled)
+    finishing.finish()
+    result = ridgeform.parts(mesh, progress=finishing)
+    assert result.status == "stopped"
+    assert result.labels.shape == (mesh.n_faces,)
