@@ -47,8 +47,9 @@ class Run(ABC):
 
     name: ClassVar[str]
     """The tool's name in the summary."""
-    call: ClassVar[str]
-    """The function of the package that does it."""
+    call: ClassVar[str | None] = None
+    """The call of the package whose memory is asked for before a run; `None` if it takes little more than the
+    mesh does."""
     counted: ClassVar[str] = "iterations"
     """What the panel calls the steps of the summary."""
     needs = MOVES
@@ -76,7 +77,7 @@ class Run(ABC):
     def _prepare_all(self, objects: Sequence[bpy.types.Object]) -> None:
         for obj in objects:
             try:
-                reason = reason_too_large(obj, self.call)
+                reason = None if self.call is None else reason_too_large(obj, self.call)
                 if reason is not None:
                     raise RefusedError(reason)
                 self.parts.append(self.prepare(obj))
@@ -102,6 +103,8 @@ class Run(ABC):
     @classmethod
     def lines(cls, entry: dict[str, object]) -> list[str]:
         """What the panel says of a mesh that is done, given its summary."""
+        if entry["energy_after"] is None:
+            return [f"{entry['name']}: {entry['seconds']:.1f} s"]
         before = "" if entry["energy_before"] is None else f"{entry['energy_before']:.3g} → "
         return [
             f"{entry['name']}: energy {before}{entry['energy_after']:.3g}",

@@ -31,9 +31,10 @@ class HoleSettings(Settings):
                 "Flat where the mesh stands steeply around a planar rim, as at a missing side of a box or at "
                 "the cut end of a tube, ridges where some end at the hole, and smooth everywhere else",
             ),
-            ("FLAT", "Flat", "In the plane of the rim"),
             ("SHARP", "Sharp", "Flat planes that meet in ridges"),
             ("SMOOTH", "Smooth", "No ridges"),
+            # Last: files store the place of a choice among the others.
+            ("FLAT", "Flat", "In the plane of the rim"),
         ),
         default="AUTO",
     )

@@ -20,12 +20,12 @@ def face_normals(coordinates: np.ndarray, starts: np.ndarray, vertices: np.ndarr
     return np.add.reduceat(np.cross(corners, corners[following]), starts, axis=0)
 
 
-def ridge_edges(
-    coordinates: np.ndarray, corners: tuple[np.ndarray, np.ndarray, np.ndarray], n_edges: int, angle: float
+def edge_angles(
+    coordinates: np.ndarray, corners: tuple[np.ndarray, np.ndarray, np.ndarray], n_edges: int
 ) -> np.ndarray:
-    """The edges (n_edges,) bool whose two faces meet at `angle` radians or more.
+    """The angle (n_edges,) in radians between the two faces of each edge.
 
-    Edges with one face or more than two, and those beside a face without area, are none. Two faces that run
+    -1 for edges with one face or more than two, and for those beside a face without area. Two faces that run
     along the edge the same way (disagreeing normals) are compared as if one was turned over.
     """
     starts, vertices, corner_edges = corners
@@ -42,6 +42,30 @@ def ridge_edges(
     sine = np.linalg.norm(np.cross(a, b), axis=1)
     cosine = np.einsum("ij,ij->i", a, b)
     has_area = (np.einsum("ij,ij->i", a, a) > 0) & (np.einsum("ij,ij->i", b, b) > 0)
-    ridges = np.zeros(n_edges, bool)
-    ridges[pairs] = has_area & (np.arctan2(sine, cosine) >= angle)
-    return ridges
+    angles = np.full(n_edges, -1.0)
+    angles[pairs] = np.where(has_area, np.arctan2(sine, cosine), -1.0)
+    return angles
+
+
+def dividing_angle(angles: np.ndarray, lengths: np.ndarray) -> float:
+    """The angle (radians) that parts the edges within facets from the ridges between them.
+
+    Otsu's threshold (1979): the two classes of edges whose means lie farthest apart for their sizes, each
+    edge with its length as weight. On roots of angles, since within facets they spread over decades: 4 to 9
+    degrees on scans and subdivided meshes after the flow, 14 on meshes of a few hundred vertices, where the
+    angles themselves give 30 and their logarithms 1.
+
+    `angles` (e,) in radians, those below 0 do not count; `lengths` (e,). Infinite where all angles are alike.
+    """
+    counted = (angles >= 0) & (lengths > 0)
+    order = np.argsort(angles[counted])
+    roots, weights = np.sqrt(angles[counted][order]), lengths[counted][order]
+    if len(roots) < 2 or roots[0] == roots[-1]:
+        return np.inf
+    size, total = np.cumsum(weights), np.cumsum(weights * roots)
+    below, above = size[:-1], size[-1] - size[:-1]
+    between = (total[:-1] * size[-1] - total[-1] * below) ** 2 / (below * above)
+    # Where angles are equal no threshold can part them.
+    between[roots[1:] == roots[:-1]] = -1.0
+    k = int(between.argmax())
+    return float(((roots[k] + roots[k + 1]) / 2.0) ** 2)

@@ -15,7 +15,13 @@ from bl_ext.user_default.ridgeform.framework import job
 from bl_ext.user_default.ridgeform.framework.settings import defaults_of, setting_names
 from bl_ext.user_default.ridgeform.holes.settings import HoleSettings
 from bl_ext.user_default.ridgeform.segments.settings import SegmentSettings
-from bl_ext.user_default.ridgeform.stylize.settings import StylizeSettings, default_settings, fidelity_of
+from bl_ext.user_default.ridgeform.stylize.settings import (
+    StylizeSettings,
+    default_settings,
+    first_fidelity_of,
+    flat_share_of,
+    movement_of,
+)
 
 CLASSES = (
     "RIDGEFORM_OT_stylize",
@@ -222,9 +228,14 @@ def test_scripts_ask_the_add_on_itself_what_the_last_run_did():
     assert addon.job.last_summary()[0]["steps"] == 2
 
 
-def test_more_strength_means_less_fidelity():
-    values = [fidelity_of(strength) for strength in (0.0, 0.25, 0.5, 0.75, 1.0)]
+def test_more_strength_means_less_fidelity_and_more_of_the_rest():
+    strengths = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5)
+    values = [first_fidelity_of(strength) for strength in strengths]
     assert values == sorted(values, reverse=True)
+    for more in (movement_of, flat_share_of):
+        values = [more(strength) for strength in strengths]
+        assert values == sorted(values)
+        assert values[0] > 0 and values[-1] <= 1
 
 
 def test_unknown_setting_is_refused():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from bl_ext.user_default.ridgeform.blender import mesh_io
 from bl_ext.user_default.ridgeform.framework import job
-from bl_ext.user_default.ridgeform.stylize.ridges import ridge_edges
+from bl_ext.user_default.ridgeform.stylize.ridges import dividing_angle, edge_angles
 from bl_ext.user_default.ridgeform.stylize.volume import is_closed, keep_volume, volume_and_centroid
 
 CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
@@ -49,7 +49,7 @@ def test_keep_volume_scales_about_the_centroid():
 def test_operator_keeps_the_volume():
     obj = kit.bumpy_box()
     before = volume_of(obj)
-    bpy.ops.ridgeform.stylize(steps=4, strength=0.8, keep_volume=True)
+    bpy.ops.ridgeform.stylize(strength=0.8, keep_volume=True)
     assert volume_of(obj) == pytest.approx(before, rel=1e-5)
     assert notes() == []
 
@@ -73,7 +73,8 @@ def test_volume_is_left_with_a_reason():
 def ridges_of(vertices, faces, angle):
     obj = kit.add_object("Fold", vertices, faces)
     ends = mesh_io.edges(obj.data)
-    found = ridge_edges(kit.coordinates(obj), mesh_io.face_corners(obj.data), len(ends), np.radians(angle))
+    angles = edge_angles(kit.coordinates(obj), mesh_io.face_corners(obj.data), len(ends))
+    found = (angles >= 0) & (angles >= np.radians(angle))
     return {tuple(sorted(pair)) for pair in ends[found].tolist()}
 
 
@@ -110,7 +111,7 @@ def test_marks_are_added_to_those_that_exist(mode):
     chosen = CUBE[:, 2] == 1 if mode == "EDIT" else np.ones(8, bool)
     if mode == "EDIT":
         kit.select_only(obj, chosen)
-    bpy.ops.ridgeform.stylize(steps=1, strength=0.0, marks={"SHARP", "CREASE", "BEVEL"})
+    bpy.ops.ridgeform.stylize(steps=1, strength=0.0, marks={"SHARP", "CREASE", "BEVEL"}, use_mark_angle=True)
     bpy.ops.object.mode_set(mode="OBJECT")
     ridges = chosen[mesh_io.edges(mesh)].all(axis=1)
     values = {}
@@ -122,15 +123,41 @@ def test_marks_are_added_to_those_that_exist(mode):
     assert np.array_equal(values["bevel_weight_edge"], ridges.astype(np.float32))
 
 
+def test_the_dividing_angle_lies_between_facets_and_ridges():
+    angles = np.radians([0.1, 0.5, 0.0, 0.3, 40.0, 30.0, 50.0, -60.0])
+    lengths = np.array([1.0, 1.0, 2.0, 1.0, 1.0, 1.0, 0.5, 9.0])
+    angle = dividing_angle(angles, lengths)
+    assert np.radians(0.5) < angle < np.radians(30.0)
+    # The angles of an icosphere are all alike but for rounding: nothing parts them.
+    assert dividing_angle(np.full(5, 0.3), np.ones(5)) == np.inf
+    assert dividing_angle(np.array([-1.0]), np.ones(1)) == np.inf
+
+
+@pytest.mark.parametrize("smooth", [False, True])
+def test_facets_are_seen_at_the_defaults_and_one_undo_takes_all_back(smooth):
+    obj = kit.bumpy_box()
+    obj.data.polygons.foreach_set("use_smooth", [smooth] * len(obj.data.polygons))
+    bpy.ops.ed.undo_push(message="before")
+    assert bpy.ops.ridgeform.stylize() == {"FINISHED"}
+    marked = np.empty(len(obj.data.edges), bool)
+    obj.data.attributes["sharp_edge"].data.foreach_get("value", marked)
+    assert 0 < marked.sum() < len(marked)
+    entry = job.last_summary()[0]
+    assert entry["facets"] > 5
+    assert 0 < entry["moved"] < 0.1
+    assert entry["gap"] <= 1e-3
+    assert [face.use_smooth for face in obj.data.polygons] == [smooth] * len(obj.data.polygons)
+
+
 @pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
 def test_marks_follow_the_result(mode):
     obj = kit.bumpy_box()
     if mode == "EDIT":
         kit.select_only(obj, np.ones(len(obj.data.vertices), bool))
-    bpy.ops.ridgeform.stylize(steps=6, marks={"SHARP"}, mark_angle=np.radians(15))
+    bpy.ops.ridgeform.stylize(steps=6, marks={"SHARP"}, use_mark_angle=True, mark_angle=np.radians(15))
     bpy.ops.object.mode_set(mode="OBJECT")
     ends = mesh_io.edges(obj.data)
-    expected = ridge_edges(kit.coordinates(obj), mesh_io.face_corners(obj.data), len(ends), np.radians(15))
+    expected = edge_angles(kit.coordinates(obj), mesh_io.face_corners(obj.data), len(ends)) >= np.radians(15)
     marked = np.empty(len(ends), bool)
     obj.data.attributes["sharp_edge"].data.foreach_get("value", marked)
     assert np.array_equal(marked, expected)

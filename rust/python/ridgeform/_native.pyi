@@ -190,7 +190,22 @@ class Stylized:
     @property
     def factorisations(self) -> int: ...
     @property
-    def status(self) -> Literal["finished", "converged", "collapsed", "diverged", "stopped"]: ...
+    def flat_share(self) -> Floats: ...
+    @property
+    def n_facets(self) -> int: ...
+    @property
+    def status(
+        self,
+    ) -> Literal[
+        "finished",
+        "reached",
+        "settled",
+        "inaccurate",
+        "converged",
+        "collapsed",
+        "diverged",
+        "stopped",
+    ]: ...
 
 @final
 class DiffusionCurves:
@@ -395,6 +410,8 @@ def stylize(
     *,
     iterations: int = 20,
     fidelity: float = 500.0,
+    movement: float | None = None,
+    flat_share: float | None = None,
     sharpness: float = 0.5,
     coupling: Coupling = "joint",
     scale: Scale = "max_edge",
@@ -404,7 +421,7 @@ def stylize(
     delaunay: bool = False,
     dual: Dual = "barycentric",
     solver: Solver = "auto",
-    tolerance: float | None = None,
+    tolerance: float | None = 1e-3,
     max_iterations: int | None = None,
     memory_limit: int | None = None,
     threads: int | None = None,

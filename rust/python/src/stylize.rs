@@ -23,9 +23,15 @@ pub struct Stylized {
     iterations: usize,
     /// Numeric factorisations, all steps together.
     factorisations: usize,
-    /// "finished" (all steps done), "converged" (nothing moves any more), "collapsed" (the shape has no extent left; its
-    /// last sound step is returned), "diverged" (a step left the surroundings of the shape: its triangles are too uneven for
-    /// numbers; its last sound step is returned) or "stopped" (`Progress.finish` was called).
+    /// The part of the area in faces that meet all neighbors at less than 2 degrees, before and after, (2,) float64.
+    flat_share: Py<PyArray1<f64>>,
+    /// Facets that one would count afterward: parts whose faces meet at less than 2 degrees, with at least 3e-4 of the area.
+    n_facets: usize,
+    /// "finished" (all steps done), "reached" (moved as far as `movement` allows, or as flat as `flat_share` asks), "settled"
+    /// (more steps would make no more of it flat), "inaccurate" (as finished, but a step missed its tolerance), "converged"
+    /// (nothing moves any more), "collapsed" (the shape has no extent left; its last sound step is returned), "diverged" (a
+    /// step left the surroundings of the shape: its triangles are too uneven for numbers; its last sound step is returned) or
+    /// "stopped" (`Progress.finish` was called).
     status: &'static str,
 }
 
@@ -47,6 +53,11 @@ solver_function! {
     /// mesh : Mesh with positions
     /// iterations : number of steps, ≥ 0
     /// fidelity : float > 0, how strongly a step holds on to the shape, in the unit that `scale` sets; larger changes less
+    /// movement : None (all steps alike) or float > 0: how far the vertices may move, root mean square by area, in parts of
+    ///     the square root of the surface's area. Then `fidelity` is that of the first step, each step doubles the time of the
+    ///     flow, and it ends when that movement is reached or the planes have settled, after at most `iterations` steps
+    /// flat_share : None or float from 0 to 1: as with `movement`, but the flow ends when this part of the area is flat (as
+    ///     `Stylized.flat_share` measures it) and facets have formed; with both, at whichever comes first
     /// sharpness : 0 (the paper's energy) to 1 (most angular): reweighting from step to step, w_f ∝ (curvature + 0.1)^(-sharpness)
     /// coupling : "joint" (one norm for the three coordinates, independent of the axes) or "separate" (the paper's)
     /// scale : "max_edge" (the longest edge is 1: the paper's unit), "bounding_box" (the longest side is 1), "area" (the surface is 1)
@@ -71,11 +82,13 @@ solver_function! {
     /// References
     /// ----------
     /// Rowe et al. 2024, eq. (24), section 7.3; reweighting: Candès et al. 2008.
-    signature = (mesh, *, iterations=20, fidelity=500.0, sharpness=0.5, coupling="joint", scale="max_edge", fixed=None, strength=None, ridge_weights=None, delaunay=false, dual="barycentric"), tolerance = None;
+    signature = (mesh, *, iterations=20, fidelity=500.0, movement=None, flat_share=None, sharpness=0.5, coupling="joint", scale="max_edge", fixed=None, strength=None, ridge_weights=None, delaunay=false, dual="barycentric"), tolerance = 1e-3;
     pub fn stylize(py: Python<'_>, solve, progress;
         mesh: &Mesh,
         iterations: i64,
         fidelity: f64,
+        movement: Option<f64>,
+        flat_share: Option<f64>,
         sharpness: f64,
         coupling: &str,
         scale: &str,
@@ -89,6 +102,8 @@ solver_function! {
         let options = tools::StylizeOptions {
             iterations: at_least(py, "iterations", iterations, 0)?,
             fidelity,
+            movement,
+            flat_share,
             sharpness,
             coupling: options::coupling(py, coupling)?,
             scale: options::scale(py, scale)?,
@@ -101,7 +116,10 @@ solver_function! {
         };
         let result = doorway::call(py, &progress, || tools::stylize(mesh.inner(), &options, &progress))?;
         let counts = result.solver_iterations.iter().map(|&count| i32::try_from(count).unwrap_or(i32::MAX));
+        let [before, after] = result.flatness;
         Ok(Stylized {
+            flat_share: vec![before.flat_share, after.flat_share].into_pyarray(py).unbind(),
+            n_facets: after.n_facets,
             vertices: arrays::float_rows(py, &result.vertices)?.unbind(),
             solver_iterations: counts.collect::<Vec<_>>().into_pyarray(py).unbind(),
             iterations: result.gap.len(),

@@ -1,21 +1,28 @@
 //! The flow towards piecewise flat shapes (Rowe et al. 2024, eq. (24)), with sharpness.
 
+mod flatness;
+mod options;
+mod pace;
+
+pub use flatness::Flatness;
+use options::check;
+pub use options::{FlowStatus, StylizeOptions, Stylized};
+use pace::Pace;
+
 use super::answer::Surroundings;
-use super::options::{check_range, check_weights};
 use super::scale::{extent, Scale};
 use super::sharpness::{block_norms, sharpened_weights};
-use super::SolveOptions;
 use crate::block_rows::BlockRows;
 use crate::error::MeshError;
 use crate::intrinsic::delaunay_flips_carrying;
 use crate::linear::Columns;
 use crate::memory::Tool;
 use crate::mesh::{edge_lengths, triangle, Connectivity, Mesh, Working};
-use crate::operators::{mollify, voronoi_mass, Dual, HessianPattern};
+use crate::operators::{mollify, voronoi_mass, HessianPattern};
 use crate::progress::{Progress, Report};
-use crate::solve::{solve, Coupling, Problem, Session, Settings, Solution, Solver};
+use crate::solve::{solve, Coupling, Problem, Session, Settings, Solution, Solver, Status};
 use crate::unit::Unit;
-use crate::{Error, Result};
+use crate::Result;
 
 /// A step that moves the vertices by less than this part of the shape's size (root mean square) moves nothing.
 const STILL: f64 = 1e-7;
@@ -23,102 +30,11 @@ const STILL: f64 = 1e-7;
 /// A shape has collapsed when its size has fallen below this part of what it was, or its area below the tenth of that.
 const COLLAPSED: f64 = 1e-2;
 
-/// How to stylize.
-#[derive(Debug, Clone)]
-pub struct StylizeOptions {
-    /// Steps of the flow.
-    pub iterations: usize,
-    /// `η`: a larger one moves less per step.
-    pub fidelity: f64,
-    /// 0: the energy of the paper; 1: the most angular.
-    pub sharpness: f64,
-    /// Joint norms are invariant under rotations; separate ones are those of eq. (24).
-    pub coupling: Coupling,
-    /// The unit of `fidelity`.
-    pub scale: Scale,
-    /// Vertices that do not move.
-    pub fixed: Option<Vec<bool>>,
-    /// How much each vertex takes part: 0 fixed, 1 fully.
-    pub strength: Option<Vec<f64>>,
-    /// A weight for each face: 1 neutral, smaller where ridges are welcome, larger where they are not.
-    pub ridge_weights: Option<Vec<f64>>,
-    /// Intrinsic Delaunay flips before each step.
-    pub delaunay: bool,
-    /// Dual edges of the operator.
-    pub dual: Dual,
-    /// The solver; the default stops on residuals.
-    pub solve: SolveOptions,
-}
-
-impl Default for StylizeOptions {
-    fn default() -> Self {
-        Self {
-            iterations: 20,
-            fidelity: 500.0,
-            sharpness: 0.5,
-            coupling: Coupling::Joint,
-            scale: Scale::MaxEdge,
-            fixed: None,
-            strength: None,
-            ridge_weights: None,
-            delaunay: false,
-            dual: Dual::Barycentric,
-            solve: SolveOptions { tolerance: None, ..SolveOptions::default() },
-        }
-    }
-}
-
-/// How a flow ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FlowStatus {
-    /// All steps were done.
-    Finished,
-    /// Nothing moves any more.
-    Converged,
-    /// The shape has shrunk to (almost) nothing; the last sound step is returned.
-    Collapsed,
-    /// A step led out of the surroundings of the shape, as rounding does on triangles that are too uneven; the last sound
-    /// step is returned.
-    Diverged,
-    /// The caller asked to finish early.
-    Stopped,
-}
-
-impl FlowStatus {
-    /// The name that users see.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Finished => "finished",
-            Self::Converged => "converged",
-            Self::Collapsed => "collapsed",
-            Self::Diverged => "diverged",
-            Self::Stopped => "stopped",
-        }
-    }
-}
-
-/// What came out of a flow.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Stylized {
-    /// The vertices, as many and in the order of the input.
-    pub vertices: Vec<[f64; 3]>,
-    /// `E_H` of the coordinates (18), before the first and after every step.
-    pub energy: Vec<f64>,
-    /// The relative duality gap of every step's convex problem.
-    pub gap: Vec<f64>,
-    /// The solver's iterations in every step.
-    pub solver_iterations: Vec<usize>,
-    /// Numeric factorisations in all.
-    pub factorisations: usize,
-    /// How it ended.
-    pub status: FlowStatus,
-}
-
 /// Moves the vertices of `mesh` towards piecewise flat patches with crisp ridges.
 ///
 /// Each step minimises `Σ_f w_f A_f ‖H_f x‖ + η ‖x − x⁽ⁱ⁾‖²_M` over the coordinates `x`, with operator and mass of the
-/// mesh as it is then. Rowe et al. 2024, eq. (24); the weights are those of [`sharpened_weights`].
+/// mesh as it is then. Rowe et al. 2024, eq. (24); the weights are those of [`sharpened_weights`], the sizes of the steps
+/// those of [`Pace`].
 ///
 /// Faces are oriented and seams joined first ([`Working`]): the sides of a seam stay together.
 ///
@@ -170,27 +86,6 @@ pub(super) fn flow(
     })
 }
 
-fn check(mesh: &Mesh, options: &StylizeOptions) -> Result<()> {
-    let (n, m) = (mesh.connectivity().n_vertices(), mesh.connectivity().n_faces());
-    if !(options.fidelity > 0.0 && options.fidelity.is_finite()) {
-        return Err(Error::argument("fidelity", format!("is {}; it must be positive", options.fidelity)));
-    }
-    check_range("sharpness", options.sharpness, 0.0, 1.0)?;
-    check_weights("strength", options.strength.as_ref(), n, "vertex")?;
-    check_weights("ridge_weights", options.ridge_weights.as_ref(), m, "face")?;
-    if let Some(strength) = &options.strength {
-        if let Some(i) = strength.iter().position(|s| *s > 1.0) {
-            return Err(Error::argument("strength", format!("entry {i} is {}; it must be at most 1", strength[i])));
-        }
-    }
-    match &options.fixed {
-        Some(fixed) if fixed.len() != n => {
-            Err(Error::argument("fixed", format!("has {} entries, expected one per vertex: {n}", fixed.len())))
-        }
-        _ => Ok(()),
-    }
-}
-
 struct Flow<'a> {
     options: &'a StylizeOptions,
     working: Option<&'a Working<'a>>,
@@ -203,6 +98,8 @@ struct Flow<'a> {
     solver: Session,
     size: f64,
     area: f64,
+    start: &'a [[f64; 3]],
+    pace: Pace,
     result: Stylized,
 }
 
@@ -221,7 +118,7 @@ impl<'a> Flow<'a> {
     /// The flow of `mesh`, measured in `unit`, from `start`.
     fn new(
         mesh: &'a Mesh,
-        start: &[[f64; 3]],
+        start: &'a [[f64; 3]],
         unit: Unit,
         options: &'a StylizeOptions,
         working: Option<&'a Working<'a>>,
@@ -237,6 +134,7 @@ impl<'a> Flow<'a> {
             Scale::Length(length) => Scale::Length(unit.measure(length)),
             relative => relative,
         };
+        let flatness = Flatness::of(connectivity, start);
         Ok(Self {
             options,
             working,
@@ -249,12 +147,15 @@ impl<'a> Flow<'a> {
             solver: Session::new(),
             size,
             area,
+            start,
+            pace: Pace::new(options.movement, options.flat_share, &flatness),
             result: Stylized {
                 vertices: start.to_vec(),
                 energy: Vec::new(),
                 gap: Vec::new(),
                 solver_iterations: Vec::new(),
                 factorisations: 0,
+                flatness: [flatness; 2],
                 status: FlowStatus::Finished,
             },
         })
@@ -264,6 +165,12 @@ impl<'a> Flow<'a> {
         let n_steps = self.options.iterations;
         let mut step = self.prepare()?;
         self.result.energy.push(step.energy());
+        if self.pace.is_flat(&self.result.flatness[0]) {
+            self.result.status = FlowStatus::Settled;
+            return Ok(self.result);
+        }
+        let weights = self.free_areas(&step);
+        let mut inaccurate = false;
         for done in 0..n_steps {
             progress.check()?;
             if progress.is_finishing() {
@@ -271,7 +178,7 @@ impl<'a> Flow<'a> {
                 break;
             }
             let solution = self.solve(&step, settings, progress)?;
-            if progress.is_finishing() && solution.status == crate::solve::Status::Stopped {
+            if progress.is_finishing() && solution.status == Status::Stopped {
                 self.result.status = FlowStatus::Stopped;
                 break;
             }
@@ -292,12 +199,17 @@ impl<'a> Flow<'a> {
             self.result.gap.push(solution.gap);
             self.result.solver_iterations.push(solution.iterations);
             self.result.factorisations += solution.factorisations;
+            inaccurate |= solution.status == Status::Inaccurate;
             match self.working {
                 Some(working) => progress.set_snapshot(&working.positions(&self.points)),
                 None => progress.set_snapshot(&self.points),
             }
+            let flatness = Flatness::of(self.connectivity, &self.points);
+            self.result.flatness[1] = flatness;
+            let moved = weighted_distance(self.start, &self.points, &weights) / self.area.sqrt();
+            let end = self.pace.after(moved, &flatness);
             progress.report(Report {
-                fraction: (done + 1) as f64 / n_steps as f64,
+                fraction: if end.is_some() { 1.0 } else { self.pace.fraction(done + 1, n_steps) },
                 stage: "stylizing".into(),
                 iteration: done + 1,
                 energy: self.result.energy.last().copied(),
@@ -307,12 +219,36 @@ impl<'a> Flow<'a> {
                 self.result.status = FlowStatus::Converged;
                 break;
             }
+            if let Some(end) = end {
+                self.result.status = end;
+                break;
+            }
+        }
+        use FlowStatus::{Collapsed, Diverged, Inaccurate, Stopped};
+        if inaccurate && !matches!(self.result.status, Collapsed | Diverged | Stopped) {
+            self.result.status = Inaccurate;
         }
         Ok(self.result)
     }
 
     fn is_near(&self, moved: &[[f64; 3]]) -> bool {
         self.around.hold(self.connectivity.faces().iter().flatten().map(|&v| &moved[v as usize]))
+    }
+
+    /// What each vertex counts when the movement is measured: its area, nothing where it is held.
+    fn free_areas(&self, step: &Step) -> Vec<f64> {
+        let fixed = self.fixed(step);
+        step.mass.iter().zip(fixed).map(|(mass, fixed)| if fixed { 0.0 } else { *mass }).collect()
+    }
+
+    /// Which vertices do not move.
+    fn fixed(&self, step: &Step) -> Vec<bool> {
+        let is_fixed = |i: usize| {
+            self.options.fixed.as_ref().is_some_and(|f| f[i])
+                || self.options.strength.as_ref().is_some_and(|s| s[i] <= 0.0)
+                || step.mass[i] <= 0.0
+        };
+        (0..self.points.len()).map(is_fixed).collect()
     }
 
     fn has_collapsed(&self, moved: &[[f64; 3]]) -> bool {
@@ -346,16 +282,10 @@ impl<'a> Flow<'a> {
 
     fn solve(&mut self, step: &Step, settings: &Settings, progress: &Progress) -> Result<Solution> {
         // In units of `unit` the step is `E + η‖·‖²_M`; in the mesh's own units that is `η / unit³`.
-        let fidelity = self.options.fidelity / step.unit.powi(3);
+        let fidelity = self.pace.factor() * self.options.fidelity / step.unit.powi(3);
         let strength = self.options.strength.as_ref();
         let n = self.points.len();
-        let fixed: Vec<bool> = (0..n)
-            .map(|i| {
-                self.options.fixed.as_ref().is_some_and(|f| f[i])
-                    || strength.is_some_and(|s| s[i] <= 0.0)
-                    || step.mass[i] <= 0.0
-            })
-            .collect();
+        let fixed = self.fixed(step);
         let problem = Problem {
             operator: &step.operator,
             weights: sharpened_weights(&step.norms, &step.areas, &step.base, self.options.sharpness),
@@ -377,6 +307,18 @@ impl<'a> Flow<'a> {
 impl Step {
     fn energy(&self) -> f64 {
         self.norms.iter().sum()
+    }
+}
+
+/// Root mean square distance of two point lists, with a weight for each point.
+fn weighted_distance(a: &[[f64; 3]], b: &[[f64; 3]], weights: &[f64]) -> f64 {
+    let square = |(p, q): (&[f64; 3], &[f64; 3])| p.iter().zip(q).map(|(x, y)| (x - y) * (x - y)).sum::<f64>();
+    let sum: f64 = a.iter().zip(b).map(square).zip(weights).map(|(d, w)| w * d).sum();
+    let total: f64 = weights.iter().sum();
+    if total > 0.0 {
+        (sum / total).sqrt()
+    } else {
+        0.0
     }
 }
 

@@ -1,0 +1,86 @@
+//! How far a shape is made of planes: the angles at its edges.
+
+use rayon::prelude::*;
+
+use crate::mesh::partition::Partition;
+use crate::mesh::{vector, Connectivity};
+
+/// Faces that meet at less than this angle lie in one plane to the eye (radians; 2 degrees).
+const FLAT: f64 = 2.0 / 180.0 * std::f64::consts::PI;
+
+/// Edges with more than this angle are ridges to the eye, whatever the shading (radians; 20 degrees).
+const RIDGE: f64 = 20.0 / 180.0 * std::f64::consts::PI;
+
+/// The least part of the area that a facet has which one would count: a sixtieth of the width of a square picture, squared.
+const SEEN: f64 = 3e-4;
+
+/// What the angles at the edges of a shape say about it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flatness {
+    /// The part of the area in faces that meet all their neighbors at less than two degrees.
+    pub flat_share: f64,
+    /// The part of the bend `Σ length · angle` that lies in edges of less than twenty degrees.
+    pub soft_share: f64,
+    /// The part of the area in planes of two and more faces, that is, whose faces meet at less than two degrees.
+    pub plane_share: f64,
+    /// Parts whose faces meet at less than two degrees and that have at least 3e-4 of the area: facets that one would count.
+    pub n_facets: usize,
+}
+
+impl Flatness {
+    /// Measures the surface with these faces and `points`. Faces without area take no part.
+    #[must_use]
+    pub fn of(connectivity: &Connectivity, points: &[[f64; 3]]) -> Self {
+        let faces = connectivity.faces();
+        let corners = |f: usize| faces[f].map(|v| points[v as usize]);
+        let vectors: Vec<_> = (0..faces.len()).into_par_iter().map(|f| vector::area_vector(corners(f))).collect();
+        let areas: Vec<f64> = vectors.iter().map(|&n| vector::norm(n)).collect();
+        let total: f64 = areas.iter().sum();
+        let mut is_flat = vec![true; faces.len()];
+        let mut facets = Partition::new(faces.len());
+        let (mut bend, mut soft) = (0.0, 0.0);
+        for h in connectivity.edges() {
+            let Some(mate) = connectivity.mate(h) else { continue };
+            let (f, g) = (h / 3, mate / 3);
+            if areas[f] <= 0.0 || areas[g] <= 0.0 {
+                continue;
+            }
+            let angle = angle_between(vectors[f], vectors[g], connectivity.tail(h) == connectivity.tail(mate));
+            let [a, b] = [connectivity.tail(h), connectivity.head(h)].map(|v| points[v as usize]);
+            let bent = vector::distance(a, b) * angle;
+            bend += bent;
+            if angle < RIDGE {
+                soft += bent;
+            }
+            if angle < FLAT {
+                facets.unite(f as u32, g as u32);
+            } else {
+                is_flat[f] = false;
+                is_flat[g] = false;
+            }
+        }
+        let mut sizes = vec![0.0; faces.len()];
+        let mut counts = vec![0_u32; faces.len()];
+        for f in 0..faces.len() {
+            let root = facets.root(f as u32) as usize;
+            sizes[root] += areas[f];
+            counts[root] += 1;
+        }
+        let planes: f64 = sizes.iter().zip(&counts).filter(|(_, count)| **count > 1).map(|(size, _)| size).sum();
+        let flat: f64 = areas.iter().zip(&is_flat).filter(|(_, is)| **is).map(|(area, _)| area).sum();
+        let part = |of: f64, whole: f64| if whole > 0.0 { of / whole } else { 0.0 };
+        Self {
+            flat_share: part(flat, total),
+            soft_share: part(soft, bend),
+            plane_share: part(planes, total),
+            n_facets: sizes.iter().filter(|&&size| size >= SEEN * total && size > 0.0).count(),
+        }
+    }
+}
+
+/// The angle between two normals of any length, exact for tiny ones; `reversed` where their faces run along their edge the
+/// same way, so that one of the normals points to the other side.
+fn angle_between(a: vector::Point, b: vector::Point, reversed: bool) -> f64 {
+    let b = if reversed { vector::scale(b, -1.0) } else { b };
+    vector::norm(vector::cross(a, b)).atan2(vector::dot(a, b))
+}
