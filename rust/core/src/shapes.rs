@@ -26,7 +26,7 @@ impl Shape {
 
     /// Every vertex replaced by `f` of it.
     #[must_use]
-    pub fn map(mut self, f: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
+    pub fn map(mut self, mut f: impl FnMut([f64; 3]) -> [f64; 3]) -> Self {
         for p in &mut self.vertices {
             *p = f(*p);
         }

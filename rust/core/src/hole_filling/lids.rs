@@ -86,6 +86,9 @@ pub(super) fn normal(polygon: &Polygon) -> Option<Point> {
     DEPTHS.into_iter().find_map(plane).map(|plane| plane.normal)
 }
 
+/// The new points of a flat patch, and its faces as places in the polygon; places from its length on are the new points.
+pub(super) type FlatPatch = (Vec<Point>, Vec<[u32; 3]>);
+
 /// The flat patch of a rim: its new points, and its faces as places in the polygon, places from its length on being the new
 /// points. Nothing if the rim does not call for one and `any` rim is not asked for, or if none is in order.
 pub(super) fn lid(
@@ -94,7 +97,7 @@ pub(super) fn lid(
     options: &FillOptions,
     any: bool,
     progress: &Progress,
-) -> Result<Option<(Vec<Point>, Vec<[u32; 3]>)>> {
+) -> Result<Option<FlatPatch>> {
     let is_taken = |i: usize, j: usize| rims.is_taken(polygon.vertices[i], polygon.vertices[j]);
     let mut before = usize::MAX;
     for depth in DEPTHS {
@@ -192,7 +195,7 @@ fn closed(
     rims: &Rims,
     options: &FillOptions,
     progress: &Progress,
-) -> Result<Option<(Vec<Point>, Vec<[u32; 3]>)>> {
+) -> Result<Option<FlatPatch>> {
     // Nothing but the outline counts in the plane.
     let mut flat = polygon.part(&rim.places, vec![[0.0; 3]; rim.places.len()]);
     flat.points.iter_mut().for_each(|p| *p = plane.project(*p));

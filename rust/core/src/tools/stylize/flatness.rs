@@ -61,9 +61,9 @@ impl Flatness {
         }
         let mut sizes = vec![0.0; faces.len()];
         let mut counts = vec![0_u32; faces.len()];
-        for f in 0..faces.len() {
+        for (f, area) in areas.iter().enumerate() {
             let root = facets.root(f as u32) as usize;
-            sizes[root] += areas[f];
+            sizes[root] += area;
             counts[root] += 1;
         }
         let planes: f64 = sizes.iter().zip(&counts).filter(|(_, count)| **count > 1).map(|(size, _)| size).sum();
