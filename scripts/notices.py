@@ -88,8 +88,12 @@ def texts(crate: Crate, others: list[Crate]) -> list[str]:
         other for other in others if other["repository"] and other["repository"] == crate["repository"]
     ]
     holders = crate["authors"] or sorted({name for other in same_home for name in other["authors"]})
+    if not holders and crate["repository"]:
+        holders = [f"the authors of {crate['repository']}"]
     if not holders:
-        stop(f"{crate['name']} {crate['version']} ships no license text and names no authors")
+        stop(
+            f"{crate['name']} {crate['version']} ships no license text and names neither authors nor repository"
+        )
     return [standard_text(", ".join(re.sub(r"\s*<.*>", "", name) for name in holders)), *result]
 
 
