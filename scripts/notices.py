@@ -91,9 +91,7 @@ def texts(crate: Crate, others: list[Crate]) -> list[str]:
     if not holders and crate["repository"]:
         holders = [f"the authors of {crate['repository']}"]
     if not holders:
-        stop(
-            f"{crate['name']} {crate['version']} ships no license text and names neither authors nor repository"
-        )
+        stop(f"{crate['name']} {crate['version']} ships no license text and names no authors")
     return [standard_text(", ".join(re.sub(r"\s*<.*>", "", name) for name in holders)), *result]
 
 
