@@ -56,6 +56,13 @@ turned = np.where(random.random((len(faces), 1)) < 0.1, faces[:, [0, 2, 1]], fac
 oriented, flipped = ridgeform.orient(turned)
 print(flipped.sum(), np.array_equal(oriented, faces))
 
+# %% memory_available
+print(f"{ridgeform.memory_available() / 1e9:.1f} GB are free for this process")
+
+# %% memory_estimate
+needed = ridgeform.memory_estimate("stylize", (10**6, 2 * 10**6))
+print(f"stylizing a million vertices takes {needed / 1e9:.1f} GB")
+
 # %% denoise
 noisy = np.abs(y) + random.normal(scale=0.05, size=len(y))
 smooth = ridgeform.denoise(mesh, noisy, fidelity=1e3)

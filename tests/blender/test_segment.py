@@ -191,7 +191,7 @@ def test_face_sets_groups_and_indicator():
     assert kit.same_bits(indicator, expected(obj).indicator.astype(np.float32))
     bpy.ops.ridgeform.segment(outputs={"VERTEX_GROUPS"}, use_count=True, count=2)
     names = [group.name for group in obj.vertex_groups]
-    assert names == [mine.name, groups.GROUP + "0", layers.GROUP + "1"]
+    assert names == [mine.name, groups.GROUP + "0", groups.GROUP + "1"]
 
 
 def test_the_sharpened_surface_is_a_shape_key():
