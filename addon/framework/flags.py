@@ -30,7 +30,7 @@ def settings_from(options: argparse.Namespace, settings: type[Settings]) -> obje
     for name, setting in settings.declared.items():
         value = getattr(options, PREFIX + name, None)
         if value is not None:
-            given |= setting.implies | {name: set(value) if isinstance(value, list) else value}
+            given |= setting.implies | {name: set(value) - {None} if isinstance(value, list) else value}
     return defaults_of(settings, **given)
 
 
@@ -74,6 +74,9 @@ def _arguments(setting: Setting) -> dict[str, object]:
         return arguments | {"action": "store_const", "const": not setting.default}
     if setting.items:
         words = {_word(identifier): identifier for identifier, *_ in setting.items}
+        if isinstance(setting.default, set) and setting.default:
+            # Otherwise what is on by default could not be turned off.
+            words["none"] = None
         arguments |= {"type": _chosen(words), "metavar": "{" + ",".join(words) + "}"}
         if isinstance(setting.default, set):
             arguments |= {"action": "append"}
@@ -90,8 +93,8 @@ def _word(identifier: str) -> str:
     return identifier if identifier.islower() else identifier.lower().replace("_", "-")
 
 
-def _chosen(words: dict[str, str]) -> Callable[[str], str]:
-    def parse(text: str) -> str:
+def _chosen(words: dict[str, str | None]) -> Callable[[str], str | None]:
+    def parse(text: str) -> str | None:
         if text not in words:
             raise argparse.ArgumentTypeError(f'"{text}" is not one of {", ".join(words)}')
         return words[text]

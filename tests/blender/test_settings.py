@@ -132,7 +132,7 @@ def test_flags_of_the_version_before_mean_what_they_meant():
         (("stylize", "--steps", "many"), 'argument --steps: "many" is not a whole number'),
         (("stylize", "--fidelity", "nan"), "argument --fidelity: nan is out of range"),
         (("stylize", "--mark-angle", "200"), "argument --mark-angle: 200 is out of range: 0 to 180"),
-        (("stylize", "--mark", "blunt"), 'argument --mark: "blunt" is not one of sharp, crease, bevel'),
+        (("stylize", "--mark", "blunt"), 'argument --mark: "blunt" is not one of sharp, crease, bevel, none'),
         (("fill-holes", "--edge-length", "-1"), "argument --edge-length: -1 is out of range: at least 0"),
     ],
 )
