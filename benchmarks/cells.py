@@ -41,7 +41,7 @@ def grid(head: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
 
 
 def solved(record: Record | None) -> str:
-    """Time, and in brackets iterations, factorisations and the gap where it was missed."""
+    """Time, and in brackets iterations, factorizations and the gap where it was missed."""
     if record is None:
         return "-"
     note = f"{iterations_of(record)} it."

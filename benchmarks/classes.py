@@ -52,8 +52,8 @@ def hole(mesh: Mesh) -> Problem:
     """Values known everywhere but around a point where ridges cross."""
     used = mesh.used()
     off_the_ridges = np.abs(mesh.vertices[used] @ KINKS.T - OFFSETS)
-    centre = mesh.vertices[used[np.argmin(off_the_ridges[:, :2].sum(axis=1))]]
-    away = np.linalg.norm(mesh.vertices[used] - centre, axis=1)
+    center = mesh.vertices[used[np.argmin(off_the_ridges[:, :2].sum(axis=1))]]
+    away = np.linalg.norm(mesh.vertices[used] - center, axis=1)
     known = used[away > np.quantile(away, HOLE)]
     return Problem(mesh.name, mesh.vertices, mesh.faces, ridged(mesh), known)
 

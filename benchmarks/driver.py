@@ -19,7 +19,7 @@ ENVIRONMENT = STATE / "bench"
 REQUIREMENTS = ROOT / "benchmarks/requirements.txt"
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "RAYON_NUM_THREADS": "1"}
 CLARABEL = ("qdldl", "faer")
-"""The factorisations that Clarabel can use."""
+"""The factorizations that Clarabel can use."""
 
 EFFORT = {"repeats": 5, "budget": 2.0}
 """Samples of one measurement, and the seconds after which no further one is taken."""
@@ -104,7 +104,7 @@ def iterations_of(record: Record) -> int:
 
 
 def clarabel(kind: str, folder: Path, gaps: Sequence[float], **settings: object) -> list[Record]:
-    """Clarabel with its faster factorisation, stopped at the first iterate with each certified gap (falling).
+    """Clarabel with its faster factorization, stopped at the first iterate with each certified gap (falling).
 
     Its own stopping rule also asks for feasibility and would go on for some iterations more: that is not
     charged to it.

@@ -24,15 +24,15 @@ class Kind:
     """One row of the table."""
 
     solid: Callable[[int], Solid]
-    centre: NDArray[np.float64]
+    center: NDArray[np.float64]
     along: NDArray[np.float64]
     """Where the hole may move, as a direction."""
     smooth: bool = False
     """Whether there is no ridge: then the filling itself is measured against the true surface."""
 
 
-def _kind(solid: Callable, centre: tuple, along: tuple, smooth: bool = False) -> Kind:
-    return Kind(solid, np.array(centre, float), np.array(along, float), smooth)
+def _kind(solid: Callable, center: tuple, along: tuple, smooth: bool = False) -> Kind:
+    return Kind(solid, np.array(center, float), np.array(along, float), smooth)
 
 
 KINDS = {
@@ -87,4 +87,4 @@ def holed(case: Case) -> Holed:
     kind = KINDS[case.kind]
     shift = SHIFT * np.random.default_rng(case.seed).uniform(-1, 1)
     solid = _solid(case.kind, case.density, case.irregular)
-    return holed_shapes.cut(solid, [(kind.centre + shift * kind.along, case.radius)], case.seed)
+    return holed_shapes.cut(solid, [(kind.center + shift * kind.along, case.radius)], case.seed)

@@ -32,7 +32,7 @@ LIMIT = 120.0
 PATIENCE = 3600.0
 """Seconds for one of the measurements of ours alone."""
 SAME = 1e-4
-"""A face whose centre moved by less, in edge lengths, is an old one: some tools store single precision."""
+"""A face whose center moved by less, in edge lengths, is an old one: some tools store single precision."""
 
 
 @functools.cache

@@ -66,7 +66,7 @@ def growth(records: list[Record]) -> str:
 def parts(records: list[Record]) -> str:
     """What a solution to the first gap is made of, as parts of its time."""
     head = ["problem", "mesh", f"gap ≤ {GAP:g}", "ordering", "factorisations", "triangular solves"]
-    head += ["the rest", "one factorisation", "one solve", "entries of the factor per vertex"]
+    head += ["the rest", "one factorization", "one solve", "entries of the factor per vertex"]
     rows = []
     for r in records:
         ours, one = r["ours"], r["yardstick"]

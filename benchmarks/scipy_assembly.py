@@ -1,4 +1,4 @@
-"""The Hessian of Rowe et al. 2024, eq. (30), assembled with vectorised NumPy and SciPy.
+"""The Hessian of Rowe et al. 2024, eq. (30), assembled with vectorized NumPy and SciPy.
 
 For closed or open manifold meshes with consistent orientation and no degenerate face; barycentric dual edges.
 """

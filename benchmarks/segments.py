@@ -85,7 +85,7 @@ class Tally:
         self.agreement: list[float] = []
 
     def add(self, part: Part, labels: Indices) -> None:
-        """Judge a labelling."""
+        """Judge a labeling."""
         self.counts.append(int(labels.max()) + 1)
         self.agreement.append(adjusted_rand_index(labels, part.truth))
 
@@ -144,7 +144,7 @@ def compare(parts: list[Part], tallies: dict[str, Tally]) -> None:
 
 
 def speed() -> str:
-    """Times against the quadratic problem on the same mesh: one factorisation and one solution."""
+    """Times against the quadratic problem on the same mesh: one factorization and one solution."""
     import ridgeform  # noqa: PLC0415
 
     rows = []
@@ -222,7 +222,7 @@ no facet count one by one. *Linked flat*: Blender's selection over edges flatter
 SPEED = """
 ## Time
 
-One thread. The yardstick is the quadratic problem (one column, one factorisation, one solution), same mesh.
+One thread. The yardstick is the quadratic problem (one column, one factorization, one solution), same mesh.
 
 """
 

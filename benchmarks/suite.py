@@ -56,15 +56,15 @@ def flow_step(problem: Problem, folder: Path, flow: Flow) -> Record:
 
 
 def flow(problem: Problem, folder: Path, flow: Flow, steps: int = 20) -> Record:
-    """A whole flow, stopped on residuals (the default) and certified, beside one numeric factorisation."""
+    """A whole flow, stopped on residuals (the default) and certified, beside one numeric factorization."""
     record = {**_named(problem), "steps": steps, "yardstick": measure("yardstick", folder, fidelity=1.0)}
     for name, tolerance in [("default", "residuals"), ("certified", GAP)]:
         found = measure("flow", folder, steps=steps, tolerance=tolerance, **flow.settings())
-        factorisation = record["yardstick"]["numeric_cpu_s"] or record["yardstick"]["numeric_wall_s"]
+        factorization = record["yardstick"]["numeric_cpu_s"] or record["yardstick"]["numeric_wall_s"]
         record[name] = {
             **found,
             "iterations": iterations_of(found),
-            "in_factorisations": found["seconds"] / factorisation,
+            "in_factorisations": found["seconds"] / factorization,
         }
     return record
 

@@ -35,13 +35,13 @@ def _beside(r: Record) -> list[str]:
 
 
 def flows(records: list[Record]) -> str:
-    """Whole flows in units of a factorisation."""
-    head = ["mesh", "vertices", "one numeric factorisation"]
+    """Whole flows in units of a factorization."""
+    head = ["mesh", "vertices", "one numeric factorization"]
     head += [
         "20 steps, default",
-        "in factorisations",
+        "in factorizations",
         f"20 steps, gap ≤ {GAP:g} each",
-        "in factorisations",
+        "in factorizations",
     ]
     rows = []
     for r in records:
@@ -98,13 +98,13 @@ SCALAR = (
     f" light noise, fidelity {HEAVY[1]:g}, the squares of a segmentation's indicator, down to"
     f" {LEAST_WEIGHT:g} on the ridges. Constraints: heavy noise, eight means and three differences known."
     " Coordinates: the positions themselves, one norm over all three. The longest side of the mesh is 1. L2:"
-    " the quadratic problem on the same mesh, one factorisation, one solve, the same Cholesky, without the"
+    " the quadratic problem on the same mesh, one factorization, one solve, the same Cholesky, without the"
     " linear constraints. Everything is counted from the mesh on. Clarabel as for the flow step below."
 )
 
 PARTS = (
-    "The floor of this kind of solver is one ordering, one factorisation, and a triangular solve an"
-    " iteration; the rest is passes over the faces, assembly and certificates. One factorisation and one"
+    "The floor of this kind of solver is one ordering, one factorization, and a triangular solve an"
+    " iteration; the rest is passes over the faces, assembly and certificates. One factorization and one"
     " solve are those of the L2 problem; solves for linear constraints and the first penalty count as the"
     " rest."
 )
@@ -122,14 +122,14 @@ SECTIONS = {
         "One flow step",
         "Three coordinates, one norm per face over all of them, from a cold start, fidelity 500 in units of"
         " the longest edge, sharpness 0.5. Everything is counted, from the mesh on. Clarabel: the faster of"
-        " its factorisations `qdldl` and `faer`, stopped at its first iterate whose gap, computed in the same"
+        " its factorizations `qdldl` and `faer`, stopped at its first iterate whose gap, computed in the same"
         " way, is small enough.",
         "flow_step",
         flow_steps,
     ),
     "flow": (
         "A flow of 20 steps",
-        "Beside one numeric factorisation of the same matrix. By default each step stops on residuals.",
+        "Beside one numeric factorization of the same matrix. By default each step stops on residuals.",
         "flow",
         flows,
     ),

@@ -27,8 +27,8 @@ def bumpy_grid(n_vertices: int, noise: float = 0.02) -> tuple[np.ndarray, np.nda
             np.column_stack([corner, corner + side + 1, corner + 1]),
         ]
     )
-    centre = vertices[faces].mean(1)[:, :2] - side / 2
-    return vertices, faces[np.hypot(*centre.T) > min(side / 6, 12)].astype(np.int32)
+    center = vertices[faces].mean(1)[:, :2] - side / 2
+    return vertices, faces[np.hypot(*center.T) > min(side / 6, 12)].astype(np.int32)
 
 
 def _pins(mesh: ridgeform.Mesh) -> tuple[np.ndarray, np.ndarray]:

@@ -129,7 +129,7 @@ def shape_keys() -> None:
 
 
 def dress(obj: bpy.types.Object, vertices: np.ndarray) -> None:
-    """Give a mesh vertex groups, UVs, colours, an attribute, materials, sharp edges, seams and creases."""
+    """Give a mesh vertex groups, UVs, colors, an attribute, materials, sharp edges, seams and creases."""
     mesh = obj.data
     strength, ridges = obj.vertex_groups.new(name="strength"), obj.vertex_groups.new(name="ridges")
     for i, (x, _, z) in enumerate(vertices):

@@ -42,11 +42,11 @@ def load_obj(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
 
 
 def upright(vertices: NDArray[np.float64], faces_minus_z: bool) -> NDArray[np.float64]:
-    """Turn a y-up scan to Blender's z-up, facing -y; centre it, feet on z = 0, height 2."""
+    """Turn a y-up scan to Blender's z-up, facing -y; center it, feet on z = 0, height 2."""
     turned = vertices[:, [0, 2, 1]] * ([-1, 1, 1] if faces_minus_z else [1, -1, 1])
     low, high = turned.min(axis=0), turned.max(axis=0)
-    centre = 0.5 * (low + high)
-    return (turned - [centre[0], centre[1], low[2]]) * (2.0 / (high[2] - low[2]))
+    center = 0.5 * (low + high)
+    return (turned - [center[0], center[1], low[2]]) * (2.0 / (high[2] - low[2]))
 
 
 def flip_to_delaunay(mesh: bmesh.types.BMesh) -> int:
@@ -68,13 +68,13 @@ def flip_to_delaunay(mesh: bmesh.types.BMesh) -> int:
 
 
 def relax(mesh: bmesh.types.BMesh, surface: BVHTree) -> None:
-    """Move vertices towards the area-weighted centroid of their faces, and back onto the surface."""
+    """Move vertices toward the area-weighted centroid of their faces, and back onto the surface."""
     mesh.normal_update()
     targets = []
     for vertex in mesh.verts:
         weights = [face.calc_area() for face in vertex.link_faces]
-        centres = [face.calc_center_median() for face in vertex.link_faces]
-        centroid = sum((w * c for w, c in zip(weights, centres, strict=True)), Vector()) / sum(weights)
+        centers = [face.calc_center_median() for face in vertex.link_faces]
+        centroid = sum((w * c for w, c in zip(weights, centers, strict=True)), Vector()) / sum(weights)
         move = centroid - vertex.co
         targets.append(vertex.co + STEP * (move - move.dot(vertex.normal) * vertex.normal))
     for vertex, target in zip(mesh.verts, targets, strict=True):

@@ -34,7 +34,7 @@ LIGHT, DARK = (0.62, 0.62, 0.6), (0.1, 0.17, 0.28)
 BOX_VIEW = (0.9, -0.75, 0.75)
 RING_VIEW = (0.25, -0.8, 0.75)
 BRIGHTNESS = 1.35
-"""Factor on painted colours under the lights, which are set for a light clay."""
+"""Factor on painted colors under the lights, which are set for a light clay."""
 
 
 def box(path: Path) -> None:
@@ -111,7 +111,7 @@ def _textured(
 
 
 def _painted(obj: bpy.types.Object, **look: object) -> pictures.Pixels:
-    """A checker by the UV map, each triangle cut into small ones of one colour."""
+    """A checker by the UV map, each triangle cut into small ones of one color."""
     vertices, faces = _triangles(obj)
     uv = np.empty(2 * len(obj.data.loops), np.float32)
     obj.data.uv_layers[0].data.foreach_get("uv", uv)

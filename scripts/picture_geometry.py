@@ -1,4 +1,4 @@
-"""What a picture of a triangle mesh is made of, in NumPy alone: camera axes, facet colours, lines, dots."""
+"""What a picture of a triangle mesh is made of, in NumPy alone: camera axes, facet colors, lines, dots."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Indices = NDArray[np.int64]
 CLAY = (0.44, 0.47, 0.52)
 """Linear RGB of the surface; a light neutral tone, so that light and shadow both have room."""
 
-# Lights fixed to the camera: direction of the light (right, up, towards the viewer), linear RGB intensity.
+# Lights fixed to the camera: direction of the light (right, up, toward the viewer), linear RGB intensity.
 # A warm key from above, a cool fill from the other side and a weak one from below make two facets that turn
 # differently differ in hue as well as in brightness.
 LIGHTS = (
@@ -23,17 +23,17 @@ LIGHTS = (
 )
 AMBIENT = (0.030, 0.034, 0.045)
 BACK_FACE = (1.05, 0.72, 0.60)
-"""Factor on the colour of faces seen from behind: the inside of an open surface is reddish."""
+"""Factor on the color of faces seen from behind: the inside of an open surface is reddish."""
 
 
 def camera_axes(view: ArrayLike, up: ArrayLike) -> Array:
-    """Rows right, up and towards the viewer, `(3, 3)`, of a camera that stands in direction `view`."""
-    towards = np.asarray(view, dtype=float) / np.linalg.norm(view)
-    right = np.cross(up, towards)
+    """Rows right, up and toward the viewer, `(3, 3)`, of a camera that stands in direction `view`."""
+    toward = np.asarray(view, dtype=float) / np.linalg.norm(view)
+    right = np.cross(up, toward)
     if np.linalg.norm(right) < 1e-6:
         raise ValueError("The view direction is parallel to up: choose another up vector.")
     right /= np.linalg.norm(right)
-    return np.stack([right, np.cross(towards, right), towards])
+    return np.stack([right, np.cross(toward, right), toward])
 
 
 def face_normals(vertices: Array, faces: Indices) -> Array:
@@ -45,7 +45,7 @@ def face_normals(vertices: Array, faces: Indices) -> Array:
 
 
 def facet_colors(normals: Array, axes: Array, base: ArrayLike = CLAY) -> Array:
-    """Linear RGB of faces under the lights of the camera, `(m, 3)`; `base` is one colour or one per face."""
+    """Linear RGB of faces under the lights of the camera, `(m, 3)`; `base` is one color or one per face."""
     seen = normals @ axes.T
     behind = seen[:, 2] < 0
     seen = np.where(behind[:, None], -seen, seen)
@@ -70,7 +70,7 @@ def ridge_edges(vertices: Array, faces: Indices, degrees: float) -> Indices:
 
 
 def ribbons(vertices: Array, edges: Indices, axes: Array, width: float) -> tuple[Array, Indices]:
-    """Strips of `width` along edges, turned to the camera and lifted towards it: `(4k, 3)`, `(2k, 3)`."""
+    """Strips of `width` along edges, turned to the camera and lifted toward it: `(4k, 3)`, `(2k, 3)`."""
     start, end = vertices[edges[:, 0]], vertices[edges[:, 1]]
     along = end - start
     along -= np.outer(along @ axes[2], axes[2])
@@ -98,7 +98,7 @@ DOT_CORNERS = 16
 
 @dataclass(frozen=True)
 class Lines:
-    """Segments `(k, 2, 3)` drawn over a surface, of a linear RGB colour, so many pixels wide."""
+    """Segments `(k, 2, 3)` drawn over a surface, of a linear RGB color, so many pixels wide."""
 
     segments: Array
     color: tuple[float, float, float] = (0.015, 0.017, 0.022)
@@ -113,7 +113,7 @@ class Lines:
 
 @dataclass(frozen=True)
 class Dots:
-    """Points `(k, 3)` drawn over a surface as discs, of a linear RGB colour, so many pixels across."""
+    """Points `(k, 3)` drawn over a surface as disks, of a linear RGB color, so many pixels across."""
 
     points: Array
     color: tuple[float, float, float] = (0.6, 0.01, 0.015)

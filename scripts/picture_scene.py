@@ -1,4 +1,4 @@
-"""A throw-away Blender scene that draws one picture: engine, camera, coloured mesh, image files."""
+"""A throw-away Blender scene that draws one picture: engine, camera, colored mesh, image files."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def _set_up_workbench(scene: bpy.types.Scene) -> None:
 def colored_mesh(
     vertices: NDArray[np.float64], faces: NDArray[np.int64], colors: NDArray[np.float64]
 ) -> bpy.types.Mesh:
-    """Mesh data with flat faces and one linear colour per face."""
+    """Mesh data with flat faces and one linear color per face."""
     mesh = bpy.data.meshes.new("picture")
     mesh.vertices.add(len(vertices))
     mesh.vertices.foreach_set("co", vertices.astype(np.float32).ravel())
@@ -112,7 +112,7 @@ def add_camera(
 
 
 def emission_material(occlusion_distance: float | None) -> bpy.types.Material:
-    """Cycles: the mesh's colours as they are, darkened in cavities as Workbench would."""
+    """Cycles: the mesh's colors as they are, darkened in cavities as Workbench would."""
     material = bpy.data.materials.new("picture")
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links

@@ -5,7 +5,7 @@
 
 or from the shell, one row of captioned pictures: `python scripts/pictures.py a.obj b.blend -o row.png`.
 
-Facets are coloured by lights fixed to the camera and drawn by Workbench (with cavity shading) or, where the
+Facets are colored by lights fixed to the camera and drawn by Workbench (with cavity shading) or, where the
 machine has no EGL, by Cycles. Every call works in a scene of its own and removes it afterwards.
 """
 
@@ -72,7 +72,7 @@ def render(
     `view` points from the object to the camera (orthographic, `up` upwards). The bounding box of `frame`
     (default: `vertices`) fills the picture up to `margin`; give the same `frame` to pictures to be compared.
     `background` is sRGB, None for transparent. `color` is linear RGB, one or one per face `(m, 3)`.
-    `lit` False draws the colours as they are, without light and shadow. `ridges` draws dark lines along edges
+    `lit` False draws the colors as they are, without light and shadow. `ridges` draws dark lines along edges
     that bend by more than so many degrees (-1: all edges); `marks` are lines and dots over the surface.
     `engine` is "BLENDER_WORKBENCH", "CYCLES" or "AUTO".
     """
@@ -145,7 +145,7 @@ def sheet(
     text_pixels: int = 18,
     shades: int | None = None,
 ) -> Pixels:
-    """Put rows of pictures of one size on one white labelled page and save it as PNG to `path`.
+    """Put rows of pictures of one size on one white labeled page and save it as PNG to `path`.
 
     `columns` are written above, `rows` at the left, `captions` (one per picture) below; None leaves a gap.
     With `shades`, the file has so many of each channel, and is a half or a third of its size.
@@ -193,7 +193,7 @@ def _over(front: Pixels, back: Pixels) -> Pixels:
 
 
 def _text_strips(texts: list[str], pixels: int, line: int) -> list[Pixels]:
-    """Every text in dark letters centred on a transparent strip `line` pixels high: one render for all."""
+    """Every text in dark letters centered on a transparent strip `line` pixels high: one render for all."""
     width = round(0.75 * pixels * max(map(len, texts)) + pixels)
     height = line * len(texts)
     with picture_scene(width, height, pick_engine("AUTO")) as scene:

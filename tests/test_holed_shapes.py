@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from known_shapes import fill_measures, holed_shapes, shapes
 
-CENTRES = {
+CENTERS = {
     "cube": (1, 0.1, 1),
     "step": (1, 0.5, 1),
     "roof": (0, 0.1, 1.5),
@@ -19,11 +19,11 @@ def solid(name, is_irregular):
 
 
 @pytest.mark.parametrize("is_irregular", [False, True])
-@pytest.mark.parametrize("name", CENTRES)
+@pytest.mark.parametrize("name", CENTERS)
 def test_a_holed_shape_is_one_piece_with_one_loop_on_the_true_surface(name, is_irregular):
     one = solid(name, is_irregular)
-    holed = holed_shapes.cut(one, [(np.array(CENTRES[name], float), 0.45)], seed=7)
-    again = holed_shapes.cut(one, [(np.array(CENTRES[name], float), 0.45)], seed=7)
+    holed = holed_shapes.cut(one, [(np.array(CENTERS[name], float), 0.45)], seed=7)
+    again = holed_shapes.cut(one, [(np.array(CENTERS[name], float), 0.45)], seed=7)
     assert np.array_equal(holed.vertices, again.vertices)
     border = fill_measures.boundary_edges(holed.faces)
     follower = dict(border.tolist())
@@ -100,7 +100,7 @@ def test_new_faces_are_found_whatever_their_order_and_small_errors():
     assert made.sum() == len(faces) - len(holed.faces)
 
 
-def test_unsound_meshes_are_recognised():
+def test_unsound_meshes_are_recognized():
     for name, edges, vertices in (
         ("bow_tie", 0, [0]),
         ("three_faces_on_an_edge", 1, []),

@@ -25,7 +25,7 @@ GAPS = 14
 
 @dataclass(frozen=True)
 class Block:
-    """A building: centre, half sides, turn in degrees, height of the eaves, rise of the ridge."""
+    """A building: center, half sides, turn in degrees, height of the eaves, rise of the ridge."""
 
     center: tuple[float, float]
     half: tuple[float, float]

@@ -1,4 +1,4 @@
-"""Figure 19: painted surfaces, the curves that are left of them, and the colours that these redraw."""
+"""Figure 19: painted surfaces, the curves that are left of them, and the colors that these redraw."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ PALETTE = np.array(
 PLANE = 80
 """About so many vertices along each side of the plane."""
 SHADING = 0.25
-"""How much the colours of a region go up and down."""
+"""How much the colors of a region go up and down."""
 BAND = 0.012
-"""Width of the band of colour on each side of a curve, as a share of the mesh's size."""
+"""Width of the band of color on each side of a curve, as a share of the mesh's size."""
 SURFACE = (0.62, 0.62, 0.62)
 VISIBLE = 0.02
-"""Colours on a band that differ by less are drawn as one."""
+"""Colors on a band that differ by less are drawn as one."""
 
 
 def plane_regions(vertices: Array, count: int) -> Indices:
-    """A disc on a ground, or a hill, a sun, a house and a ball on it."""
+    """A disk on a ground, or a hill, a sun, a house and a ball on it."""
     x, y = vertices[:, 0] + 0.5, vertices[:, 1] + 0.5
     if count == 2:
         return (np.hypot(x - 0.5, y - 0.5) < 0.3).astype(np.int64)
@@ -43,7 +43,7 @@ def plane_regions(vertices: Array, count: int) -> Indices:
 
 
 def spot_regions(vertices: Array, count: int) -> Indices:
-    """Patches on a hide, or one colour each for body, legs, hind part, head and belly."""
+    """Patches on a hide, or one color each for body, legs, hind part, head and belly."""
     place = (vertices - vertices.mean(axis=0)) / np.ptp(vertices, axis=0).max()
     x, y, z = place.T
     if count == 2:
@@ -56,7 +56,7 @@ def spot_regions(vertices: Array, count: int) -> Indices:
 
 
 def painted(vertices: Array, regions: Indices, shaded: bool) -> Array:
-    """A colour for each vertex: that of its region, `shaded` with gentle waves over it."""
+    """A color for each vertex: that of its region, `shaded` with gentle waves over it."""
     colors = PALETTE[regions]
     if not shaded:
         return colors
@@ -68,7 +68,7 @@ def painted(vertices: Array, regions: Indices, shaded: bool) -> Array:
 def off_the_borders(
     vertices: Array, faces: Indices, regions: Indices, found: ridgeform.DiffusionCurves
 ) -> float:
-    """The share of the curves' length that does not touch a face with several painted colours."""
+    """The share of the curves' length that does not touch a face with several painted colors."""
     mixed = (regions[faces] != regions[faces[:, :1]]).any(axis=1)
     touching = np.zeros(len(vertices), bool)
     touching[faces[mixed]] = True
@@ -78,7 +78,7 @@ def off_the_borders(
 
 
 def bands(mesh: ridgeform.Mesh, found: ridgeform.DiffusionCurves) -> list[tuple[Array, tuple[float, ...]]]:
-    """Segments (k, 2, 3) beside the curves, on the surface, and the colour of each group of them."""
+    """Segments (k, 2, 3) beside the curves, on the surface, and the color of each group of them."""
     vertices, faces = mesh.vertices, mesh.faces
     corner = vertices[faces]
     face_normals = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
@@ -122,7 +122,7 @@ def draw(folder: Path) -> dict[str, str]:
             colors = painted(vertices, regions, shaded)
             found = ridgeform.diffusion_curves(mesh, colors, color_error=0.01)
             exact = ridgeform.diffusion_curves(mesh, colors, labels=found.labels, refine=False)
-            kind = f"{name}, {count} colours" + (", shaded" if shaded else "")
+            kind = f"{name}, {count} colors" + (", shaded" if shaded else "")
             off = off_the_borders(vertices, faces, regions, found)
             numbers = f"{found.n_numbers} for {found.n_numbers_before}"
             cells = [kind, str(found.labels.max() + 1), str(len(found.starts) - 1), numbers]
@@ -162,7 +162,7 @@ def _pixels(width: float, vertices: Array, look: dict[str, object]) -> float:
 
 
 def _shown(vertices: Array, faces: Indices, corners: Array, look: dict[str, object]) -> Pixels:
-    """Colours at the corners (m, 3, 3) of faces: each face is cut into nine, of one colour each."""
+    """Colors at the corners (m, 3, 3) of faces: each face is cut into nine, of one color each."""
     from . import panels  # noqa: PLC0415
 
     weights = _ninths()

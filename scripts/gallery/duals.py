@@ -1,4 +1,4 @@
-"""Figure 9: barycentres against circumcentres, where circumcentres fail and where they do well."""
+"""Figure 9: barycenters against circumcenters, where circumcenters fail and where they do well."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ DUALS = ("circumcentric", "circumcentric_or_barycentric", "barycentric")
 
 
 def meshes() -> dict[str, tuple[Array, NDArray[np.int64]]]:
-    """Squares cut along a diagonal (circumcentres coincide), and slightly irregular acute triangles."""
+    """Squares cut along a diagonal (circumcenters coincide), and slightly irregular acute triangles."""
     grid, grid_faces = shapes.grid(56, 56)
     return {
         "squares with diagonals": (grid / 56 - [0.5, 0.5, 0.0], grid_faces),

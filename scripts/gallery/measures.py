@@ -80,9 +80,9 @@ def best_fit(solve: Callable[[float], ridgeform.Solution], error: Callable[[Arra
     while best() in (min(tried), max(tried)) and len(tried) < 20:
         fit(best() + (1.0 if best() == max(tried) else -1.0))
     for step in STEPS:
-        centre = best()
+        center = best()
         for k in (-3, -2, -1, 1, 2, 3):
-            fit(centre + k * step)
+            fit(center + k * step)
     return tried[best()]
 
 

@@ -1,4 +1,4 @@
-"""Figure 12: a function with ridges, unknown in discs, filled in with every energy."""
+"""Figure 12: a function with ridges, unknown in disks, filled in with every energy."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 SIDE = 72
 HOLES = ((-0.22, 0.30, 0.13), (0.07, -0.16, 0.16), (0.26, 0.22, 0.13), (-0.30, -0.22, 0.1))
-"""Centre and radius of the discs in which nothing is known: on two ridges and on two slopes."""
+"""Center and radius of the disks in which nothing is known: on two ridges and on two slopes."""
 ENERGIES = ("l2_hessian", "l2_laplacian", "l1_edge_laplacian", "l1_hessian_stein2018", "l1_hessian")
 SHARPNESS = 1.0
 

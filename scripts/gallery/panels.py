@@ -24,7 +24,7 @@ LINE = Lines(np.empty((0, 2, 3)), pixels=1.3)
 FROM_ABOVE = {"view": (0.0, 0.0, 1.0), "up": (0.0, 1.0, 0.0)}
 TEXT_PIXELS = 14
 BRIGHTNESS = 1.35
-"""Factor on painted colours under the lights, which are set for a light clay."""
+"""Factor on painted colors under the lights, which are set for a light clay."""
 
 
 def even_levels(values: Array, count: int = LEVELS) -> Array:
@@ -43,7 +43,7 @@ def painted(
     colors: Array = ramp.SEQUENTIAL,
     **look: object,
 ) -> Pixels:
-    """A function in bands between `levels`, one colour each, with isolines on their borders.
+    """A function in bands between `levels`, one color each, with isolines on their borders.
 
     `known` are points `(k, 3)` marked by dots, `hole` faces `(m,)` whose border is drawn red. `look` goes to
     `pictures.render`.

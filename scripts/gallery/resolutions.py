@@ -27,7 +27,7 @@ class Case:
     name: str
     meshes: list[domains.Shape]
     truths: list[Array]
-    centre: tuple[float, float, float]
+    center: tuple[float, float, float]
     radius: float
     view: tuple[float, float, float]
     levels: int
@@ -75,7 +75,7 @@ def draw(folder: Path) -> dict[str, str]:
         filled = []
         for (vertices, faces), truth in zip(case.meshes, case.truths, strict=True):
             mesh = ridgeform.Mesh(vertices, faces)
-            missing = np.linalg.norm(vertices - case.centre, axis=1) < case.radius
+            missing = np.linalg.norm(vertices - case.center, axis=1) < case.radius
             known = np.flatnonzero(~missing)
             hole = missing[faces].any(axis=1)
             errors = {}

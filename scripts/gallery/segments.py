@@ -25,7 +25,7 @@ SPOT_VIEW = (-0.9, -1.0, 0.35)
 
 
 def colors(labels: Indices) -> Array:
-    """A linear colour for each face, unlike for neighbours in number."""
+    """A linear color for each face, unlike for neighbors in number."""
     names = np.arange(labels.max() + 1)
     wheel = [
         colorsys.hsv_to_rgb((k * GOLDEN) % 1.0, 0.3 + 0.3 * ((0.37 * k) % 1.0), 0.8 + 0.2 * ((0.29 * k) % 1))
@@ -41,7 +41,7 @@ def border_edges(faces: Indices, labels: Indices) -> Indices:
 
 
 def shown(vertices: Array, faces: Indices, labels: Indices, **look: object) -> Pixels:
-    """Segments in colours, with their borders."""
+    """Segments in colors, with their borders."""
     import pictures  # noqa: PLC0415
     from picture_geometry import Lines  # noqa: PLC0415
 

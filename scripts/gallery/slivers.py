@@ -15,7 +15,7 @@ SIDE = 48
 STRETCH = 8.0
 KNOWN = 40
 INSET = (0.0, 0.1, 0.12)
-"""Centre and half the side of the part of the square of which the edges are drawn."""
+"""Center and half the side of the part of the square of which the edges are drawn."""
 TILTED = (0.45, -1.0, 0.8)
 
 

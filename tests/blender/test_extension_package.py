@@ -77,7 +77,7 @@ def test_native_module_asks_for_no_newer_glibc_than_blender(package):
     assert max(map(int, asked)) <= 28
 
 
-def test_only_sources_licence_manifest_and_wheels(package):
+def test_only_sources_license_manifest_and_wheels(package):
     names = [name for name in package.namelist() if not name.endswith("/")]
     assert "LICENSE" in names
     odd = [
@@ -103,7 +103,7 @@ def test_notices_of_all_that_is_packed(package):
         assert f"\n{crate}" in linked
 
 
-def test_every_source_names_its_licence_and_breaks_no_rule(package):
+def test_every_source_names_its_license_and_breaks_no_rule(package):
     sources = [name for name in package.namelist() if name.endswith(".py")]
     assert sources
     for name in sources:

@@ -82,7 +82,7 @@ def test_the_same_frame_gives_the_same_scale():
     assert half / whole == pytest.approx(0.25, abs=0.03)
 
 
-def test_a_sheet_is_labelled_saved_and_leaves_no_data_behind(tmp_path):
+def test_a_sheet_is_labeled_saved_and_leaves_no_data_behind(tmp_path):
     pictures.render(*CUBE, size=8)  # Blender keeps an image for the results of all renders, made by the first
     before = count_data()
     picture = pictures.render(*CUBE, size=(40, 30))

@@ -19,8 +19,8 @@ def _gradient(corners: Floats) -> Floats:
     return np.cross(normal, opposite) / (normal @ normal)
 
 
-def _centre(corners: Floats, dual: str) -> Floats:
-    """Barycentre or circumcentre of a triangle in space."""
+def _center(corners: Floats, dual: str) -> Floats:
+    """Barycenter or circumcenter of a triangle in space."""
     if dual == "barycentric":
         return corners.mean(axis=0)
     p, q = corners[1] - corners[0], corners[2] - corners[0]
@@ -53,8 +53,8 @@ def dense_hessian(vertices: Floats, faces: NDArray[np.integer], dual: str = "bar
         if g is None:
             continue
         unfold = _unfolding(vertices[head] - vertices[tail], normals[g], normals[f])
-        centre = vertices[tail] + unfold @ (_centre(corners[g], dual) - vertices[tail])
-        across = centre - _centre(corners[f], dual)
+        center = vertices[tail] + unfold @ (_center(corners[g], dual) - vertices[tail])
+        across = center - _center(corners[f], dual)
         length = np.linalg.norm(across)
         direction = across / length
         jump = unfold @ gradients[g] - gradients[f]

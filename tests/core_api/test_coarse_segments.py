@@ -1,4 +1,4 @@
-"""`segment` on shapes modelled by hand, whose sides are a few triangles."""
+"""`segment` on shapes modeled by hand, whose sides are a few triangles."""
 
 import numpy as np
 import pytest
@@ -60,7 +60,7 @@ def test_slivers_of_a_polygon_belong_to_its_plane():
         points.append((1 - t) * points[a] + t * points[b] + np.array([0.0, 0.0, 1e-9]))
     chain = [a, *range(len(points) - 3, len(points)), b]
     faces += [(chain[i], chain[i + 1], c) for i in range(4)]
-    # The neighbour at the edge keeps it whole, so a fan of slivers closes the gap.
+    # The neighbor at the edge keeps it whole, so a fan of slivers closes the gap.
     faces += [(a, chain[i + 1], chain[i]) for i in range(1, 4)]
     found = ridgeform.segment(ridgeform.Mesh(np.array(points), np.array(faces)))
     assert found.n_segments == 6

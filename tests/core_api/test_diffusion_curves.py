@@ -18,8 +18,8 @@ def lattice(n=12):
 
 
 def halves(vertices, faces, axis=1):
-    centres = vertices[faces].mean(axis=1)[:, axis]
-    return (centres > centres.mean()).astype(np.int32)
+    centers = vertices[faces].mean(axis=1)[:, axis]
+    return (centers > centers.mean()).astype(np.int32)
 
 
 def wavy(vertices):
@@ -55,7 +55,7 @@ def test_shapes_and_kinds_of_the_results():
     assert np.abs(single.colors - found.colors[:, 0]).max() < 0.1
 
 
-def test_the_colours_of_a_curve_minimise_27_on_each_side():
+def test_the_colors_of_a_curve_minimize_27_on_each_side():
     linalg = pytest.importorskip("scipy.sparse.linalg")
     sparse = pytest.importorskip("scipy.sparse")
     vertices, faces = lattice()
@@ -80,7 +80,7 @@ def test_the_colours_of_a_curve_minimise_27_on_each_side():
 
 
 @pytest.mark.parametrize("count", [2, 5])
-def test_regions_are_found_by_their_colours(count):
+def test_regions_are_found_by_their_colors(count):
     vertices, faces = lattice(30)
     place = (vertices[:, 0] - vertices[:, 0].min()) / np.ptp(vertices[:, 0])
     region = np.minimum((count * place).astype(int), count - 1)

@@ -144,7 +144,7 @@ def test_the_l2_laplacian_interpolates_as_the_dense_system():
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_every_energy_denoises_and_its_optimum_beats_its_neighbours(kind):
+def test_every_energy_denoises_and_its_optimum_beats_its_neighbors(kind):
     vertices, faces = shapes.icosphere(2)
     mesh = ridgeform.Mesh(vertices, faces)
     rng = np.random.default_rng(7)

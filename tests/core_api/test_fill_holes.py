@@ -6,17 +6,17 @@ import ridgeform
 from known_shapes import shapes
 
 
-def without(vertices, faces, centre, radius):
-    """A mesh with a hole: the faces whose centre lies within `radius` of `centre` are gone."""
-    away = np.linalg.norm(vertices[faces].mean(axis=1) - centre, axis=1)
+def without(vertices, faces, center, radius):
+    """A mesh with a hole: the faces whose center lies within `radius` of `center` are gone."""
+    away = np.linalg.norm(vertices[faces].mean(axis=1) - center, axis=1)
     return ridgeform.Mesh(vertices, faces[away > radius])
 
 
-def turned_cube(n, centre, radius, seed=0):
+def turned_cube(n, center, radius, seed=0):
     """A cube of side 2 with a hole, turned at random, and the rotation."""
     vertices, faces = shapes.cube(n, 2.0)
     rotation = shapes.random_rotation(seed)
-    return without(vertices @ rotation.T, faces, rotation @ np.asarray(centre, float), radius), rotation
+    return without(vertices @ rotation.T, faces, rotation @ np.asarray(center, float), radius), rotation
 
 
 def distance_to(points, vertices, faces):
@@ -156,9 +156,9 @@ def test_the_same_input_gives_the_same_bits():
 
 def test_several_holes_at_once():
     vertices, faces = shapes.cube(16, 2.0)
-    centres = vertices[faces].mean(axis=1)
+    centers = vertices[faces].mean(axis=1)
     spots = np.array([[1, 1, 0.1], [-1, 0.2, 0.1], [-1, -1, -1]])
-    away = np.linalg.norm(centres[:, None] - spots, axis=2).min(axis=1)
+    away = np.linalg.norm(centers[:, None] - spots, axis=2).min(axis=1)
     mesh = ridgeform.Mesh(vertices, faces[away > 0.35])
     filled = ridgeform.fill_holes(mesh)
     check_invariants(mesh, filled)

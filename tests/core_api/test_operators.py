@@ -215,7 +215,7 @@ def test_a_delaunay_mesh_stays_as_it_is():
     np.testing.assert_array_equal(after.edge_lengths, mesh.edge_lengths)
 
 
-def test_coinciding_circumcentres_are_refused_by_name():
+def test_coinciding_circumcenters_are_refused_by_name():
     square = ridgeform.Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
     assert ridgeform.hessian(square).shape == (8, 4)
     with pytest.raises(ridgeform.MeshError, match=r"faces 0 and 1 .*barycentric"):

@@ -10,7 +10,7 @@ import pytest
 import ridgeform
 from known_shapes import shapes
 
-# One inner iteration or factorisation here takes up to half a second; the rest is for busy machines.
+# One inner iteration or factorization here takes up to half a second; the rest is for busy machines.
 PATIENCE = 5.0
 
 

@@ -10,7 +10,7 @@ from known_shapes import shapes
 
 @st.composite
 def triangle_soups(draw):
-    """A mesh that nobody modelled: faces at random, corners repeated, points on a coarse grid, any size."""
+    """A mesh that nobody modeled: faces at random, corners repeated, points on a coarse grid, any size."""
     n = draw(st.integers(1, 10))
     numbers = st.integers(-3, 3).map(float) | st.floats(-3, 3, width=32)
     scale = 10.0 ** draw(st.integers(-12, 12))

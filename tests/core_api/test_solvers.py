@@ -140,7 +140,7 @@ def test_constraints_hold(name, solver):
         np.testing.assert_allclose(matrix @ values, right, atol=1e-9)
 
 
-def test_both_factorisations_of_clarabel_solve_the_same():
+def test_both_factorizations_of_clarabel_solve_the_same():
     qdldl, faer = (
         solve("denoising", solver=f"clarabel-{kind}", tolerance=1e-7) for kind in ("qdldl", "faer")
     )

@@ -233,8 +233,8 @@ def test_defaults_are_those_of_the_manual():
         ({"sharpness": np.nan}, "sharpness: "),
         ({"coupling": "x"}, 'coupling: "x" is not known here; use "joint" or "separate"'),
         (
-            {"scale": "metres"},
-            'scale: "metres" is not known here; use "max_edge" or "bounding_box" or "area"',
+            {"scale": "meters"},
+            'scale: "meters" is not known here; use "max_edge" or "bounding_box" or "area"',
         ),
         ({"dual": ""}, "dual: "),
         ({"solver": "scs"}, "solver: "),

@@ -1,4 +1,4 @@
-"""Shapes modelled by hand: a few large flat polygons, cut into triangles as a modeler's program cuts them."""
+"""Shapes modeled by hand: a few large flat polygons, cut into triangles as a modeler's program cuts them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def from_polygons(vertices: np.ndarray, polygons: Polygons) -> Part:
 
 
 def box(size: Sequence[float] = (1.0, 1.0, 1.0)) -> Part:
-    """A box of 12 triangles with these sides, centred: 6 parts."""
+    """A box of 12 triangles with these sides, centered: 6 parts."""
     return from_polygons(*_box(size))
 
 

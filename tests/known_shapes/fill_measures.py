@@ -61,7 +61,7 @@ def _distances(p: Points, corners: Points) -> Points:
 def new_faces(
     before: tuple[Points, Faces], after: tuple[Points, Faces], tolerance: float
 ) -> NDArray[np.bool_]:
-    """Which faces of `after` were not in `before`: no old face has its centre within the tolerance."""
+    """Which faces of `after` were not in `before`: no old face has its center within the tolerance."""
 
     def cells(mesh: tuple[Points, Faces], shift: float) -> NDArray[np.int64]:
         return np.floor(mesh[0][mesh[1]].mean(axis=1) / tolerance + shift).astype(np.int64)

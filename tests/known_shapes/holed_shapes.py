@@ -18,7 +18,7 @@ Points = NDArray[np.float64]
 Faces = NDArray[np.int64]
 
 Place = tuple[Points, float]
-"""Where a hole is cut: its centre and radius."""
+"""Where a hole is cut: its center and radius."""
 
 RIDGE_STEP = 0.005
 """Distance of the true ridge points: far below every edge length in use."""
@@ -248,10 +248,10 @@ def removed_faces(
     removed = np.zeros(len(faces), bool)
     middle = vertices[faces].mean(axis=1)
     root = np.sqrt(stretch)
-    for centre, radius in places:
+    for center, radius in places:
         axis = rng.standard_normal(3)
         axis /= np.linalg.norm(axis)
-        away = middle - centre
+        away = middle - center
         along = away @ axis
         across2 = np.maximum((away**2).sum(axis=1) - along**2, 0)
         removed |= np.sqrt(along**2 / root**2 + across2 * root**2) < radius

@@ -38,8 +38,8 @@ def random_ridge(kind: str, seed: int) -> Holed:
     radius = max(float(rng.uniform(0.2, 0.75)), 2.6 / density)
     irregular = int(rng.integers(1, 3)) if rng.uniform() < 0.6 else 0
     stretch = float(rng.uniform(1, 2)) if rng.uniform() < 0.3 else 1.0
-    _, centre, along = KINDS[kind]
-    place = np.array(centre, float) + rng.uniform(-1, 1) * np.array(along, float)
+    _, center, along = KINDS[kind]
+    place = np.array(center, float) + rng.uniform(-1, 1) * np.array(along, float)
     solid = _solid(kind, density, irregular)
     return holed_shapes.cut(solid, [(place, radius)], seed + 1, stretch=stretch)
 

@@ -144,19 +144,19 @@ def house(levels: int = 3) -> Shape:
 
 
 def dodecahedron(levels: int = 2) -> Shape:
-    """Regular dodecahedron of circumradius 1, each pentagon a fan around its centre, then subdivided."""
+    """Regular dodecahedron of circumradius 1, each pentagon a fan around its center, then subdivided."""
     axes, triangles = icosphere(0)
     corners = axes[triangles].mean(axis=1)
     corners /= np.linalg.norm(corners, axis=1, keepdims=True)
-    centres, faces = [], []
+    centers, faces = [], []
     for i, axis in enumerate(axes):
         around = np.flatnonzero((triangles == i).any(axis=1))
         x = corners[around[0]] - (corners[around[0]] @ axis) * axis
         angles = np.arctan2(corners[around] @ np.cross(axis, x), corners[around] @ x)
         ring = around[np.argsort(angles)]
         faces += [[len(corners) + i, ring[k], ring[(k + 1) % 5]] for k in range(5)]
-        centres.append(corners[ring].mean(axis=0))
-    return subdivide(np.concatenate([corners, centres]), faces, levels)
+        centers.append(corners[ring].mean(axis=0))
+    return subdivide(np.concatenate([corners, centers]), faces, levels)
 
 
 def tetrahedron() -> Shape:
@@ -205,7 +205,7 @@ def uv_sphere(segments: int = 32, rings: int = 16) -> Shape:
 
 
 def cylinder(segments: int = 32, bands: int = 8, cap_rings: int = 4) -> Shape:
-    """Closed cylinder of radius 1, height 2 along z; caps of `cap_rings` rings around a centre vertex."""
+    """Closed cylinder of radius 1, height 2 along z; caps of `cap_rings` rings around a center vertex."""
     cap = np.arange(cap_rings) / cap_rings
     radius = np.concatenate([cap, np.ones(bands + 1), cap[::-1]])
     z = np.concatenate([-np.ones(cap_rings), np.linspace(-1, 1, bands + 1), np.ones(cap_rings)])

@@ -29,15 +29,15 @@ fn solver(criterion: &mut Criterion) {
     group.bench_function("normal matrix, values", |bencher| {
         bencher.iter(|| normal.assemble(&operator, &ones, &fidelity, &mut entries));
     });
-    group.bench_function("factorisation, symbolic", |bencher| {
+    group.bench_function("factorization, symbolic", |bencher| {
         bencher.iter_batched(
             || normal.pattern().clone(),
-            |pattern| Cholesky::analyse(pattern, None),
+            |pattern| Cholesky::analyze(pattern, None),
             BatchSize::PerIteration,
         );
     });
-    let mut cholesky = Cholesky::analyse(normal.pattern().clone(), None).unwrap();
-    group.bench_function("factorisation, numeric", |bencher| bencher.iter(|| cholesky.factorise(&entries)));
+    let mut cholesky = Cholesky::analyze(normal.pattern().clone(), None).unwrap();
+    group.bench_function("factorization, numeric", |bencher| bencher.iter(|| cholesky.factorize(&entries)));
     let points = Columns::from_points(&shape.vertices);
     let one: Vec<[f64; 1]> = shape.vertices.iter().map(|x| [x[0]]).collect();
     group.bench_function("triangular solves, one column", |bencher| {

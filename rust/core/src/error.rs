@@ -128,12 +128,12 @@ pub enum MeshError {
     #[error("the mesh has no face with positive area; nothing can be computed on it")]
     NoFaces,
     /// A dual edge has no length, so the circumcentric Hessian does not exist.
-    #[error("faces {face} and {neighbour} have the same circumcentre: the circumcentric dual edge has no length; use barycentric duals, or circumcentric_or_barycentric to replace such edges only")]
+    #[error("faces {face} and {neighbor} have the same circumcenter: the circumcentric dual edge has no length; use barycentric duals, or circumcentric_or_barycentric to replace such edges only")]
     ZeroDualEdge {
         /// One face.
         face: usize,
-        /// Its neighbour.
-        neighbour: usize,
+        /// Its neighbor.
+        neighbor: usize,
     },
     /// A boundary loop cannot be filled.
     #[error("the hole of {n_edges} edges at vertex {vertex} cannot be filled: {reason}")]
@@ -184,13 +184,13 @@ pub enum Refusal {
 #[non_exhaustive]
 pub enum SolveError {
     /// The matrix of a linear system is singular or not finite.
-    #[error("the linear system could not be factorised: {reason}")]
-    Factorisation {
-        /// What the factorisation reported.
+    #[error("the linear system could not be factorized: {reason}")]
+    Factorization {
+        /// What the factorization reported.
         reason: String,
     },
     /// The factor of the linear system does not fit.
-    #[error("the factorisation needs {} of memory, more than {}; raise memory_limit, keep more values fixed or reduce the mesh",
+    #[error("the factorization needs {} of memory, more than {}; raise memory_limit, keep more values fixed or reduce the mesh",
         readable(*needed), limit.map_or("there is".into(), |limit| format!("the limit of {}", readable(limit))))]
     Memory {
         /// Bytes for the factor and the work on it.

@@ -143,7 +143,7 @@ impl Tally {
         self.sharp += usize::from(exact.gap <= 1e-6);
         let mut solver = Session::new();
         if seed.is_multiple_of(3) {
-            solver.solve(&case.neighbour(seed), &settings(1e-3), &Progress::new()).map(drop).unwrap_or(());
+            solver.solve(&case.neighbor(seed), &settings(1e-3), &Progress::new()).map(drop).unwrap_or(());
         }
         match solver.solve(&problem, &settings(tolerance), &Progress::new()) {
             Err(error) => fault(&format!("refused: {error}")),

@@ -1,4 +1,4 @@
-//! The sparse Cholesky factorisation against the library's, on matrices of every shape.
+//! The sparse Cholesky factorization against the library's, on matrices of every shape.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use faer::linalg::solvers::Solve;
@@ -80,14 +80,14 @@ impl Matrix {
     }
 
     fn solution(&self) -> Vec<[f64; 1]> {
-        let mut cholesky = Cholesky::analyse(self.pattern.clone(), None).unwrap();
-        cholesky.factorise(&self.values).unwrap();
+        let mut cholesky = Cholesky::analyze(self.pattern.clone(), None).unwrap();
+        cholesky.factorize(&self.values).unwrap();
         let mut x = self.right();
         cholesky.solve(&mut x);
         x
     }
 
-    /// What the library's own factorisation gives.
+    /// What the library's own factorization gives.
     fn reference(&self) -> Vec<[f64; 1]> {
         let p = &self.pattern;
         let entries: Vec<Triplet<usize, usize, f64>> = (0..p.n)
@@ -173,9 +173,9 @@ fn gives_the_same_bits_on_any_number_of_threads_and_each_time() {
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let mut cholesky = Cholesky::analyse(matrix.pattern.clone(), None).unwrap();
+            let mut cholesky = Cholesky::analyze(matrix.pattern.clone(), None).unwrap();
             let mut solve = || {
-                cholesky.factorise(&matrix.values).unwrap();
+                cholesky.factorize(&matrix.values).unwrap();
                 let right = matrix.right();
                 let (mut one, mut three) = (right.clone(), right.iter().map(|[x]| [*x, 1.0, -x]).collect::<Vec<_>>());
                 cholesky.solve(&mut one);
@@ -183,7 +183,7 @@ fn gives_the_same_bits_on_any_number_of_threads_and_each_time() {
                 one.into_iter().flatten().chain(three.into_iter().flatten()).map(f64::to_bits).collect::<Vec<_>>()
             };
             let (first, second) = (solve(), solve());
-            assert_eq!(first, second, "the second factorisation differs on {threads} threads");
+            assert_eq!(first, second, "the second factorization differs on {threads} threads");
             first
         })
     };
@@ -208,28 +208,28 @@ fn a_permuted_matrix_has_the_permuted_solution() {
         permuted[place[i]] = right[i];
     }
     let other = matrix.permuted(&place);
-    let mut cholesky = Cholesky::analyse(other.pattern, None).unwrap();
-    cholesky.factorise(&other.values).unwrap();
+    let mut cholesky = Cholesky::analyze(other.pattern, None).unwrap();
+    cholesky.factorize(&other.values).unwrap();
     cholesky.solve(&mut permuted);
     let back: Vec<[f64; 1]> = place.iter().map(|&p| permuted[p]).collect();
     assert_near(&back, &matrix.solution(), 1e-9, "permuted");
 }
 
 #[test]
-fn a_bad_pivot_anywhere_is_an_error_and_the_next_factorisation_is_right() {
+fn a_bad_pivot_anywhere_is_an_error_and_the_next_factorization_is_right() {
     let matrix = large();
     let right = matrix.solution();
-    let mut cholesky = Cholesky::analyse(matrix.pattern.clone(), None).unwrap();
+    let mut cholesky = Cholesky::analyze(matrix.pattern.clone(), None).unwrap();
     let mut random = Random(9);
     for bad in [-1.0, 0.0, f64::NAN, f64::INFINITY] {
         let mut values = matrix.values.clone();
         values[matrix.pattern.starts[random.below(matrix.pattern.n)]] = bad;
-        let error = cholesky.factorise(&values).unwrap_err();
+        let error = cholesky.factorize(&values).unwrap_err();
         assert!(
-            matches!(&error, SolveError::Factorisation { reason } if reason.contains("not positive definite")),
+            matches!(&error, SolveError::Factorization { reason } if reason.contains("not positive definite")),
             "{error}"
         );
-        cholesky.factorise(&matrix.values).unwrap();
+        cholesky.factorize(&matrix.values).unwrap();
         let mut x = matrix.right();
         cholesky.solve(&mut x);
         assert_eq!(x, right);

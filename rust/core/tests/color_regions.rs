@@ -38,7 +38,7 @@ fn plane(n: usize) -> Shape {
         .map(|p| [p[0], p[1], 0.0])
 }
 
-/// A disc; or a hill, a sun that touches it but for a strip of one vertex, a house, and a disc.
+/// A disk; or a hill, a sun that touches it but for a strip of one vertex, a house, and a disk.
 fn scene(colors: usize, [x, y, _]: [f64; 3]) -> usize {
     let within = |a: f64, b: f64, radius: f64| (x - a).hypot(y - b) < radius;
     if colors == 2 {
@@ -74,8 +74,8 @@ fn flat_paint_comes_back_exactly() {
             let colors = painted(&shape, |p| PALETTE[region(n_colors, p)]);
             let labels = regions(&shape, &colors, SegmentOptions::default(), None);
             let found = curves(&shape, &colors, &labels);
-            assert!(found.error < 1e-20, "{n_colors} colours, {} regions: {}", count(&labels), found.error);
-            // Every side of a curve has one of the colours, and two sides never have the same.
+            assert!(found.error < 1e-20, "{n_colors} colors, {} regions: {}", count(&labels), found.error);
+            // Every side of a curve has one of the colors, and two sides never have the same.
             for (left, right) in found.curves.left.chunks(3).zip(found.curves.right.chunks(3)) {
                 let which = |color: &[f64]| {
                     PALETTE.iter().position(|other| (0..3).all(|c| (color[c] - other[c]).abs() < 1e-9)).unwrap()
@@ -95,12 +95,12 @@ fn shading_needs_no_curves_of_its_own() {
     assert!(found.error < 1e-4, "{}", found.error);
     let jump = |rows: (&[f64], &[f64])| rows.0.iter().zip(rows.1).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     let rows = found.curves.left.chunks(3).zip(found.curves.right.chunks(3));
-    assert!(rows.map(jump).fold(f64::INFINITY, f64::min) > 0.2, "no curve where no colour changes");
+    assert!(rows.map(jump).fold(f64::INFINITY, f64::min) > 0.2, "no curve where no color changes");
 }
 
 #[test]
-fn a_crease_of_the_colours_keeps_its_curve() {
-    // Linear on both sides and continuous: without the curve, colours would be flat.
+fn a_crease_of_the_colors_keeps_its_curve() {
+    // Linear on both sides and continuous: without the curve, colors would be flat.
     let shape = plane(40);
     let colors = painted(&shape, |[x, _, _]| [1.0 - 1.6 * x.abs(), 0.5, 0.2 + 1.2 * x.abs()]);
     let labels = regions(&shape, &colors, SegmentOptions::default(), None);
@@ -124,9 +124,9 @@ fn small_patches_and_strips_of_one_vertex_are_kept() {
     // Regions of two sides of a strip that goes on to where it is wide.
     let flag = |p: [f64; 3]| (p[0] - 15.0).abs() < 0.5 || p[1] > 20.0;
     let colors = painted(&shape, |p| PALETTE[if flag(p) { 4 } else { usize::from(p[0] > 15.0) }]);
-    let centre = |f: &[u32; 3]| [0, 1].map(|i| f.iter().map(|&v| shape.vertices[v as usize][i]).sum::<f64>() / 3.0);
+    let center = |f: &[u32; 3]| [0, 1].map(|i| f.iter().map(|&v| shape.vertices[v as usize][i]).sum::<f64>() / 3.0);
     let label = |[x, y]: [f64; 2]| if y > 20.0 { 2 } else { i32::from(x > 15.0) };
-    let before: Vec<i32> = shape.faces.iter().map(|f| label(centre(f))).collect();
+    let before: Vec<i32> = shape.faces.iter().map(|f| label(center(f))).collect();
     let after = follow_colors(&shape.mesh().unwrap(), &colors, &before, None, 1e3, &Progress::new()).unwrap();
     assert!(curves(&shape, &colors, &before).error > 1e-4);
     assert!(curves(&shape, &colors, &after).error < 1e-20);
@@ -153,7 +153,7 @@ fn borders_are_short_and_quads_stay_whole() {
     assert_eq!(count(&regions(&shape, &colors, asked, None)), 3, "a number that was asked for is kept");
 }
 
-/// Colours averaged over the neighbours of each vertex.
+/// Colors averaged over the neighbors of each vertex.
 fn averaged(shape: &Shape, colors: &Columns) -> Columns {
     let mut around: Vec<Vec<u32>> = vec![Vec::new(); colors.n_rows];
     for face in &shape.faces {
@@ -170,7 +170,7 @@ fn averaged(shape: &Shape, colors: &Columns) -> Columns {
     averaged
 }
 
-/// Colours in bands around the ball.
+/// Colors in bands around the ball.
 fn bands(n_colors: usize, p: [f64; 3]) -> usize {
     (0.5 * (p[2] + 1.0) * n_colors as f64).clamp(0.0, n_colors as f64 - 1.0) as usize
 }
@@ -188,7 +188,7 @@ fn soft_edges_are_no_regions() {
                 let labels = regions(&shape, &soft, SegmentOptions::default(), None);
                 let found = curves(&shape, &soft, &labels);
                 let (found_curves, decibels) = (found.starts.len(), -10.0 * found.error.log10());
-                let case = format!("{n_colors} colours, averaged {times} times");
+                let case = format!("{n_colors} colors, averaged {times} times");
                 assert_eq!(count(&labels), n_regions, "{case}: regions");
                 assert_eq!(found_curves, n_curves, "{case}: ends of curves");
                 assert!(decibels > 26.0, "{case}: {decibels} dB");

@@ -1,4 +1,4 @@
-//! Diffusion curves: borders as curves, colours on their sides, and the surface that they rebuild.
+//! Diffusion curves: borders as curves, colors on their sides, and the surface that they rebuild.
 #![allow(clippy::unwrap_used, clippy::float_cmp)]
 
 use ridgeform_core::linear::Columns;
@@ -9,16 +9,16 @@ use ridgeform_core::tools::{
 };
 use ridgeform_core::{Error, Progress};
 
-/// A colour a vertex.
+/// A color a vertex.
 fn painted(shape: &Shape, color: impl Fn([f64; 3]) -> [f64; 3]) -> Columns {
     Columns::from_points(&shape.vertices.iter().map(|&p| color(p)).collect::<Vec<_>>())
 }
 
-/// A label a face, from its barycentre.
-fn labelled(shape: &Shape, label: impl Fn([f64; 3]) -> i32) -> Vec<i32> {
-    let centre =
+/// A label a face, from its barycenter.
+fn labeled(shape: &Shape, label: impl Fn([f64; 3]) -> i32) -> Vec<i32> {
+    let center =
         |f: &[u32; 3]| [0, 1, 2].map(|axis| f.iter().map(|&v| shape.vertices[v as usize][axis]).sum::<f64>() / 3.0);
-    shape.faces.iter().map(|f| label(centre(f))).collect()
+    shape.faces.iter().map(|f| label(center(f))).collect()
 }
 
 fn run(shape: &Shape, colors: &Columns, labels: &[i32], options: DiffusionCurvesOptions) -> DiffusionCurves {
@@ -41,12 +41,12 @@ fn a_cut_gives_each_sector_a_copy() {
     };
     let whole = cut(&[]);
     assert_eq!(whole.n_copies(), 25);
-    // From the rim at 2 to the centre, 12: two copies on the way, one at the end.
+    // From the rim at 2 to the center, 12: two copies on the way, one at the end.
     let slit = cut(&[[2, 7], [7, 12]]);
     assert_eq!(slit.n_copies(), 27);
     let count = |cut: &CutMesh, v: u32| cut.vertices.iter().filter(|&&vertex| vertex == v).count();
     assert_eq!([2, 7, 12].map(|v| count(&slit, v)), [2, 2, 1]);
-    // A cross through the centre has four sectors there.
+    // A cross through the center has four sectors there.
     let cross = cut(&[[2, 7], [7, 12], [12, 17], [17, 22], [10, 11], [11, 12], [12, 13], [13, 14]]);
     assert_eq!([12, 7, 2].map(|v| count(&cross, v)), [4, 2, 2]);
     for (face, copies) in shape.faces.iter().zip(&cross.faces) {
@@ -61,14 +61,14 @@ fn a_cut_gives_each_sector_a_copy() {
 }
 
 #[test]
-fn two_flat_colours_need_one_closed_curve_and_come_back_exactly() {
+fn two_flat_colors_need_one_closed_curve_and_come_back_exactly() {
     let shape = shapes::grid(20, 20);
-    let disc = |p: [f64; 3]| (p[0] - 10.0).hypot(p[1] - 10.0) < 6.0;
+    let disk = |p: [f64; 3]| (p[0] - 10.0).hypot(p[1] - 10.0) < 6.0;
     let (inside, outside) = ([0.9, 0.3, 0.1], [0.1, 0.4, 0.8]);
-    let colors = painted(&shape, |p| if disc(p) { inside } else { outside });
+    let colors = painted(&shape, |p| if disk(p) { inside } else { outside });
     for refine in [false, true] {
-        // Faces with a corner in the disc belong to it, so the curve runs through vertices of the other colour.
-        let touches = |f: &[u32; 3]| f.iter().any(|&v| disc(shape.vertices[v as usize]));
+        // Faces with a corner in the disk belong to it, so the curve runs through vertices of the other color.
+        let touches = |f: &[u32; 3]| f.iter().any(|&v| disk(shape.vertices[v as usize]));
         let labels: Vec<i32> = shape.faces.iter().map(|f| i32::from(touches(f))).collect();
         let found = run(&shape, &colors, &labels, DiffusionCurvesOptions { refine, ..Default::default() });
         assert!(found.error < 1e-24, "{}", found.error);
@@ -96,7 +96,7 @@ fn two_flat_colours_need_one_closed_curve_and_come_back_exactly() {
 #[test]
 fn blends_on_the_border_belong_to_no_side() {
     let shape = shapes::grid(12, 12);
-    // As an image gives them: the colours of the vertices on the border are half and half.
+    // As an image gives them: the colors of the vertices on the border are half and half.
     let (left, right) = ([0.9, 0.3, 0.1], [0.1, 0.4, 0.8]);
     let blend = [0, 1, 2].map(|c| 0.5 * (left[c] + right[c]));
     let colors = painted(&shape, |p| {
@@ -108,7 +108,7 @@ fn blends_on_the_border_belong_to_no_side() {
             right
         }
     });
-    let labels = labelled(&shape, |p| i32::from(p[0] > 6.0));
+    let labels = labeled(&shape, |p| i32::from(p[0] > 6.0));
     let found = run(&shape, &colors, &labels, DiffusionCurvesOptions::default());
     assert!(found.error < 1e-20, "{}", found.error);
     assert_eq!(found.sides.iter().filter(|side| side.is_none()).count(), 13);
@@ -121,7 +121,7 @@ fn borders_follow_the_paint() {
     let inside = |p: [f64; 3]| (p[0] - 10.0).hypot(p[1] - 10.0) < 6.0;
     let colors = painted(&shape, |p| if inside(p) { [0.9, 0.3, 0.1] } else { [0.1, 0.4, 0.8] });
     // Regions that are off by up to three rows of faces; in pairs, as the triangles of squares.
-    let shifted = labelled(&shape, |p| i32::from((p[0].floor() - 8.0).hypot(p[1].floor() - 9.0) < 6.5));
+    let shifted = labeled(&shape, |p| i32::from((p[0].floor() - 8.0).hypot(p[1].floor() - 9.0) < 6.5));
     let groups: Vec<u32> = (0..shape.faces.len() as u32).map(|f| f / 2).collect();
     for (groups, least) in [(None, 1e-20), (Some(&groups[..]), 1e-20)] {
         let labels = follow_colors(&mesh, &colors, &shifted, groups, 1e3, &Progress::new()).unwrap();
@@ -138,7 +138,7 @@ fn borders_follow_the_paint() {
 fn curves_end_where_others_meet_them_and_at_the_rim() {
     let shape = shapes::grid(12, 12);
     let third = |p: [f64; 3]| if p[1] < 6.0 { 0 } else { i32::from(p[0] > 6.0) + 1 };
-    let labels = labelled(&shape, third);
+    let labels = labeled(&shape, third);
     let colors = painted(&shape, |p| [p[0] / 12.0, p[1] / 12.0, 0.5]);
     let found = run(&shape, &colors, &labels, DiffusionCurvesOptions::default());
     assert_eq!(found.starts.len() - 1, 3, "three curves meet in the middle");
@@ -149,10 +149,10 @@ fn curves_end_where_others_meet_them_and_at_the_rim() {
     let rimmed = run(&shape, &colors, &labels, DiffusionCurvesOptions { rims: true, ..Default::default() });
     assert_eq!(rimmed.curves.edges.len(), 18 + 48);
     assert_eq!(rimmed.starts.len() - 1, 6);
-    assert!(rimmed.error < 1e-10, "linear colours are harmonic: {}", rimmed.error);
+    assert!(rimmed.error < 1e-10, "linear colors are harmonic: {}", rimmed.error);
     // A closed surface in two halves: one closed curve.
     let ball = shapes::icosphere(3);
-    let halves = labelled(&ball, |p| i32::from(p[2] > 0.0));
+    let halves = labeled(&ball, |p| i32::from(p[2] > 0.0));
     let found = run(&ball, &painted(&ball, |p| p), &halves, DiffusionCurvesOptions::default());
     assert_eq!(found.starts.len() - 1, 1);
 }
@@ -174,14 +174,14 @@ fn what_no_curve_reaches_gets_a_point() {
 }
 
 #[test]
-fn colours_stay_in_range_on_obtuse_meshes() {
+fn colors_stay_in_range_on_obtuse_meshes() {
     for seed in 0..6 {
         let mut random = Random::new(seed);
         let shape = shapes::grid(14, 14).noisy(0.3, seed).map(|p| [9.0 * p[0], p[1], 0.2 * p[2]]);
         let colors = painted(&shape, |_| [0.0; 3]);
         let data = (0..colors.data.len()).map(|_| random.uniform()).collect();
         let colors = Columns { data, ..colors };
-        let labels = labelled(&shape, |p| i32::from(p[1] > 7.0) + 2 * i32::from(p[0] > 60.0));
+        let labels = labeled(&shape, |p| i32::from(p[1] > 7.0) + 2 * i32::from(p[0] > 60.0));
         let mut errors = Vec::new();
         for refine in [false, true] {
             let found =
@@ -203,7 +203,7 @@ fn colours_stay_in_range_on_obtuse_meshes() {
 fn the_curves_alone_redraw_the_surface() {
     let shape = shapes::icosphere(3).noisy(0.01, 4);
     let colors = painted(&shape, |p| p.map(|x| 0.5 + 0.4 * (3.0 * x).sin()));
-    let labels = labelled(&shape, |p| i32::from(p[0] > 0.1) + 2 * i32::from(p[1] > 0.0) + 4 * i32::from(p[2] > -0.2));
+    let labels = labeled(&shape, |p| i32::from(p[0] > 0.1) + 2 * i32::from(p[1] > 0.0) + 4 * i32::from(p[2] > -0.2));
     let found = run(&shape, &colors, &labels, DiffusionCurvesOptions { color_error: 0.02, ..Default::default() });
     let mesh = shape.mesh().unwrap();
     let again = redraw(&mesh, &found.curves, Some(&found.sides), &Progress::new()).unwrap();
@@ -232,7 +232,7 @@ fn open_curves_diffuse_around_their_ends() {
     };
     let colors = redraw(&mesh, &curves, None, &Progress::new()).unwrap().colors;
     let at = |i: usize, j: usize| colors.column(0)[9 * j + i];
-    // The curve runs up, so its left is at small x; beyond its ends the colours go over into each other.
+    // The curve runs up, so its left is at small x; beyond its ends the colors go over into each other.
     assert!(at(3, 4) < 0.3 && at(5, 4) > 0.7);
     assert!((0.3..0.7).contains(&at(4, 0)) && at(3, 0) < at(4, 0) && at(4, 0) < at(5, 0));
     assert!((at(4, 4) - 0.5).abs() < 1e-12, "the mean of its sides");
@@ -240,7 +240,7 @@ fn open_curves_diffuse_around_their_ends() {
 
 #[test]
 fn bad_surfaces_are_drawn_too() {
-    // Three pages on one spine, one of another colour; a Möbius strip; a page with a face without area.
+    // Three pages on one spine, one of another color; a Möbius strip; a page with a face without area.
     let book = Shape {
         vertices: vec![[0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [-1.0, -1.0, 0.0]],
         faces: vec![[0, 1, 2], [0, 1, 3], [0, 1, 4]],

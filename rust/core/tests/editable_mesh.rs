@@ -41,7 +41,7 @@ fn edges_say_what_lies_at_them() {
     assert_eq!(mesh.edge(1, 0), Edge::Border(0, 3));
     assert_eq!(mesh.edge(1, 2), Edge::None);
     assert_eq!(mesh.edges(), [[0, 1], [0, 2], [0, 3], [1, 3], [2, 3]]);
-    assert_eq!((mesh.neighbours(0), mesh.neighbours(1)), (vec![1, 2, 3], vec![0, 3]));
+    assert_eq!((mesh.neighbors(0), mesh.neighbors(1)), (vec![1, 2, 3], vec![0, 3]));
     assert!(mesh.is_border(0) && !editable(&shapes::grid(2, 2)).is_border(4));
     let book = EditableMesh::new(vec![[0.0; 3]; 5], vec![[0, 1, 2], [1, 0, 3], [0, 1, 4]]).unwrap();
     assert_eq!(book.edge(0, 1), Edge::NonManifold);
@@ -53,8 +53,8 @@ fn edges_say_what_lies_at_them() {
 #[test]
 fn rings_grow_by_one_edge() {
     let mesh = editable(&shapes::grid(8, 8));
-    let centre = 4 * 9 + 4;
-    assert_eq!([0, 1, 2, 3].map(|rings| Rings::new(&mesh).within(centre, rings).len()), [0, 6, 24, 54]);
+    let center = 4 * 9 + 4;
+    assert_eq!([0, 1, 2, 3].map(|rings| Rings::new(&mesh).within(center, rings).len()), [0, 6, 24, 54]);
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn the_guard_refuses_a_flip_across_a_notch_and_a_move_across_an_edge() {
 fn splits_keep_the_surface() {
     let mut mesh = square();
     assert_eq!(mesh.split(0, 3, [0.5, 0.5, 0.0]), Some(4));
-    assert_eq!(mesh.neighbours(4), [0, 1, 2, 3]);
+    assert_eq!(mesh.neighbors(4), [0, 1, 2, 3]);
     assert_eq!(mesh.split(0, 1, [0.5, 0.0, 0.0]), Some(5));
     assert_eq!(mesh.split(1, 2, [0.0; 3]), None);
     assert_eq!(mesh.split_face(0, [0.6, 0.2, 0.0]), Some(6));
@@ -109,9 +109,9 @@ fn splits_keep_the_surface() {
 fn a_collapse_keeps_the_surface_or_is_refused() {
     let mut mesh = editable(&shapes::icosphere(1));
     let end = mesh.position(1);
-    let neighbour = mesh.neighbours(1)[0];
-    assert!(mesh.collapse(neighbour, 1, end));
-    assert!(mesh.faces_of(neighbour).is_empty());
+    let neighbor = mesh.neighbors(1)[0];
+    assert!(mesh.collapse(neighbor, 1, end));
+    assert!(mesh.faces_of(neighbor).is_empty());
     let mesh = checked(mesh, 0);
     assert_eq!((mesh.connectivity().n_vertices(), euler_characteristic(&mesh)), (41, 2));
     let mut tetrahedron = editable(&shapes::tetrahedron());

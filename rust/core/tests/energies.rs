@@ -106,7 +106,7 @@ fn intrinsic_energies_see_edge_lengths_only_and_no_energy_sees_rotations_but_one
 }
 
 #[test]
-fn face_weights_scale_the_energy_and_localise_it() {
+fn face_weights_scale_the_energy_and_localize_it() {
     let mesh = shapes::grid(12, 6).mesh().unwrap();
     let m = mesh.connectivity().n_faces();
     let u = sample(&mesh, |p| (p[0] - 3.0).abs());
@@ -127,7 +127,7 @@ fn face_weights_scale_the_energy_and_localise_it() {
 fn circumcentric_duals_without_length_are_named_or_replaced() {
     let mesh = shapes::grid(5, 4).mesh().unwrap();
     let error = EnergyForm::new(Energy::L1Hessian, &mesh, None, Dual::Circumcentric).unwrap_err();
-    assert_eq!(error, Error::Mesh(MeshError::ZeroDualEdge { face: 0, neighbour: 1 }));
+    assert_eq!(error, Error::Mesh(MeshError::ZeroDualEdge { face: 0, neighbor: 1 }));
     let mixed = EnergyForm::new(Energy::L1Hessian, &mesh, None, Dual::CircumcentricOrBarycentric).unwrap();
     let affine = sample(&mesh, |p| p[0] - 2.0 * p[1]);
     assert!(mixed.evaluate(&affine).unwrap() < 1e-12);

@@ -184,7 +184,7 @@ fn several_columns_share_one_norm() {
 #[test]
 fn circumcentric_duals_of_squares_have_no_length() {
     let mesh = shapes::grid(2, 2).rotated([1.0, 1.0, 0.3], 1.0).mesh().unwrap();
-    let refused = MeshError::ZeroDualEdge { face: 0, neighbour: 1 };
+    let refused = MeshError::ZeroDualEdge { face: 0, neighbor: 1 };
     assert_eq!(hessian(&mesh, Dual::Circumcentric).unwrap_err(), refused.into());
     assert!(hessian(&mesh, Dual::Barycentric).is_ok());
 }

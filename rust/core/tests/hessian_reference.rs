@@ -1,5 +1,5 @@
-//! The Hessian against an independent computation in space: the neighbour is rotated about the shared edge into the plane of
-//! the face, gradients are least squares fits, centres are computed from positions.
+//! The Hessian against an independent computation in space: the neighbor is rotated about the shared edge into the plane of
+//! the face, gradients are least squares fits, centers are computed from positions.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use proptest::prelude::*;
@@ -36,7 +36,7 @@ fn gradient(p: [V; 3], u: [f64; 3]) -> V {
     axpy(axpy([0.0; 3], (s * bb - t * ab) / determinant, a), (t * aa - s * ab) / determinant, b)
 }
 
-fn centre(p: [V; 3], dual: Dual) -> V {
+fn center(p: [V; 3], dual: Dual) -> V {
     match dual {
         Dual::Barycentric => [0, 1, 2].map(|k| (p[0][k] + p[1][k] + p[2][k]) / 3.0),
         Dual::Circumcentric | Dual::CircumcentricOrBarycentric => {
@@ -74,16 +74,16 @@ fn reference(shape: &Shape, u: &[f64], f: usize, dual: Dual) -> ([f64; 4], f64) 
             shape.faces.iter().find_map(|g| (0..3).find(|&k| g[k] == b && g[(k + 1) % 3] == a).map(|k| g[(k + 2) % 3]));
         let Some(o) = across else { continue };
         let q = [at(b), at(a), unfold(at(o), at(a), at(b), at(face[i]))];
-        let (g_face, g_neighbour) = (gradient(p, face.map(value)), gradient(q, [b, a, o].map(value)));
-        let delta = sub(g_neighbour, g_face);
-        let dual_edge = sub(centre(q, dual), centre(p, dual));
+        let (g_face, g_neighbor) = (gradient(p, face.map(value)), gradient(q, [b, a, o].map(value)));
+        let delta = sub(g_neighbor, g_face);
+        let dual_edge = sub(center(q, dual), center(p, dual));
         let length = dot(dual_edge, dual_edge).sqrt();
         let t = unit(dual_edge);
         let frame = [dot(t, x), dot(t, y)];
         for (k, entry) in h.iter_mut().enumerate() {
             *entry += area * dot(delta, t) / length * frame[k / 2] * frame[k % 2];
         }
-        scale += area * (dot(g_face, g_face).sqrt() + dot(g_neighbour, g_neighbour).sqrt()) / length;
+        scale += area * (dot(g_face, g_face).sqrt() + dot(g_neighbor, g_neighbor).sqrt()) / length;
     }
     (h, scale)
 }

@@ -147,7 +147,7 @@ fn wrong_counts_are_refused_and_cancelling_is_heard() {
 fn slivers_do_not_keep_modes_from_settling() {
     let mut shape = shapes::torus(24, 12, 1.0, 0.4);
     let plain = modes(&shape.mesh().unwrap(), 5, Energy::L2Laplacian);
-    // Half of a ring moves onto its neighbours but for a ten thousandth: entries of the energy grow by 1e8.
+    // Half of a ring moves onto its neighbors but for a ten thousandth: entries of the energy grow by 1e8.
     for i in (0..24).step_by(2) {
         let (a, b) = (shape.vertices[i], shape.vertices[i + 1]);
         shape.vertices[i] = [0, 1, 2].map(|k| b[k] + 1e-4 * (a[k] - b[k]));

@@ -150,7 +150,7 @@ fn slivers_and_faces_without_area_go() {
     let squeezed = shapes::grid(12, 12).map(|[x, y, z]| [x, 0.02 * y, z]);
     let (result, _) = run(&squeezed, &with_length(0.1));
     assert!(least_quality(&result) > 0.2 && (area(&result) - 12.0 * 0.24).abs() < 1e-9, "{}", least_quality(&result));
-    // A vertex put onto an edge of its neighbours leaves faces without area.
+    // A vertex put onto an edge of its neighbors leaves faces without area.
     let mut flat = shapes::grid(8, 8);
     flat.vertices[30] = flat.vertices[31];
     flat.vertices[50] = flat.vertices[49];

@@ -94,7 +94,7 @@ pub fn integers(name: &'static str, object: &Bound<'_, PyAny>) -> PyResult<Numbe
         b'b' => Err(argument(py, name, "expected whole numbers, got booleans")),
         b'f' => {
             let numbers: Numbers<f64> = convert(name, &array)?;
-            // Beyond 2^53 a float64 no longer tells neighbouring whole numbers apart.
+            // Beyond 2^53 a float64 no longer tells neighboring whole numbers apart.
             let whole = |x: &f64| x.fract() == 0.0 && x.abs() <= 9_007_199_254_740_992.0;
             if let Some(x) = numbers.data.iter().find(|x| !whole(x)) {
                 return Err(argument(py, name, format!("expected whole numbers, got {x}")));

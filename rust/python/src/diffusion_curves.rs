@@ -14,26 +14,26 @@ use crate::mesh::Mesh;
 use crate::numbers::at_least;
 use crate::progress::{handle, Progress};
 
-/// What `diffusion_curves` returns: curves with a colour on each side, and the colours that they rebuild.
+/// What `diffusion_curves` returns: curves with a color on each side, and the colors that they rebuild.
 #[pyclass(frozen, get_all, module = "ridgeform")]
 pub struct DiffusionCurves {
     /// The vertices of every edge of the curves, (k,2) int32, one curve after another and each in its direction.
     edges: Py<PyArray2<i32>>,
     /// Where each curve starts among the edges, and last their number, (q+1,) int32.
     starts: Py<PyArray1<i32>>,
-    /// The colours at the start and the end of every edge on its left, (k,2,c) float64: on the side of the face that runs from
+    /// The colors at the start and the end of every edge on its left, (k,2,c) float64: on the side of the face that runs from
     /// start to end. The region there has the smaller label.
     left: Py<PyAny>,
     /// The same on the right; at a rim, where there is no face on the right, those on the left.
     right: Py<PyAny>,
     /// A vertex for every piece of surface that no curve reaches, (j,) int32.
     points: Py<PyArray1<i32>>,
-    /// Its colour: the mean of the piece, (j,c) float64.
+    /// Its color: the mean of the piece, (j,c) float64.
     point_colors: Py<PyAny>,
-    /// The rebuilt colours, (n,c) float64. A vertex on a curve has that of its side, or the mean of its sides; one without
+    /// The rebuilt colors, (n,c) float64. A vertex on a curve has that of its side, or the mean of its sides; one without
     /// faces 0.
     colors: Py<PyAny>,
-    /// The rebuilt colours at the corners of the faces, (m,3,c) float64: across a curve they jump.
+    /// The rebuilt colors at the corners of the faces, (m,3,c) float64: across a curve they jump.
     corners: Py<PyAny>,
     /// The face whose side a vertex takes, (n,) int32; -1 for vertices that blend their sides, and for those without faces.
     sides: Py<PyArray1<i32>>,
@@ -41,12 +41,12 @@ pub struct DiffusionCurves {
     labels: Py<PyArray1<i32>>,
     /// The mean squared error of `colors` over the area of the surface and the channels.
     error: f64,
-    /// The same as a peak signal-to-noise ratio in decibels, for colours between 0 and 1; infinite without error.
+    /// The same as a peak signal-to-noise ratio in decibels, for colors between 0 and 1; infinite without error.
     psnr: f64,
-    /// How many numbers the curves are: two for each of their vertices (which it is, and its side), the colours, one more for
-    /// each knot where `color_error` thins them, vertex and colour of each point.
+    /// How many numbers the curves are: two for each of their vertices (which it is, and its side), the colors, one more for
+    /// each knot where `color_error` thins them, vertex and color of each point.
     n_numbers: usize,
-    /// How many numbers they stand for: the entries of the colours given.
+    /// How many numbers they stand for: the entries of the colors given.
     n_numbers_before: usize,
 }
 
@@ -73,27 +73,27 @@ impl DiffusionCurves {
     }
 }
 
-/// The curves along the borders of regions, with a colour on each side, that rebuild a painted surface.
+/// The curves along the borders of regions, with a color on each side, that rebuild a painted surface.
 ///
-/// The regions are those given, or else what `segment` finds with the colours as its signal and one norm for all channels; their
-/// borders are then moved until no vertex beside them has the colour of the other side.
+/// The regions are those given, or else what `segment` finds with the colors as its signal and one norm for all channels; their
+/// borders are then moved until no vertex beside them has the color of the other side.
 /// On each piece of the surface cut open along the borders, min uᵀ L u + fidelity (u - colors)ᵀ M (u - colors) is solved with the
-/// cotangent Laplacian L; its values at the borders are the colours of the curves, and `redraw` rebuilds the surface from them.
-/// A vertex on a border counts for the side whose colour is nearest, and for none where it is nearer to their mean. All colours stay within the range of those given, channel
+/// cotangent Laplacian L; its values at the borders are the colors of the curves, and `redraw` rebuilds the surface from them.
+/// A vertex on a border counts for the side whose color is nearest, and for none where it is nearer to their mean. All colors stay within the range of those given, channel
 /// by channel.
 ///
 /// Parameters
 /// ----------
 /// mesh : Mesh
-/// colors : (n,) or (n,c) array, a colour a vertex, usually between 0 and 1
-/// labels : (m,) array of whole numbers, the region of each face; None to find regions by their colours
+/// colors : (n,) or (n,c) array, a color a vertex, usually between 0 and 1
+/// labels : (m,) array of whole numbers, the region of each face; None to find regions by their colors
 /// n_regions, length_weight, min_faces : for finding regions: `n_segments`, `length_weight` and `min_faces` of `segment`
 /// face_groups : (m,) array of whole numbers ≥ 0 or None: faces with the same number, the triangles of a polygon, are found in one
 ///     region
-/// fidelity : float > 0; colours are smoothed over a length of 1 / √fidelity times the square root of the surface's area
-/// rims : the rims of an open mesh are curves too, with the colours of their one side
-/// refine : improve the colours of the curves by least squares until the rebuilt surface is closest to `colors`
-/// color_error : how much a colour on a curve may change so that few of them have to be stored; 0 keeps one at every vertex
+/// fidelity : float > 0; colors are smoothed over a length of 1 / √fidelity times the square root of the surface's area
+/// rims : the rims of an open mesh are curves too, with the colors of their one side
+/// refine : improve the colors of the curves by least squares until the rebuilt surface is closest to `colors`
+/// color_error : how much a color on a curve may change so that few of them have to be stored; 0 keeps one at every vertex
 /// progress : Progress or None
 ///
 /// Returns
@@ -169,12 +169,12 @@ pub fn diffusion_curves(
     })
 }
 
-/// What `redraw` returns: the colours of a surface between curves.
+/// What `redraw` returns: the colors of a surface between curves.
 #[pyclass(frozen, get_all, module = "ridgeform")]
 pub struct Redrawn {
-    /// A colour a vertex, (n,c) float64. A vertex on a curve has that of its side, else the mean of its sides; one without faces 0.
+    /// A color a vertex, (n,c) float64. A vertex on a curve has that of its side, else the mean of its sides; one without faces 0.
     colors: Py<PyAny>,
-    /// The colours at the corners of the faces, (m,3,c) float64: across a curve they jump.
+    /// The colors at the corners of the faces, (m,3,c) float64: across a curve they jump.
     corners: Py<PyAny>,
 }
 
@@ -185,20 +185,20 @@ impl Redrawn {
     }
 }
 
-/// Diffuse the colours of curves over a surface: Laplace's equation between them.
+/// Diffuse the colors of curves over a surface: Laplace's equation between them.
 ///
-/// The mesh is cut open along the curves, and each side of a curve keeps its own colours. Curves may end anywhere, and where
-/// they meet the colours that they give to the same side are averaged. No colour leaves the range of those given, channel by
+/// The mesh is cut open along the curves, and each side of a curve keeps its own colors. Curves may end anywhere, and where
+/// they meet the colors that they give to the same side are averaged. No color leaves the range of those given, channel by
 /// channel.
 ///
 /// Parameters
 /// ----------
 /// mesh : Mesh
 /// edges : (k,2) array, vertices that an edge of the mesh joins
-/// left : (k,2) or (k,2,c) array, the colours at the start and the end of each edge on its left: on the side of the face that
+/// left : (k,2) or (k,2,c) array, the colors at the start and the end of each edge on its left: on the side of the face that
 ///     runs from start to end; not used where there is none
 /// right : array of the same shape, the same on the right
-/// points : (j,) array of vertices with a colour of their own, away from the curves, or None
+/// points : (j,) array of vertices with a color of their own, away from the curves, or None
 /// point_colors : (j,) or (j,c) array, or None
 /// sides : (n,) array, the face whose side each vertex takes in `Redrawn.colors` (`DiffusionCurves.sides`), -1 or None for the
 ///     mean of its sides
@@ -317,7 +317,7 @@ fn read_edges(object: &Bound<'_, PyAny>, n_vertices: usize) -> PyResult<Vec<[u32
     rows.iter().enumerate().map(|(row, &[a, b])| Ok([vertex(row, a)?, vertex(row, b)?])).collect()
 }
 
-/// Colours of shape `rows` (no channels: none) or `rows` and channels.
+/// Colors of shape `rows` (no channels: none) or `rows` and channels.
 fn read_colors(name: &'static str, object: &Bound<'_, PyAny>, rows: &[usize]) -> PyResult<(Vec<f64>, Option<usize>)> {
     let numbers = finite_floats(name, object)?;
     let shape = &numbers.shape;
@@ -348,7 +348,7 @@ fn write_sides(py: Python<'_>, sides: &[Option<u32>]) -> Py<PyArray1<i32>> {
     faces.into_pyarray(py).unbind()
 }
 
-/// A fresh C-contiguous array of shape `rows` and `k` channels, or of shape `rows` where colours are single numbers.
+/// A fresh C-contiguous array of shape `rows` and `k` channels, or of shape `rows` where colors are single numbers.
 fn shaped(py: Python<'_>, data: Vec<f64>, rows: &[usize], k: usize, single: bool) -> PyResult<Py<PyAny>> {
     let mut shape = rows.to_vec();
     if !single {

@@ -8,7 +8,7 @@ use crate::solution::Solution;
 use crate::{arrays, columns, doorway, options, scalar};
 
 solver_function! {
-    /// Minimise an energy of functions that take given values at given vertices.
+    /// Minimize an energy of functions that take given values at given vertices.
     ///
     /// Solves min_u E(u) subject to u[indices] = values and A u = b; with several columns see `coupling`.
     ///
@@ -23,7 +23,7 @@ solver_function! {
     /// linear_constraints : (A, b) with A (p,n): SparseMatrix, SciPy sparse matrix or array, and b (p,) or (p,k)
     /// coupling : "joint" (one norm for all columns) or "separate" (each column is a problem of its own)
     /// dual : "barycentric", "circumcentric" (MeshError where a dual edge has no length) or "circumcentric_or_barycentric"
-    ///     (barycentres for such edges); for "l1_hessian" only
+    ///     (barycenters for such edges); for "l1_hessian" only
     /// delaunay : flip edges to the intrinsic Delaunay triangulation first; values stay at the vertices, face weights are averaged
     ///     over the two faces of each flip; not for energies in space
     /// sharpness : 0 (the convex problem) to 1, reweighted rounds that concentrate curvature; for "l1_hessian" only

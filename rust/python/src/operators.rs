@@ -14,7 +14,7 @@ use crate::{columns, doorway, options};
 ///
 /// The face's frame has its x axis from corner 0 to corner 1. The entries have no unit: scaling the mesh changes nothing.
 /// `dual`: "barycentric" dual edges, "circumcentric" ones, which raise MeshError where one has no length, or
-/// "circumcentric_or_barycentric", which takes barycentres for such edges.
+/// "circumcentric_or_barycentric", which takes barycenters for such edges.
 ///
 /// Source: Rowe et al. 2024, eq. (30).
 #[pyfunction]

@@ -37,8 +37,8 @@ impl Remeshed {
 
 /// Remesh a surface with edges of about the same length and triangles close to equilateral, without moving it.
 ///
-/// Each round splits edges longer than 4/3 of the target, collapses those shorter than 4/5, flips edges towards valence 6,
-/// moves vertices along the surface to the centre of their neighbours and projects them back onto the input. Borders and
+/// Each round splits edges longer than 4/3 of the target, collapses those shorter than 4/5, flips edges toward valence 6,
+/// moves vertices along the surface to the center of their neighbors and projects them back onto the input. Borders and
 /// feature lines keep their course and their corners, non-manifold edges stay. Nothing is folded over, and slivers are
 /// removed where possible.
 ///

@@ -89,7 +89,7 @@ impl Segmentation {
 solver_function! {
     /// Divide the faces into segments on which the shape, or a function on it, is nearly plane (affine), with borders along the ridges.
     ///
-    /// Minimises fidelity ‖u - u₀‖²_M + Σ_f v_f² ‖(H u)_f‖ + length_weight (epsilon vᵀ L v + ‖1 - v‖² / (4 epsilon)) in turns over the
+    /// Minimizes fidelity ‖u - u₀‖²_M + Σ_f v_f² ‖(H u)_f‖ + length_weight (epsilon vᵀ L v + ‖1 - v‖² / (4 epsilon)) in turns over the
     /// signal u and the indicator of borders v on the faces, epsilon halved from start to end. Smoothly curved parts stay one segment.
     ///
     /// Parameters
@@ -104,7 +104,7 @@ solver_function! {
     /// inner_tolerance : the mean squared change of v at which epsilon is halved
     /// cut_threshold : 0 to 1, edges with a lower v are cut; for "paper"
     /// min_faces : segments of fewer faces are merged; None: 20, and for "fitted" down to 4 the less noise there is, and 0 for
-    ///     modelled shapes
+    ///     modeled shapes
     /// scale : "extent" (a cube has its side, whatever its rotation), "bounding_box" (the longest side is 1), "area" or "max_edge"
     /// method : "fitted" (watershed of v, merging of what bends little, border faces moved to the segment that they fit best) or "paper"
     ///     (cuts below the threshold, small pieces merged by majority)

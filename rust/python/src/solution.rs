@@ -5,10 +5,10 @@ use ridgeform_core::solve;
 
 use crate::columns::{self, Values};
 
-/// A minimiser, how good it is and what it took.
+/// A minimizer, how good it is and what it took.
 #[pyclass(frozen, get_all, module = "ridgeform")]
 pub struct Solution {
-    /// The minimiser, float64, in the shape of the values that were given: (n,) or (n,k).
+    /// The minimizer, float64, in the shape of the values that were given: (n,) or (n,k).
     values: Py<PyAny>,
     /// The objective at `values`.
     objective: f64,
@@ -17,7 +17,7 @@ pub struct Solution {
     gap: f64,
     /// Inner iterations, all rounds and columns together.
     iterations: usize,
-    /// Numeric factorisations, all rounds and columns together.
+    /// Numeric factorizations, all rounds and columns together.
     factorisations: usize,
     /// "solved" (the tolerance was reached), "inaccurate" (it was not: the best point is returned) or "stopped".
     status: &'static str,

@@ -21,7 +21,7 @@ pub struct Stylized {
     solver_iterations: Py<PyArray1<i32>>,
     /// Number of steps done.
     iterations: usize,
-    /// Numeric factorisations, all steps together.
+    /// Numeric factorizations, all steps together.
     factorisations: usize,
     /// The part of the area in faces that meet all neighbors at less than 2 degrees, before and after, (2,) float64.
     flat_share: Py<PyArray1<f64>>,
@@ -45,7 +45,7 @@ impl Stylized {
 solver_function! {
     /// Turn a mesh piecewise flat with crisp ridges, in steps of the L1 Hessian flow.
     ///
-    /// Each step minimises Σ_f w_f ‖(H x)_f‖ + fidelity (x - x₀)ᵀ M (x - x₀) over the vertex positions x, with H and M from the
+    /// Each step minimizes Σ_f w_f ‖(H x)_f‖ + fidelity (x - x₀)ᵀ M (x - x₀) over the vertex positions x, with H and M from the
     /// positions x₀ before the step.
     ///
     /// Parameters
@@ -67,7 +67,7 @@ solver_function! {
     /// ridge_weights : (m,) array > 0, 1 is neutral, smaller makes ridges cheaper there
     /// delaunay : flip edges to intrinsic Delaunay before each step
     /// dual : "barycentric", "circumcentric" (MeshError where a dual edge has no length) or "circumcentric_or_barycentric"
-    ///     (barycentres for such edges)
+    ///     (barycenters for such edges)
     solver keywords
     /// progress : Progress or None; its snapshot() shows the vertices after the last finished step
     ///

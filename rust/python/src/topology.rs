@@ -57,7 +57,7 @@ pub fn weld<'py>(
     Ok((float_rows(py, &vertices)?, index_rows(py, &faces)?, index_array(py, &index)?))
 }
 
-/// Turn faces over so that neighbours agree on which side is outside.
+/// Turn faces over so that neighbors agree on which side is outside.
 ///
 /// In each part of the surface connected across edges the smaller number of faces is turned, of two equal numbers those that do not
 /// agree with its first face. Across edges with three faces or more nothing is compared; a surface with one side only, as a

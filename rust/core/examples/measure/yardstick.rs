@@ -1,7 +1,7 @@
-//! The quadratic problem on the same mesh, with the same Cholesky factorisation: what every solver is compared with.
+//! The quadratic problem on the same mesh, with the same Cholesky factorization: what every solver is compared with.
 //!
 //! `min_u Σ_f w_f A_f ‖H_f u‖²` with the values at `indices.u32` known (`fidelity=0`), or plus `α ‖u − u₀‖²_M`: one
-//! factorisation, one solve of all columns. Linear constraints are left out. Its parts are timed as well, in the order in
+//! factorization, one solve of all columns. Linear constraints are left out. Its parts are timed as well, in the order in
 //! which they run.
 
 use std::convert::Infallible;
@@ -39,9 +39,9 @@ fn of_columns<const K: usize>(problem: &Problem, arguments: &Arguments) -> Outco
 
     let mut quadratic = set_up()?;
     let mut symbolic = Samples::new(arguments)?;
-    quadratic.cholesky = symbolic.take(|| Cholesky::analyse(quadratic.normal.pattern().clone(), None))?;
+    quadratic.cholesky = symbolic.take(|| Cholesky::analyze(quadratic.normal.pattern().clone(), None))?;
     let mut numeric = Samples::new(arguments)?;
-    numeric.take(|| quadratic.cholesky.factorise(&quadratic.entries))?;
+    numeric.take(|| quadratic.cholesky.factorize(&quadratic.entries))?;
     let mut solve = Samples::new(arguments)?;
     solve.take(|| quadratic.back_substitute(&quadratic.right.clone()))?;
     let mut fields = whole.fields();
@@ -95,7 +95,7 @@ impl<const K: usize> Quadratic<K> {
         }
         let diagonal: Vec<f64> = free.iter().map(|&i| fidelity * mass[i]).collect();
         let normal = NormalMatrix::new(&operator);
-        let cholesky = Cholesky::analyse(normal.pattern().clone(), None)?;
+        let cholesky = Cholesky::analyze(normal.pattern().clone(), None)?;
         let mut entries = Vec::new();
         normal.assemble(&operator, &per_face, &diagonal, &mut entries);
         Ok(Self { right, normal, cholesky, entries })
@@ -108,7 +108,7 @@ impl<const K: usize> Quadratic<K> {
     }
 
     fn solve(mut self) -> Result<Vec<[f64; K]>, Box<dyn std::error::Error>> {
-        self.cholesky.factorise(&self.entries)?;
+        self.cholesky.factorize(&self.entries)?;
         self.cholesky.solve(&mut self.right);
         Ok(self.right)
     }

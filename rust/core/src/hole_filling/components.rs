@@ -62,7 +62,7 @@ impl<'a> Components<'a> {
         self.found[number].same_as.unwrap_or(number)
     }
 
-    /// Adds the component of `seed`. A face that disagrees with its neighbours on the orientation counts the other way round.
+    /// Adds the component of `seed`. A face that disagrees with its neighbors on the orientation counts the other way round.
     fn search(&mut self, seed: usize) -> usize {
         let number = self.found.len();
         let mut component = Component { area: 0.0, area_vector: [0.0; 3], same_as: None, is_whole: true };
@@ -108,11 +108,11 @@ mod tests {
 
     use super::*;
 
-    /// A shape without the faces whose centres lie within `radius` of one of `places`.
+    /// A shape without the faces whose centers lie within `radius` of one of `places`.
     fn pierced(shape: &Shape, places: &[Point], radius: f64) -> Shape {
         let near = |f: usize| {
-            let centre = crate::mesh::vector::centroid(shape.faces[f].map(|v| shape.vertices[v as usize]));
-            places.iter().any(|&p| crate::mesh::vector::distance(centre, p) < radius)
+            let center = crate::mesh::vector::centroid(shape.faces[f].map(|v| shape.vertices[v as usize]));
+            places.iter().any(|&p| crate::mesh::vector::distance(center, p) < radius)
         };
         shape.clone().without_faces(near)
     }

@@ -15,13 +15,13 @@ const FAR: f64 = 0.6;
 /// A loop seen from afar.
 struct Outline {
     area: Point,
-    centre: Point,
+    center: Point,
 }
 
 impl Outline {
     fn of(vertices: &[u32], positions: &[Point]) -> Self {
         let sum = vertices.iter().fold([0.0; 3], |sum, &v| add(sum, positions[v as usize]));
-        Self { area: loop_area_vector(vertices, positions), centre: scale(sum, 1.0 / vertices.len().max(1) as f64) }
+        Self { area: loop_area_vector(vertices, positions), center: scale(sum, 1.0 / vertices.len().max(1) as f64) }
     }
 }
 
@@ -29,7 +29,7 @@ impl Outline {
 /// vertex the hole is a ring around the sheet, pinched there, and both loops become one.
 ///
 /// `components` is the component of every hole. A sheet is in a hole of another component if its border runs the other way
-/// around, lies near the hole's mean plane, and its centre is inside the hole in the projection onto that plane.
+/// around, lies near the hole's mean plane, and its center is inside the hole in the projection onto that plane.
 pub(super) fn settle_islands(holes: &mut Vec<Hole>, components: &mut Vec<Option<usize>>, positions: &[Point]) {
     let outlines: Vec<Outline> = holes.iter().map(|hole| Outline::of(&hole.vertices, positions)).collect();
     let mut joined = vec![false; holes.len()];
@@ -45,8 +45,8 @@ pub(super) fn settle_islands(holes: &mut Vec<Hole>, components: &mut Vec<Option<
             components[i] != components[j]
                 && dot(island.area, normal) < -SPECK * size
                 && norm(island.area) < size
-                && dot(sub(island.centre, hole.centre), normal).abs() < FAR * size.sqrt()
-                && encloses(&rim, positions, normal, island.centre)
+                && dot(sub(island.center, hole.center), normal).abs() < FAR * size.sqrt()
+                && encloses(&rim, positions, normal, island.center)
         };
         let islands: Vec<usize> =
             (0..holes.len()).filter(|&j| holes[j].is_outer_border && !joined[j] && holds(j)).collect();

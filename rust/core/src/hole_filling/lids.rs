@@ -39,29 +39,29 @@ const LEAST_COSINE: f64 = 0.05;
 /// The mean plane of a rim.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Plane {
-    pub centre: Point,
+    pub center: Point,
     /// To the side that a patch shows.
     pub normal: Point,
 }
 
 impl Plane {
-    /// Through the centre of gravity of the polygon's edges, along its area vector.
+    /// Through the center of gravity of the polygon's edges, along its area vector.
     fn of(points: &[Point]) -> Self {
         let n = points.len();
-        let (mut centre, mut area, mut total) = ([0.0; 3], [0.0; 3], 0.0);
+        let (mut center, mut area, mut total) = ([0.0; 3], [0.0; 3], 0.0);
         for (i, &a) in points.iter().enumerate() {
             let b = points[(i + 1) % n];
             let length = distance(a, b);
-            centre = add(centre, scale(add(sub(a, points[0]), sub(b, points[0])), 0.5 * length));
+            center = add(center, scale(add(sub(a, points[0]), sub(b, points[0])), 0.5 * length));
             area = add(area, cross(sub(a, points[0]), sub(b, points[0])));
             total += length;
         }
-        let centre = add(points[0], scale(centre, 1.0 / total.max(f64::MIN_POSITIVE)));
-        Self { centre, normal: unit(area) }
+        let center = add(points[0], scale(center, 1.0 / total.max(f64::MIN_POSITIVE)));
+        Self { center, normal: unit(area) }
     }
 
     fn height(&self, p: Point) -> f64 {
-        dot(sub(p, self.centre), self.normal)
+        dot(sub(p, self.center), self.normal)
     }
 
     fn project(&self, p: Point) -> Point {

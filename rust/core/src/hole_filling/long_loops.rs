@@ -84,10 +84,10 @@ fn add_part(
 /// Adds a fan around the mean of the part's vertices.
 fn add_fan(polygon: &Polygon, places: &[usize], result: &mut Triangulation) {
     let sum = places.iter().fold([0.0; 3], |sum, &i| add(sum, polygon.points[i]));
-    let centre = (polygon.len() + result.extra.len()) as u32;
+    let center = (polygon.len() + result.extra.len()) as u32;
     result.extra.push(scale(sum, 1.0 / places.len() as f64));
     let ends = places.iter().zip(places.iter().cycle().skip(1));
-    result.faces.extend(ends.map(|(&a, &b)| [a as u32, b as u32, centre]));
+    result.faces.extend(ends.map(|(&a, &b)| [a as u32, b as u32, center]));
 }
 
 /// [`COARSE`] places of the polygon, equally spaced by a measure that is half length and half turning angle, so that

@@ -8,7 +8,7 @@ use crate::remesh::guard::{self, SLIVER};
 use crate::remesh::{budget, EditableMesh};
 use crate::{Progress, Result};
 
-/// A face is split if its centre is this much farther from each corner than the lengths wanted there: Liepa's density
+/// A face is split if its center is this much farther from each corner than the lengths wanted there: Liepa's density
 /// factor.
 const DENSITY: f64 = SQRT_2;
 
@@ -25,7 +25,7 @@ const ANGLE_TOLERANCE: f64 = 1e-9;
 /// Edges whose faces turn by more than this (60 degrees) are the patch's shape, not its mesh, and are not flipped.
 const FOLD_COSINE: f64 = 0.5;
 
-/// Inserts vertices at the centres of faces that are too large and flips edges to be Delaunay, in turns, until no face is.
+/// Inserts vertices at the centers of faces that are too large and flips edges to be Delaunay, in turns, until no face is.
 ///
 /// `sizes` is the length wanted at every vertex; `size_between` gives that at a new one from those at the corners of its face
 /// and its distances from them. The mesh is to have about `most` faces at most; where lengths are wanted that coordinates cannot
@@ -47,11 +47,11 @@ pub(super) fn refine(
         for f in 0..mesh.n_faces() as u32 {
             let Some(face) = mesh.face(f) else { continue };
             let corners = mesh.corners(face);
-            let centre = centroid(corners);
-            let far = corners.map(|corner| distance(corner, centre));
+            let center = centroid(corners);
+            let far = corners.map(|corner| distance(corner, center));
             let size = size_between(face.map(|v| sizes[v as usize]), far);
             let is_far = |i: usize| DENSITY * far[i] > size && DENSITY * far[i] > sizes[face[i] as usize];
-            if mesh.n_faces() < limit && (0..3).all(is_far) && mesh.split_face(f, centre).is_some() {
+            if mesh.n_faces() < limit && (0..3).all(is_far) && mesh.split_face(f, center).is_some() {
                 sizes.push(size);
                 split_any = true;
             }

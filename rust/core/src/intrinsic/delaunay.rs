@@ -16,7 +16,7 @@ const FLIPS_PER_FACE: usize = 100;
 ///
 /// Edges without a twin stay. An edge stays too, Delaunay or not, if its flip would make a degenerate triangle
 /// ([`is_degenerate`]); mollified lengths make that rare. Faces may come out with a repeated vertex or glued to a
-/// neighbour along two edges; the connectivity carries its twins, so that is no harm.
+/// neighbor along two edges; the connectivity carries its twins, so that is no harm.
 #[must_use]
 pub fn delaunay_flips(connectivity: &Connectivity, lengths: &[[f64; 3]]) -> (Connectivity, Vec<[f64; 3]>, usize) {
     delaunay_flips_carrying(connectivity, lengths, &mut [])

@@ -43,14 +43,14 @@ struct Column {
     enough: f64,
 }
 
-/// Minimises every column between its own bounds `[least, most]`.
+/// Minimizes every column between its own bounds `[least, most]`.
 ///
 /// `x` is the start and the result, `descent` is `b − A x` at the start, 0 in rows that are not to move; `multiply` replaces
 /// columns by `A` times them and is only given columns that are 0 in those rows. The objective never rises.
 ///
 /// # Errors
 /// Those of `multiply`.
-pub fn minimise(
+pub fn minimize(
     x: &mut Columns,
     descent: &Columns,
     bounds: &[[f64; 2]],
@@ -244,7 +244,7 @@ mod tests {
             let mut x = Columns::zeros(n, 2);
             let descent = Columns { data: b.clone(), ..x };
             let limits = Limits { products: 2000, fall: 1e-9 };
-            minimise(&mut x, &descent, &bounds, limits, |columns| {
+            minimize(&mut x, &descent, &bounds, limits, |columns| {
                 (0..2).for_each(|c| {
                     let product = times(&a, columns.column(c));
                     columns.column_mut(c).copy_from_slice(&product);
@@ -273,7 +273,7 @@ mod tests {
         let mut x = Columns::from_column(vec![7.0, 0.0]);
         let descent = Columns::from_column(vec![0.0, 1.0]);
         let limits = Limits { products: 10, fall: 1e-9 };
-        minimise(&mut x, &descent, &[[0.0, 0.25]], limits, |columns| {
+        minimize(&mut x, &descent, &[[0.0, 0.25]], limits, |columns| {
             assert!(columns.data[0] == 0.0);
             Ok(())
         })

@@ -1,6 +1,6 @@
-//! Sparse Cholesky factorisation: the one file that names the library that analyses.
+//! Sparse Cholesky factorization: the one file that names the library that analyzes.
 //!
-//! Symbolic analysis once per pattern, numeric factorisation as often as the values change, solves for several right
+//! Symbolic analysis once per pattern, numeric factorization as often as the values change, solves for several right
 //! sides at once. Results do not depend on the number of threads.
 
 use faer::perm::PermRef;
@@ -19,15 +19,15 @@ use crate::linear::subtrees::Subtrees;
 use crate::linear::triangular::{Panels, Values, LANES};
 use crate::memory;
 
-/// Neighbouring supernodes of at most so many columns are joined while less than this part of the result is zero. The
-/// library's own thresholds make one solve a tenth slower and the factorisation no faster (measured on 10k and 58k rows).
+/// Neighboring supernodes of at most so many columns are joined while less than this part of the result is zero. The
+/// library's own thresholds make one solve a tenth slower and the factorization no faster (measured on 10k and 58k rows).
 const RELAXATION: &[(usize, f64)] = &[(8, 0.3), (16, 0.1)];
 
 /// From this number of rows on nested dissection comes first. On matrices of this kind it leaves 19 % fewer entries than minimum
-/// degree at 58k and at 200k rows, and none at 9k, and costs half a factorisation (measured).
+/// degree at 58k and at 200k rows, and none at 9k, and costs half a factorization (measured).
 const DISSECTED_FROM: usize = 25_000;
 
-/// A factorisation whose pattern is analysed once.
+/// A factorization whose pattern is analyzed once.
 pub struct Cholesky {
     pattern: LowerPattern,
     panels: Panels,
@@ -39,7 +39,7 @@ pub struct Cholesky {
     factor: Vec<f64>,
     reciprocals: Vec<f64>,
     space: Vec<f64>,
-    n_factorisations: usize,
+    n_factorizations: usize,
 }
 
 impl std::fmt::Debug for Cholesky {
@@ -49,13 +49,13 @@ impl std::fmt::Debug for Cholesky {
 }
 
 impl Cholesky {
-    /// Orders (approximate minimum degree, below nested dissection for large ones) and analyses the pattern, for a factor and
+    /// Orders (approximate minimum degree, below nested dissection for large ones) and analyzes the pattern, for a factor and
     /// waiting updates of at most `memory_limit` bytes.
     ///
     /// # Errors
     /// [`SolveError::Memory`] when the factor is larger than that, or than what the system gives.
-    pub fn analyse(pattern: LowerPattern, memory_limit: Option<usize>) -> Result<Self, SolveError> {
-        let failed = |e: &dyn std::fmt::Debug| SolveError::Factorisation { reason: format!("{e:?}") };
+    pub fn analyze(pattern: LowerPattern, memory_limit: Option<usize>) -> Result<Self, SolveError> {
+        let failed = |e: &dyn std::fmt::Debug| SolveError::Factorization { reason: format!("{e:?}") };
         let view = SymbolicSparseColMatRef::new_checked(pattern.n, pattern.n, &pattern.starts, None, &pattern.rows);
         let parameters = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
@@ -97,20 +97,20 @@ impl Cholesky {
             factor,
             reciprocals: Vec::new(),
             space: Vec::new(),
-            n_factorisations: 0,
+            n_factorizations: 0,
         })
     }
 
-    /// The pattern that was analysed.
+    /// The pattern that was analyzed.
     #[must_use]
     pub fn pattern(&self) -> &LowerPattern {
         &self.pattern
     }
 
-    /// Numeric factorisations made so far.
+    /// Numeric factorizations made so far.
     #[must_use]
-    pub fn n_factorisations(&self) -> usize {
-        self.n_factorisations
+    pub fn n_factorizations(&self) -> usize {
+        self.n_factorizations
     }
 
     /// Entries of the factor.
@@ -122,20 +122,20 @@ impl Cholesky {
     /// Factors the matrix with these values (one per entry of the pattern).
     ///
     /// # Errors
-    /// [`SolveError::Factorisation`] when the matrix is not positive definite.
-    pub fn factorise(&mut self, values: &[f64]) -> Result<(), SolveError> {
-        self.n_factorisations += 1;
-        multifrontal::factorise(&self.tree, &self.panels, values, &mut self.factor, &self.workspace).ok_or_else(
+    /// [`SolveError::Factorization`] when the matrix is not positive definite.
+    pub fn factorize(&mut self, values: &[f64]) -> Result<(), SolveError> {
+        self.n_factorizations += 1;
+        multifrontal::factorize(&self.tree, &self.panels, values, &mut self.factor, &self.workspace).ok_or_else(
             || {
                 let reason = "the matrix is not positive definite; fix more vertices or raise the fidelity".into();
-                SolveError::Factorisation { reason }
+                SolveError::Factorization { reason }
             },
         )?;
         self.panels.reciprocals(&self.factor, &mut self.reciprocals);
         Ok(())
     }
 
-    /// Solves in place for `K` right sides, with the last factorisation.
+    /// Solves in place for `K` right sides, with the last factorization.
     pub fn solve<const K: usize>(&mut self, right: &mut [[f64; K]]) {
         self.solve_columns::<K, K>(right);
     }
@@ -222,8 +222,8 @@ mod tests {
         let (pattern, values) = matrix(n, band);
         let x: Vec<[f64; K]> = (0..n).map(|i| std::array::from_fn(|c| (i as f64 + 0.3 * c as f64).cos())).collect();
         let right = times(&pattern, &values, &x);
-        let mut cholesky = Cholesky::analyse(pattern, None).unwrap();
-        cholesky.factorise(&values).unwrap();
+        let mut cholesky = Cholesky::analyze(pattern, None).unwrap();
+        cholesky.factorize(&values).unwrap();
         let mut solution = right.clone();
         cholesky.solve_columns::<A, K>(&mut solution);
         for i in 0..n {
@@ -249,22 +249,22 @@ mod tests {
     #[test]
     fn refuses_a_factor_that_is_larger_than_the_limit_and_says_how_large() {
         let (pattern, _) = matrix(200, 199);
-        let error = Cholesky::analyse(pattern.clone(), Some(10_000)).unwrap_err();
+        let error = Cholesky::analyze(pattern.clone(), Some(10_000)).unwrap_err();
         let needed = match error {
             SolveError::Memory { needed, limit: Some(10_000) } => needed,
             _ => 0,
         };
         assert!(needed >= 8 * 200 * 201 / 2, "{needed}");
         assert!(error.to_string().contains("the limit of 0.01 MB; raise memory_limit"), "{error}");
-        assert!(Cholesky::analyse(pattern, Some(needed)).is_ok());
+        assert!(Cholesky::analyze(pattern, Some(needed)).is_ok());
     }
 
     #[test]
     fn refuses_a_matrix_that_is_not_positive_definite_and_recovers() {
         let (pattern, values) = matrix(20, 4);
-        let mut cholesky = Cholesky::analyse(pattern.clone(), None).unwrap();
-        assert!(cholesky.factorise(&values.iter().map(|v| -v).collect::<Vec<_>>()).is_err());
-        cholesky.factorise(&values).unwrap();
+        let mut cholesky = Cholesky::analyze(pattern.clone(), None).unwrap();
+        assert!(cholesky.factorize(&values.iter().map(|v| -v).collect::<Vec<_>>()).is_err());
+        cholesky.factorize(&values).unwrap();
         let mut right = times(&pattern, &values, &[[1.0]; 20]);
         cholesky.solve(&mut right);
         assert!(right.iter().all(|[x]| (x - 1.0).abs() < 1e-13));

@@ -1,7 +1,7 @@
-//! Matrices, and nothing of what they stand for: patterns, orderings, one sparse Cholesky factorisation, iterations that need
+//! Matrices, and nothing of what they stand for: patterns, orderings, one sparse Cholesky factorization, iterations that need
 //! products only.
 //!
-//! [`cholesky`] analyses a [`pattern`] in an [`ordering`]; `multifrontal` factors; `triangular` and `subtrees` solve.
+//! [`cholesky`] analyzes a [`pattern`] in an [`ordering`]; `multifrontal` factors; `triangular` and `subtrees` solve.
 
 pub mod bounded;
 pub mod cholesky;

@@ -3,7 +3,7 @@
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, MatRef, Side};
 
-/// The factorisation of a small dense matrix.
+/// The factorization of a small dense matrix.
 #[derive(Debug)]
 pub struct DenseCholesky {
     factor: Llt<f64>,

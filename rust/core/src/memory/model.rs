@@ -2,7 +2,7 @@
 //!
 //! Measured by `make bench-memory` on grids with noise of 10 thousand to a million vertices, each call in a process of its own;
 //! the table with what was measured and what is said here is in `docs/reliability.md`. A mesh of another shape has another
-//! factor: on a strip it is smaller than said, so that solvers ask again with the exact size once they have analysed the matrix.
+//! factor: on a strip it is smaller than said, so that solvers ask again with the exact size once they have analyzed the matrix.
 
 /// A tool, or any other call that takes memory in proportion to the mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -109,7 +109,7 @@ impl Tool {
     }
 }
 
-/// Bytes that Clarabel takes for a face and for a column of values, with the factorisation of its larger matrix.
+/// Bytes that Clarabel takes for a face and for a column of values, with the factorization of its larger matrix.
 pub(super) const CLARABEL: Cost = Cost { face: 4600.0, logarithmic: 100.0, column: 7200.0 };
 
 /// Bytes for a vertex without faces, in every array that has an entry for each vertex: where a linear system is solved, and

@@ -1,14 +1,14 @@
-//! Making neighbouring faces agree on which side is outside.
+//! Making neighboring faces agree on which side is outside.
 
 use std::collections::VecDeque;
 
 use crate::mesh::{Connectivity, EdgeKind};
 
-/// For every face whether it is turned against the faces around it, so that turning these over makes neighbours agree.
+/// For every face whether it is turned against the faces around it, so that turning these over makes neighbors agree.
 ///
 /// Within each edge-connected component the smaller number of faces counts as turned, of two equal numbers those that do not
 /// agree with its first face. Across edges with three faces or more nothing is compared. On a surface with one side only, as a
-/// Möbius strip, some neighbours disagree after that as before.
+/// Möbius strip, some neighbors disagree after that as before.
 #[must_use]
 pub fn flipped_faces(connectivity: &Connectivity) -> Vec<bool> {
     let mut flipped = vec![false; connectivity.n_faces()];
@@ -102,7 +102,7 @@ mod tests {
 
     #[test]
     fn a_moebius_strip_disagrees_somewhere_however_it_is_turned() {
-        // Five vertices, five triangles, each neighbour of the next.
+        // Five vertices, five triangles, each neighbor of the next.
         let faces: Vec<[u32; 3]> = (0..5).map(|i| [i, (i + 1) % 5, (i + 2) % 5]).collect();
         let (oriented, _) = orient(faces, 5).unwrap();
         assert!(Connectivity::new(oriented, 5).unwrap().has_any(&[EdgeKind::Inconsistent]));

@@ -106,7 +106,7 @@ fn rounding(points: impl Iterator<Item = Point>) -> f64 {
 fn unite_near(border: &[(u32, f64)], positions: &[Point], tolerance: f64, partition: &mut Partition) -> bool {
     let origin = positions[border[0].0 as usize];
     let width = tolerance.max(f64::MIN_POSITIVE);
-    // Cells as wide as the tolerance: what is near lies in the next one at most. Beyond 2^53 of them cells are not neighbours, but
+    // Cells as wide as the tolerance: what is near lies in the next one at most. Beyond 2^53 of them cells are not neighbors, but
     // then coordinates are not told apart either.
     let cell = |v: u32| sub(positions[v as usize], origin).map(|x| (x / width).floor());
     let key = |cell: Point| cell.map(|x| (x + 0.0).to_bits());

@@ -1,4 +1,4 @@
-//! The mesh that tools compute on: neighbouring faces agree on what is outside, the sides of seams are joined, and the origin is
+//! The mesh that tools compute on: neighboring faces agree on what is outside, the sides of seams are joined, and the origin is
 //! near. What comes out is given back for the mesh as it was.
 
 use std::borrow::Cow;

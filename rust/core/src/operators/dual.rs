@@ -1,11 +1,11 @@
-//! Dual edges: from the centre of a face to the centre of its neighbour, unfolded into the face's plane.
+//! Dual edges: from the center of a face to the center of its neighbor, unfolded into the face's plane.
 
 use crate::operators::hinge::Hinge;
 use crate::operators::Dual;
 
-/// Two circumcentres coincide when the cotangents of the angles opposite their edge cancel to this part of their size;
+/// Two circumcenters coincide when the cotangents of the angles opposite their edge cancel to this part of their size;
 /// rounding leaves some 1e-15 on squares split along the diagonal, more on slivers.
-const COINCIDENT_CIRCUMCENTRES: f64 = 1e-10;
+const COINCIDENT_CIRCUMCENTERS: f64 = 1e-10;
 
 /// A dual edge in the frame of its [`Hinge`]: x along the halfedge, y into the face.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,17 +14,17 @@ pub(crate) struct DualEdge(pub [f64; 2]);
 impl DualEdge {
     /// The dual edge of `hinge`, or nothing if it has no length.
     pub(crate) fn new(dual: Dual, hinge: &Hinge) -> Option<Self> {
-        let ([s_f, h_f], [s_g, h_g]) = (hinge.face, hinge.neighbour);
+        let ([s_f, h_f], [s_g, h_g]) = (hinge.face, hinge.neighbor);
         let barycentric = Self([(s_g - s_f) / 3.0, -(h_f + h_g) / 3.0]);
         match dual {
             Dual::Barycentric => Some(barycentric),
             Dual::Circumcentric | Dual::CircumcentricOrBarycentric => {
-                // The circumcentre is cot(angle) · length / 2 above the edge's midpoint.
+                // The circumcenter is cot(angle) · length / 2 above the edge's midpoint.
                 let cotangent = |[s, h]: [f64; 2]| (h - s * (hinge.length - s) / h) / hinge.length;
-                let (face, neighbour) = (cotangent([s_f, h_f]), cotangent([s_g, h_g]));
-                let sum = face + neighbour;
-                let size = 1.0 + face.abs() + neighbour.abs();
-                if sum.abs() > COINCIDENT_CIRCUMCENTRES * size {
+                let (face, neighbor) = (cotangent([s_f, h_f]), cotangent([s_g, h_g]));
+                let sum = face + neighbor;
+                let size = 1.0 + face.abs() + neighbor.abs();
+                if sum.abs() > COINCIDENT_CIRCUMCENTERS * size {
                     Some(Self([0.0, -0.5 * hinge.length * sum]))
                 } else {
                     (dual == Dual::CircumcentricOrBarycentric).then_some(barycentric)

@@ -19,7 +19,7 @@ pub fn edge_laplacian_rows(mesh: &Mesh) -> (BlockRows, Vec<[usize; 2]>) {
     for h in connectivity.edges().filter(|h| areas[h / 3] > 0.0) {
         let Some(twin) = connectivity.twin(h).filter(|twin| areas[twin / 3] > 0.0) else { continue };
         let hinge = Hinge::new(lengths, &areas, h, twin);
-        let ([_, h_f], [_, h_g]) = (hinge.face, hinge.neighbour);
+        let ([_, h_f], [_, h_g]) = (hinge.face, hinge.neighbor);
         let scale = -h_f * h_g / (h_f + h_g);
         let vertices =
             [connectivity.tail(h), connectivity.head(h), connectivity.opposite(h), connectivity.opposite(twin)];

@@ -11,7 +11,7 @@ use crate::operators::{
 use crate::unit::Unit;
 use crate::{Error, Result};
 
-/// What to minimise.
+/// What to minimize.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Energy {
     /// `E_H = Σ_f A_f ‖H_f u‖` (Rowe et al. 2024, eq. (18)): sharp ridges, intrinsic.
@@ -46,7 +46,7 @@ impl Energy {
         Self::ALL.iter().find(|(_, energy)| *energy == self).map_or("", |(name, _)| name)
     }
 
-    /// Whether it is a sum of squares, minimised by one linear system.
+    /// Whether it is a sum of squares, minimized by one linear system.
     #[must_use]
     pub fn is_quadratic(self) -> bool {
         matches!(self, Self::L2Hessian | Self::L2CurvedHessian | Self::L2Laplacian)

@@ -29,7 +29,7 @@ pub fn gradient(mesh: &Mesh) -> CsMat<f64> {
 }
 
 /// The hinge map `C` (Rowe et al. 2024, eqs. (15), (20) and (29)): `6m × 2m`, rows `2h, 2h + 1` the difference across halfedge `h` of the
-/// neighbour's gradient, turned into the frame of the face, and the face's own. Edges without a usable twin have zero rows.
+/// neighbor's gradient, turned into the frame of the face, and the face's own. Edges without a usable twin have zero rows.
 #[must_use]
 pub fn hinge_map(mesh: &Mesh) -> CsMat<f64> {
     let m = mesh.connectivity().n_faces();
@@ -55,7 +55,7 @@ pub fn hinge_map(mesh: &Mesh) -> CsMat<f64> {
 /// `Σ_i (1/l*_i) (c_i · t_i) t_i ⊗ t_i` for the differences `c` of [`hinge_map`] and the dual edges `l* t`.
 ///
 /// # Errors
-/// [`MeshError::ZeroDualEdge`] with circumcentric duals where two circumcentres coincide.
+/// [`MeshError::ZeroDualEdge`] with circumcentric duals where two circumcenters coincide.
 pub fn tensor_product(mesh: &Mesh, dual: Dual) -> Result<CsMat<f64>, MeshError> {
     let m = mesh.connectivity().n_faces();
     let areas = usable_areas(mesh.edge_lengths());
@@ -63,7 +63,7 @@ pub fn tensor_product(mesh: &Mesh, dual: Dual) -> Result<CsMat<f64>, MeshError> 
     for (h, twin) in hinges(mesh, &areas) {
         let f = h / 3;
         let edge = DualEdge::new(dual, &Hinge::new(mesh.edge_lengths(), &areas, h, twin))
-            .ok_or(MeshError::ZeroDualEdge { face: f, neighbour: twin / 3 })?
+            .ok_or(MeshError::ZeroDualEdge { face: f, neighbor: twin / 3 })?
             .turned(directions(mesh.edge_lengths()[f], areas[f])[h % 3]);
         let length = edge[0].hypot(edge[1]);
         let t = edge.map(|e| e / length);

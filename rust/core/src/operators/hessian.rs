@@ -2,12 +2,12 @@
 //!
 //! Across an edge of length `l` the gradient of a continuous function jumps only along the edge's normal. With `n` the
 //! unit normal into face `f`, `(s_f, h_f)` the foot and height of the opposite corner and `(s_g, h_g)` those of the
-//! neighbour unfolded into the plane of `f` ([`triangle::apex`]), that jump is a number times `n`,
+//! neighbor unfolded into the plane of `f` ([`triangle::apex`]), that jump is a number times `n`,
 //!
 //! `δ = n [((1 − s_f/l)/h_f + (1 − s_g/l)/h_g) u_tail + (s_f/(l h_f) + s_g/(l h_g)) u_head − u_f/h_f − u_g/h_g]`,
 //!
 //! so the composition of the gradient (28), the hinge map (29) and the tensor product needs neither a basis for the
-//! neighbour nor a rotation. The matrices one by one are in [`super::factors`].
+//! neighbor nor a rotation. The matrices one by one are in [`super::factors`].
 
 use crate::block_rows::{BlockRows, BLOCK};
 use crate::error::{Error, MeshError};
@@ -43,7 +43,7 @@ impl HessianPattern {
         };
         pattern.starts.push(0);
         for (f, &corners) in connectivity.faces().iter().enumerate() {
-            // A missing neighbour repeats a corner: no column of its own, and its slot is never written.
+            // A missing neighbor repeats a corner: no column of its own, and its slot is never written.
             let mut stencil = [corners[0], corners[1], corners[2], corners[0], corners[0], corners[0]];
             for i in 0..3 {
                 if let Some(twin) = connectivity.twin(3 * f + i) {
@@ -73,10 +73,10 @@ impl HessianPattern {
     /// The matrix for the given edge lengths: rows `xx, yy, √2·xy` of every face's Hessian in the frame of
     /// [`triangle::layout`], times its area.
     ///
-    /// Faces that are degenerate ([`triangle::is_degenerate`]) have zero rows and count as missing for their neighbours.
+    /// Faces that are degenerate ([`triangle::is_degenerate`]) have zero rows and count as missing for their neighbors.
     ///
     /// # Errors
-    /// [`MeshError::ZeroDualEdge`] with circumcentric duals where two circumcentres coincide;
+    /// [`MeshError::ZeroDualEdge`] with circumcentric duals where two circumcenters coincide;
     /// [`MeshError::LengthRows`] if `lengths` has not one row a face of this pattern's connectivity.
     pub fn assemble(
         &self,
@@ -140,7 +140,7 @@ fn face_block(
     for (i, direction) in directions(lengths[f], areas[f]).into_iter().enumerate() {
         let Some(twin) = connectivity.twin(3 * f + i).filter(|twin| areas[twin / 3] > 0.0) else { continue };
         let hinge = Hinge::new(lengths, areas, 3 * f + i, twin);
-        let edge = DualEdge::new(dual, &hinge).ok_or(MeshError::ZeroDualEdge { face: f, neighbour: twin / 3 })?;
+        let edge = DualEdge::new(dual, &hinge).ok_or(MeshError::ZeroDualEdge { face: f, neighbor: twin / 3 })?;
         let tensor = edge.tensor(direction, areas[f]);
         for (place, coefficient) in [(i + 1) % 3, (i + 2) % 3, i, i + 3].into_iter().zip(hinge.jump()) {
             for (value, t) in stencil[place].iter_mut().zip(tensor) {
@@ -155,7 +155,7 @@ fn face_block(
 /// in the frame of eq. (28).
 ///
 /// # Errors
-/// [`MeshError::ZeroDualEdge`] with circumcentric duals where two circumcentres coincide.
+/// [`MeshError::ZeroDualEdge`] with circumcentric duals where two circumcenters coincide.
 pub fn hessian(mesh: &Mesh, dual: Dual) -> Result<sprs::CsMat<f64>, Error> {
     let rows = assembled(mesh.measured(mesh.unit())?.as_ref(), dual)?;
     let n_entries = 4 * rows.columns.len();

@@ -21,8 +21,8 @@ pub(crate) struct Hinge {
     pub length: f64,
     /// Foot and height of the corner of `f` opposite the edge.
     pub face: [f64; 2],
-    /// Foot and height of the neighbour's opposite corner; the height counts away from `f`.
-    pub neighbour: [f64; 2],
+    /// Foot and height of the neighbor's opposite corner; the height counts away from `f`.
+    pub neighbor: [f64; 2],
 }
 
 impl Hinge {
@@ -32,15 +32,15 @@ impl Hinge {
         let length = lengths[f][h % 3];
         let [foot, height] = triangle::apex(lengths[g], twin % 3, areas[g]);
         // The twin runs the other way.
-        Self { length, face: triangle::apex(lengths[f], h % 3, areas[f]), neighbour: [length - foot, height] }
+        Self { length, face: triangle::apex(lengths[f], h % 3, areas[f]), neighbor: [length - foot, height] }
     }
 
-    /// The jump of the gradient, neighbour less face, along the normal into `f`: the coefficients of the values at the
-    /// halfedge's tail and head, at the opposite corner of `f` and at that of the neighbour.
+    /// The jump of the gradient, neighbor less face, along the normal into `f`: the coefficients of the values at the
+    /// halfedge's tail and head, at the opposite corner of `f` and at that of the neighbor.
     pub(crate) fn jump(&self) -> [f64; 4] {
-        let ([s_f, h_f], [s_g, h_g]) = (self.face, self.neighbour);
-        let (face, neighbour) = (1.0 / h_f, 1.0 / h_g);
-        let head = (s_f * face + s_g * neighbour) / self.length;
-        [face + neighbour - head, head, -face, -neighbour]
+        let ([s_f, h_f], [s_g, h_g]) = (self.face, self.neighbor);
+        let (face, neighbor) = (1.0 / h_f, 1.0 / h_g);
+        let head = (s_f * face + s_g * neighbor) / self.length;
+        [face + neighbor - head, head, -face, -neighbor]
     }
 }

@@ -20,7 +20,7 @@ pub fn cotangent_laplacian(connectivity: &Connectivity, lengths: &[[f64; 3]]) ->
         }
     };
     let weights: Vec<[f64; 3]> = lengths.iter().map(halves).collect();
-    let mut neighbours = Buckets::new(n, |visit| {
+    let mut neighbors = Buckets::new(n, |visit| {
         for (h, &weight) in weights.as_flattened().iter().enumerate() {
             let (tail, head) = (connectivity.tail(h), connectivity.head(h));
             visit(tail as usize, (head, weight));
@@ -29,10 +29,10 @@ pub fn cotangent_laplacian(connectivity: &Connectivity, lengths: &[[f64; 3]]) ->
     });
     let mut indptr = Vec::with_capacity(n + 1);
     let (mut indices, mut data) =
-        (Vec::with_capacity(neighbours.len() / 2 + n), Vec::with_capacity(neighbours.len() / 2 + n));
+        (Vec::with_capacity(neighbors.len() / 2 + n), Vec::with_capacity(neighbors.len() / 2 + n));
     indptr.push(0);
     for v in 0..n {
-        let row = neighbours.of_mut(v);
+        let row = neighbors.of_mut(v);
         // Stable, so that both rows of an edge add its weights in the same order: symmetric to the last bit.
         row.sort_by_key(|&(column, _)| column);
         let diagonal: f64 = row.iter().filter(|&&(column, _)| column as usize != v).map(|(_, weight)| weight).sum();

@@ -34,7 +34,7 @@ pub fn mixed_hessian_rows(mesh: &Mesh) -> Result<(BlockRows, Vec<u32>), MeshErro
     Ok((rows, vertices))
 }
 
-/// Rows whose squares sum to `∫ ‖H_u‖²` (Rowe et al. 2024, eq. (1), right, twice), discretised as in Stein et al. 2018b: three
+/// Rows whose squares sum to `∫ ‖H_u‖²` (Rowe et al. 2024, eq. (1), right, twice), discretized as in Stein et al. 2018b: three
 /// blocks of three at every inner vertex, divided by the root of its [`voronoi_mass`]; and the vertex of each block.
 ///
 /// # Errors

@@ -25,14 +25,14 @@ pub use mass::{mass_of, voronoi_mass};
 pub use mixed_hessian::{mixed_hessian_rows, mixed_hessian_squares};
 pub use mollification::{mollify, MOLLIFICATION_MARGIN};
 
-/// Which centres the dual edges join.
+/// Which centers the dual edges join.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Dual {
-    /// Barycentres: the paper's choice, defined on every mesh.
+    /// Barycenters: the paper's choice, defined on every mesh.
     #[default]
     Barycentric,
-    /// Circumcentres: the dual edge is normal to its edge, but may have no length, which is an error.
+    /// Circumcenters: the dual edge is normal to its edge, but may have no length, which is an error.
     Circumcentric,
-    /// Circumcentres, but barycentres for the dual edges that would have no length.
+    /// Circumcenters, but barycenters for the dual edges that would have no length.
     CircumcentricOrBarycentric,
 }

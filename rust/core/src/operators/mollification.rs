@@ -2,7 +2,7 @@
 
 use crate::mesh::{triangle, Connectivity};
 
-/// The margin of the triangle inequality, in mean edge lengths: scans and modelled meshes keep their lengths (eleven were
+/// The margin of the triangle inequality, in mean edge lengths: scans and modeled meshes keep their lengths (eleven were
 /// measured, from fandisk to Nefertiti), and the entries of the Hessian of a mesh squashed to 1e-7 of its height fall from
 /// 1e7 to 1e4.
 pub const MOLLIFICATION_MARGIN: f64 = 1e-4;

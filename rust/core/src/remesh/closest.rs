@@ -40,15 +40,15 @@ impl ClosestPoint {
     /// The tree of `triangles`.
     #[must_use]
     pub fn new(triangles: Vec<[Point; 3]>) -> Self {
-        let centres: Vec<Point> = triangles.iter().map(|&t| centroid(t)).collect();
+        let centers: Vec<Point> = triangles.iter().map(|&t| centroid(t)).collect();
         let mut tree = Self { order: (0..triangles.len() as u32).collect(), triangles, nodes: Vec::new() };
         if !tree.triangles.is_empty() {
-            tree.build(0, tree.triangles.len(), &centres);
+            tree.build(0, tree.triangles.len(), &centers);
         }
         tree
     }
 
-    fn build(&mut self, start: usize, end: usize, centres: &[Point]) {
+    fn build(&mut self, start: usize, end: usize, centers: &[Point]) {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for corner in self.order[start..end].iter().flat_map(|&t| self.triangles[t as usize]) {
             for k in 0..3 {
@@ -66,12 +66,12 @@ impl ClosestPoint {
             if extent[0] >= extent[1] && extent[0] >= extent[2] { 0 } else { 1 + usize::from(extent[2] > extent[1]) };
         let middle = (end - start) / 2;
         self.order[start..end].select_nth_unstable_by(middle, |&a, &b| {
-            centres[a as usize][axis].total_cmp(&centres[b as usize][axis]).then(a.cmp(&b))
+            centers[a as usize][axis].total_cmp(&centers[b as usize][axis]).then(a.cmp(&b))
         });
-        self.build(start, start + middle, centres);
+        self.build(start, start + middle, centers);
         let second = self.nodes.len() as u32;
         (self.nodes[node].start, self.nodes[node].count) = (second, 0);
-        self.build(start + middle, end, centres);
+        self.build(start + middle, end, centers);
     }
 
     /// The point closest to `p` among the triangles that `accept` takes; `guess` is one that may be close. Of equally close

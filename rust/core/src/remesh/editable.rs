@@ -135,7 +135,7 @@ impl EditableMesh {
 
     /// The vertices joined to `v` by an edge, ascending.
     #[must_use]
-    pub fn neighbours(&self, v: u32) -> Vec<u32> {
+    pub fn neighbors(&self, v: u32) -> Vec<u32> {
         let mut found = Vec::with_capacity(2 * self.faces_of(v).len());
         found.extend(self.faces_of(v).iter().flat_map(|&f| self.faces[f as usize]).filter(|&w| w != v));
         found.sort_unstable();
@@ -161,7 +161,7 @@ impl EditableMesh {
     /// What lies at the vertices `a` and `b`.
     #[must_use]
     pub fn edge(&self, a: u32, b: u32) -> Edge {
-        // Of a hub with ten thousand faces and its neighbour, the neighbour's few are looked at.
+        // Of a hub with ten thousand faces and its neighbor, the neighbor's few are looked at.
         if self.faces_of(b).len() < self.faces_of(a).len() {
             return match self.edge_from(b, a) {
                 Edge::Interior(Wings { faces: [f, g], tips: [left, right] }) => {
@@ -328,7 +328,7 @@ impl EditableMesh {
             count <= 1 || count <= 3 && !self.is_border(tip)
         };
         !tips.iter().any(thin)
-            && self.neighbours(from).into_iter().all(|w| w == to || tips.contains(&w) || !self.is_taken(to, w))
+            && self.neighbors(from).into_iter().all(|w| w == to || tips.contains(&w) || !self.is_taken(to, w))
     }
 
     /// Collapses the edge into its end `to`, which moves to `position`; `from` is gone. Does nothing and returns false unless

@@ -1,4 +1,4 @@
-//! Flipping edges towards regular valences.
+//! Flipping edges toward regular valences.
 
 use std::f64::consts::FRAC_PI_3;
 
@@ -16,7 +16,7 @@ const WORTH: f64 = 1.1;
 
 /// Flips edges where that brings the valences of the four vertices closer to regular: 6 inside, on a border one more than
 /// the number of 60-degree triangles that fit there (4 on a straight one). Of two equal choices the better triangles.
-pub(crate) fn equalise_valences(remesher: &mut Remesher, progress: &Progress) {
+pub(crate) fn equalize_valences(remesher: &mut Remesher, progress: &Progress) {
     let targets = target_valences(remesher);
     for [a, b] in remesher.mesh.edges() {
         if progress.is_stopping() {

@@ -37,7 +37,7 @@ pub fn may_flip(mesh: &EditableMesh, a: u32, b: u32) -> bool {
 }
 
 /// Whether `v` may move to `position`: no face around it turns by more than [`TURNED`], none becomes a sliver that
-/// was none, and none comes to lie at more than a right angle to a neighbour if none did before.
+/// was none, and none comes to lie at more than a right angle to a neighbor if none did before.
 #[must_use]
 pub fn may_move(mesh: &EditableMesh, v: u32, position: Point) -> bool {
     keeps_shape(mesh, &[v], position)
@@ -70,18 +70,18 @@ fn keeps_shape(mesh: &EditableMesh, vertices: &[u32], position: Point) -> bool {
     least > HARDLY_TURNED || bend_after(mesh, vertices, position) >= bend_before(mesh, vertices).min(0.0)
 }
 
-/// The least cosine between the normals of neighbours anywhere, those beyond borders included.
+/// The least cosine between the normals of neighbors anywhere, those beyond borders included.
 #[must_use]
 pub fn worst_bend(mesh: &EditableMesh) -> f64 {
     least_cosine(mesh, 0..mesh.n_faces() as u32)
 }
 
-/// The least cosine between these faces and their neighbours.
+/// The least cosine between these faces and their neighbors.
 pub fn worst_bend_of(mesh: &EditableMesh, faces: impl Iterator<Item = u32>) -> f64 {
     least_cosine(mesh, faces)
 }
 
-/// The least cosine between neighbours among the faces around `vertices` and those next to them.
+/// The least cosine between neighbors among the faces around `vertices` and those next to them.
 fn bend_before(mesh: &EditableMesh, vertices: &[u32]) -> f64 {
     least_cosine(mesh, vertices.iter().flat_map(|&v| mesh.faces_of(v)).copied())
 }
@@ -127,9 +127,9 @@ fn bend_after(mesh: &EditableMesh, vertices: &[u32], position: Point) -> f64 {
     for (face, then, area) in &stay {
         for i in 0..3 {
             let (tail, head) = (then[i], then[(i + 1) % 3]);
-            let neighbour =
+            let neighbor =
                 stay.iter().find(|(_, other, _)| (0..3).any(|k| other[k] == head && other[(k + 1) % 3] == tail));
-            let across = neighbour.map(|&(_, _, area)| area).or_else(|| beyond(face[i], face[(i + 1) % 3]));
+            let across = neighbor.map(|&(_, _, area)| area).or_else(|| beyond(face[i], face[(i + 1) % 3]));
             if let Some(across) = across {
                 least = least.min(cosine(across, *area));
             }

@@ -8,7 +8,7 @@ use crate::progress::Report;
 use crate::remesh::budget;
 use crate::remesh::collapse::collapse_short_edges;
 use crate::remesh::curves::Keep;
-use crate::remesh::flips::equalise_valences;
+use crate::remesh::flips::equalize_valences;
 use crate::remesh::relax::relax_and_project;
 use crate::remesh::remesher::{Remesher, Surface};
 use crate::remesh::repair::remove_slivers;
@@ -54,8 +54,8 @@ pub struct Remeshed {
 
 /// Remeshes a surface with edges of about the same length and triangles close to equilateral, without moving it.
 ///
-/// Each round splits edges longer than 4/3 of the target, collapses those shorter than 4/5, flips edges towards valence 6,
-/// moves vertices tangentially to the centre of their neighbours and projects them back onto the input. Borders and feature
+/// Each round splits edges longer than 4/3 of the target, collapses those shorter than 4/5, flips edges toward valence 6,
+/// moves vertices tangentially to the center of their neighbors and projects them back onto the input. Borders and feature
 /// lines keep their course and their corners; non-manifold edges stay. No edit is made that folds the surface or
 /// makes a sliver; slivers that are left are removed at the end where possible. A face that names a vertex twice is dropped,
 /// and so are vertices without faces unless they are fixed.
@@ -137,7 +137,7 @@ pub(crate) fn run(remesher: &mut Remesher, iterations: usize, most: usize, progr
         let to_add = budget::faces_to_add(remesher.mesh.faces().map(wanted), most);
         split_long_edges(remesher, to_add, progress);
         collapse_short_edges(remesher, progress);
-        equalise_valences(remesher, progress);
+        equalize_valences(remesher, progress);
         relax_and_project(remesher, progress);
         progress.check()?;
         if progress.is_finishing() {

@@ -1,4 +1,4 @@
-//! Moving vertices along the surface towards their neighbours' centre, and back onto the surface.
+//! Moving vertices along the surface toward their neighbors' center, and back onto the surface.
 
 use rayon::prelude::*;
 
@@ -9,9 +9,9 @@ use crate::remesh::remesher::Remesher;
 use crate::shape_guard::PARTS_OF_A_MOVE;
 use crate::Progress;
 
-/// Moves every free vertex in its tangent plane to the centre of its neighbours, weighted by the area around them over that
+/// Moves every free vertex in its tangent plane to the center of its neighbors, weighted by the area around them over that
 /// wanted (Botsch and Kobbelt 2004, with their weights for a graded mesh), then to the closest point of the surface; a vertex
-/// on a curve to the middle between its neighbours on it, and to the closest point of the curve.
+/// on a curve to the middle between its neighbors on it, and to the closest point of the curve.
 pub(crate) fn relax_and_project(remesher: &mut Remesher, progress: &Progress) {
     let n = remesher.mesh.n_vertices() as u32;
     let weights: Vec<f64> = (0..n)
@@ -50,14 +50,14 @@ fn target(remesher: &Remesher, weights: &[f64], v: u32) -> Option<(Point, u32)> 
         Role::Fixed | Role::Pinched => None,
         Role::Curve(curve) => {
             let ends: Vec<u32> =
-                mesh.neighbours(v).into_iter().filter(|&w| remesher.curves.curve(v, w).is_some()).collect();
+                mesh.neighbors(v).into_iter().filter(|&w| remesher.curves.curve(v, w).is_some()).collect();
             let &[a, b] = ends.as_slice() else { return None };
             Some((remesher.curves.project(curve, between(mesh.position(a), mesh.position(b), 0.5)), near))
         }
         Role::Free => {
             let normal = unit(mesh.faces_of(v).iter().fold([0.0; 3], |sum, &f| add(sum, mesh.area_vector(f))));
             let (mut sum, mut total) = ([0.0; 3], 0.0);
-            for w in mesh.neighbours(v) {
+            for w in mesh.neighbors(v) {
                 let weight = weights[w as usize];
                 sum = add(sum, scale(sub(mesh.position(w), p), weight));
                 total += weight;

@@ -119,9 +119,9 @@ impl<'a> Remesher<'a> {
     /// times its target length. Returns whether it did.
     pub(crate) fn collapse(&mut self, a: u32, b: u32, longest: f64) -> bool {
         let Some((from, to, position)) = self.collapse_plan(a, b) else { return false };
-        let around = self.mesh.neighbours(from);
+        let around = self.mesh.neighbors(from);
         let too_long = |w: u32| distance(position, self.mesh.position(w)) > longest * self.sizing.target(to, w);
-        if around.iter().chain(&self.mesh.neighbours(to)).any(|&w| w != from && w != to && too_long(w)) {
+        if around.iter().chain(&self.mesh.neighbors(to)).any(|&w| w != from && w != to && too_long(w)) {
             return false;
         }
         let carried: Vec<(u32, u32)> = if self.roles[from as usize] == Role::Free {

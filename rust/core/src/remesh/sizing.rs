@@ -75,7 +75,7 @@ impl Sizing {
     /// [`Sizing::graded`] with first targets that grow from `length` at the locked edges.
     pub(crate) fn grown(length: f64, growth: f64, mesh: &EditableMesh, curves: &Curves) -> Self {
         let mut sizing = Self::graded(vec![length; mesh.n_vertices()], growth, mesh, curves);
-        let far = sizing.distances(mesh, &neighbours(mesh));
+        let far = sizing.distances(mesh, &neighbors(mesh));
         sizing.sizes.iter_mut().zip(far).for_each(|(size, far)| *size += growth * far);
         sizing
     }
@@ -98,12 +98,12 @@ impl Sizing {
 
     /// Spreads the sizes over the mesh as it is now.
     pub(crate) fn update(&mut self, mesh: &EditableMesh) {
-        let neighbours: Vec<Vec<u32>> = if self.uniform.is_none() || self.growth > 0.0 {
-            neighbours(mesh)
+        let neighbors: Vec<Vec<u32>> = if self.uniform.is_none() || self.growth > 0.0 {
+            neighbors(mesh)
         } else {
             vec![Vec::new(); mesh.n_vertices()]
         };
-        let far = self.distances(mesh, &neighbours);
+        let far = self.distances(mesh, &neighbors);
         let mut base: Vec<f64> = match self.uniform {
             Some(length) => vec![length; far.len()],
             None => {
@@ -124,7 +124,7 @@ impl Sizing {
             *size = anchor.unwrap_or(*size);
         }
         if self.uniform.is_none() {
-            self.spread(&mut base, &neighbours);
+            self.spread(&mut base, &neighbors);
         }
         self.sizes = base.iter().zip(&far).map(|(size, d)| size + self.growth * d).collect();
     }
@@ -135,18 +135,18 @@ impl Sizing {
         anchors.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], &x| [least.min(x), most.max(x)])
     }
 
-    /// Moves the sizes at vertices that are no anchors towards the mean of their neighbours'.
-    fn spread(&self, sizes: &mut [f64], neighbours: &[Vec<u32>]) {
+    /// Moves the sizes at vertices that are no anchors toward the mean of their neighbors'.
+    fn spread(&self, sizes: &mut [f64], neighbors: &[Vec<u32>]) {
         for _ in 0..SWEEPS {
-            for v in (0..sizes.len()).filter(|&v| self.anchors[v].is_none() && !neighbours[v].is_empty()) {
-                sizes[v] = neighbours[v].iter().map(|&w| sizes[w as usize]).sum::<f64>() / neighbours[v].len() as f64;
+            for v in (0..sizes.len()).filter(|&v| self.anchors[v].is_none() && !neighbors[v].is_empty()) {
+                sizes[v] = neighbors[v].iter().map(|&w| sizes[w as usize]).sum::<f64>() / neighbors[v].len() as f64;
             }
         }
     }
 
     /// The distance along edges from the nearest anchor (Dijkstra 1959); 0 everywhere if nothing grows.
-    fn distances(&self, mesh: &EditableMesh, neighbours: &[Vec<u32>]) -> Vec<f64> {
-        let mut far = vec![0.0; neighbours.len()];
+    fn distances(&self, mesh: &EditableMesh, neighbors: &[Vec<u32>]) -> Vec<f64> {
+        let mut far = vec![0.0; neighbors.len()];
         if self.growth == 0.0 {
             return far;
         }
@@ -154,7 +154,7 @@ impl Sizing {
         for v in 0..far.len() {
             if self.anchors[v].is_some() {
                 heap.push(Reverse((Ordered(0.0), v as u32)));
-            } else if !neighbours[v].is_empty() {
+            } else if !neighbors[v].is_empty() {
                 far[v] = f64::INFINITY;
             }
         }
@@ -162,7 +162,7 @@ impl Sizing {
             if d > far[v as usize] {
                 continue;
             }
-            for &w in &neighbours[v as usize] {
+            for &w in &neighbors[v as usize] {
                 let through = d + distance(mesh.position(v), mesh.position(w));
                 if through < far[w as usize] {
                     far[w as usize] = through;
@@ -175,9 +175,9 @@ impl Sizing {
     }
 }
 
-/// The neighbours of every vertex.
-fn neighbours(mesh: &EditableMesh) -> Vec<Vec<u32>> {
-    (0..mesh.n_vertices() as u32).map(|v| mesh.neighbours(v)).collect()
+/// The neighbors of every vertex.
+fn neighbors(mesh: &EditableMesh) -> Vec<Vec<u32>> {
+    (0..mesh.n_vertices() as u32).map(|v| mesh.neighbors(v)).collect()
 }
 
 /// A number in its total order.

@@ -9,7 +9,7 @@ use crate::solve::reduced::Reduced;
 /// What a term of a long sum loses to rounding, over the root of the number of terms.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
-/// How far apart the values of each column are: no minimiser is farther from a point near it.
+/// How far apart the values of each column are: no minimizer is farther from a point near it.
 #[must_use]
 pub fn spread<const K: usize>(u: &[[f64; K]]) -> [f64; K] {
     let (mut low, mut high) = ([f64::INFINITY; K], [f64::NEG_INFINITY; K]);
@@ -65,7 +65,7 @@ impl DualPoint {
 /// The best lower bound along the ray `s·(q, y)`, `0 ≤ s ≤ 1 / max ‖q_b‖/w_b`, which is feasible for every `q`.
 ///
 /// `g` must be `Hᵀq + Aᵀy`, computed from `q` and `y`. Where there is no fidelity, `g_i` is zero up to rounding; its product
-/// with the point `u` stands for its product with the minimiser, less an allowance for the distance of the two.
+/// with the point `u` stands for its product with the minimizer, less an allowance for the distance of the two.
 #[must_use]
 pub fn bound_along_ray<const K: usize>(
     reduced: &Reduced<'_, K>,
@@ -75,7 +75,7 @@ pub fn bound_along_ray<const K: usize>(
     u: &[[f64; K]],
 ) -> f64 {
     let (mut linear, longest) = (q.along_constant, q.longest);
-    // What rounding may have made of the sums, and a minimiser elsewhere of gradients that are not quite zero.
+    // What rounding may have made of the sums, and a minimizer elsewhere of gradients that are not quite zero.
     let mut terms = linear.abs();
     let mut allowance = 0.0;
     if let Some(constraints) = &reduced.constraints {

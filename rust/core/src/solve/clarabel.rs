@@ -38,7 +38,7 @@ const LISTENING: Duration = Duration::from_millis(50);
 ///
 /// # Errors
 /// [`SolveError`] when Clarabel cannot make anything of the problem; [`Error::Cancelled`].
-pub fn minimise<const K: usize>(
+pub fn minimize<const K: usize>(
     reduced: &Reduced<'_, K>,
     method: &str,
     settings: &Settings,
@@ -102,7 +102,7 @@ fn solve_apart<const K: usize>(
     may_leave: bool,
     progress: &Progress,
 ) -> Result<Option<(Program<K>, DefaultSolution<f64>)>> {
-    let failed = |reason: String| Error::Solve(SolveError::Factorisation { reason });
+    let failed = |reason: String| Error::Solve(SolveError::Factorization { reason });
     let watch = progress.clone();
     let (send, receive) = channel();
     let work = move || {

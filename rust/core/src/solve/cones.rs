@@ -82,7 +82,7 @@ mod tests {
 
     #[test]
     fn shrinkage_is_the_proximal_map() {
-        // The minimiser of t‖y‖ + ½‖y − x‖² is better than every nearby point.
+        // The minimizer of t‖y‖ + ½‖y − x‖² is better than every nearby point.
         let cost = |y: &Block<2>| {
             let gap = combine(1.0, y, -1.0, &X);
             5.0 * norm(y) + 0.5 * inner(&gap, &gap)

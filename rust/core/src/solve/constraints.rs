@@ -8,7 +8,7 @@ use crate::linear::small::DenseCholesky;
 use crate::linear::Columns;
 use crate::solve::free_operator::FreeOperator;
 
-/// Constraints on the free rows, and the Schur complement that belongs to the last factorisation.
+/// Constraints on the free rows, and the Schur complement that belongs to the last factorization.
 #[derive(Debug)]
 pub struct LinearConstraints<const K: usize> {
     /// `A` on the free rows, a sparse row each.

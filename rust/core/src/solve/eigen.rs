@@ -97,7 +97,7 @@ impl Pencil<'_> {
                 let vectors = Columns { n_rows: n, n_columns: count, data: block[..count].concat() };
                 return Ok(Eigenpairs { values, vectors });
             }
-            self.orthonormalise(&mut next)?;
+            self.orthonormalize(&mut next)?;
             let images: Vec<Vec<f64>> = next.iter().map(|x| self.times(x)).collect();
             let projected = images.iter().map(|y| next.iter().map(|x| dot(x, y)).collect()).collect();
             let (found, rotation) = symmetric_eigen(projected);
@@ -108,13 +108,13 @@ impl Pencil<'_> {
             "{count} modes did not settle in {MOST_ROUNDS} rounds; flip slivers away (delaunay), merge close vertices, or \
              ask for fewer"
         );
-        Err(Error::Solve(SolveError::Factorisation { reason }))
+        Err(Error::Solve(SolveError::Factorization { reason }))
     }
 
     /// The factor of `Q + σM`.
     fn factored(&self) -> Result<Cholesky> {
         let normal = NormalMatrix::new(self.operator);
-        let mut cholesky = Cholesky::analyse(normal.pattern().clone(), self.memory_limit)?;
+        let mut cholesky = Cholesky::analyze(normal.pattern().clone(), self.memory_limit)?;
         let mut values = Vec::new();
         let mut shift = SHIFT * self.scale;
         let mut attempt = 0;
@@ -127,7 +127,7 @@ impl Pencil<'_> {
                 }
             }
             attempt += 1;
-            match cholesky.factorise(&values) {
+            match cholesky.factorize(&values) {
                 Ok(()) => return Ok(cholesky),
                 Err(error) if attempt == SHIFT_ATTEMPTS => return Err(error.into()),
                 Err(_) => shift *= 10.0,
@@ -150,7 +150,7 @@ impl Pencil<'_> {
     }
 
     /// Gram and Schmidt, twice, against the mass.
-    fn orthonormalise(&self, block: &mut [Vec<f64>]) -> Result<()> {
+    fn orthonormalize(&self, block: &mut [Vec<f64>]) -> Result<()> {
         for j in 0..block.len() {
             let (before, rest) = block.split_at_mut(j);
             let Some(x) = rest.first_mut() else { continue };
@@ -163,7 +163,7 @@ impl Pencil<'_> {
                 let length = mass_dot(self.mass, x, x).sqrt();
                 if !(length > 0.0 && length.is_finite()) {
                     let reason = "the modes are not independent; ask for fewer".into();
-                    return Err(Error::Solve(SolveError::Factorisation { reason }));
+                    return Err(Error::Solve(SolveError::Factorization { reason }));
                 }
                 x.iter_mut().for_each(|x| *x /= length);
             }

@@ -1,6 +1,6 @@
 //! The conic program (21) and its solvers: matrices only, never meshes.
 //!
-//! [`Problem`] says what is asked. [`Session`] answers it by alternating directions with a reused factorisation,
+//! [`Problem`] says what is asked. [`Session`] answers it by alternating directions with a reused factorization,
 //! [`solve`] with any solver by name. Every [`Solution`] carries a relative duality gap that was computed from the point
 //! that is returned.
 

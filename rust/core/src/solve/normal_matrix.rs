@@ -152,8 +152,8 @@ mod tests {
         }
         assert_eq!(seen, 4 + 2 * 4, "no entry is missing: four off the diagonal");
 
-        let mut cholesky = Cholesky::analyse(pattern.clone(), None).unwrap();
-        cholesky.factorise(&values).unwrap();
+        let mut cholesky = Cholesky::analyze(pattern.clone(), None).unwrap();
+        cholesky.factorize(&values).unwrap();
         let x = [1.0, -2.0, 3.0, 0.5, 0.0, 4.0, -1.0, 2.0];
         let mut right: Vec<[f64; 2]> = expected
             .iter()
@@ -163,6 +163,6 @@ mod tests {
         for (i, right) in right.iter().enumerate() {
             assert!((0..2).all(|c| (right[c] - x[4 * c + i]).abs() < 1e-12));
         }
-        assert!(cholesky.factorise(&vec![0.0; values.len()]).is_err());
+        assert!(cholesky.factorize(&vec![0.0; values.len()]).is_err());
     }
 }

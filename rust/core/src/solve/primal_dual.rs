@@ -1,4 +1,4 @@
-//! Primal-dual interior-point steps: a few factorisations from a rough solution to a certified one, however many iterations
+//! Primal-dual interior-point steps: a few factorizations from a rough solution to a certified one, however many iterations
 //! of alternating directions it would take.
 //!
 //! With the logarithmic barrier of the cones `‖(H u + c)_b‖ ≤ t_b` and its parameter `μ`, the best `t_b` are known,
@@ -189,7 +189,7 @@ mod tests {
     use crate::solve::fast::system::System;
     use crate::solve::{Coupling, FreeOperator, Problem};
 
-    /// Blocks over three neighbours on a line, weights from nothing to two, fidelity on every other row, two ends known.
+    /// Blocks over three neighbors on a line, weights from nothing to two, fidelity on every other row, two ends known.
     fn problem(operator: &BlockRows) -> Problem<'_> {
         let n = operator.n_columns;
         let data = (0..n).map(|i| (0.7 * i as f64).sin() + 0.1 * i as f64).collect();
@@ -224,14 +224,14 @@ mod tests {
     }
 
     /// Newton's method at one fixed parameter; the point, the dual point, and how far the last step went.
-    fn centre(reduced: &mut Reduced<'_, 1>, barrier: f64, n_steps: usize) -> (Vec<[f64; 1]>, Vec<Block<1>>, f64) {
+    fn center(reduced: &mut Reduced<'_, 1>, barrier: f64, n_steps: usize) -> (Vec<[f64; 1]>, Vec<Block<1>>, f64) {
         let mut system = System::new(reduced.free, None).unwrap();
         let mut u = reduced.target.clone();
         let mut z = vec![[[0.0; 1]; BLOCK]; reduced.n_blocks()];
         let mut far = f64::INFINITY;
         for _ in 0..n_steps {
             let model = Model::new(reduced, &u, &z, barrier);
-            system.factorise_stiff(reduced, model.stiffness()).unwrap();
+            system.factorize_stiff(reduced, model.stiffness()).unwrap();
             z = model.slope().to_vec();
             let mut step = lacking(reduced, &u, &z);
             system.solve_change(reduced, &mut step);
@@ -275,7 +275,7 @@ mod tests {
         let free = FreeOperator::new(&operator, &problem.fixed);
         let mut reduced = Reduced::<1>::new(&problem, &free, &[0]).unwrap();
         let barrier = 1e-3;
-        let (u, z, far) = centre(&mut reduced, barrier, 25);
+        let (u, z, far) = center(&mut reduced, barrier, 25);
         assert!(far < 1e-9, "the last step goes {far}");
         let mut h = Vec::new();
         reduced.apply(&u, &mut h);
@@ -298,7 +298,7 @@ mod tests {
         let mut reduced = Reduced::<1>::new(&problem, &free, &[0]).unwrap();
         let (mut h, mut before) = (Vec::new(), f64::INFINITY);
         for barrier in [1e-1, 1e-3, 1e-5] {
-            let (u, z, _) = centre(&mut reduced, barrier, 40);
+            let (u, z, _) = center(&mut reduced, barrier, 40);
             reduced.apply(&u, &mut h);
             let primal = reduced.objective(&u, &h);
             let along = h.iter().zip(&z).map(|(h, z)| crate::solve::cones::inner(h, z)).sum::<f64>();

@@ -22,20 +22,20 @@ pub enum Solver {
     /// The fast one.
     #[default]
     Auto,
-    /// Alternating directions with a penalty per block and a reused factorisation.
+    /// Alternating directions with a penalty per block and a reused factorization.
     Fast,
     /// Clarabel's interior-point method; `qdldl` below about 20 000 columns of the operator, `faer` above.
     Clarabel,
-    /// Clarabel with the factorisation `qdldl`.
+    /// Clarabel with the factorization `qdldl`.
     ClarabelQdldl,
-    /// Clarabel with the factorisation of `faer`.
+    /// Clarabel with the factorization of `faer`.
     ClarabelFaer,
-    /// One sparse Cholesky factorisation: what quadratic energies are solved with, and only they.
+    /// One sparse Cholesky factorization: what quadratic energies are solved with, and only they.
     Cholesky,
 }
 
 impl Solver {
-    /// Whether it is Clarabel, with whichever factorisation.
+    /// Whether it is Clarabel, with whichever factorization.
     #[must_use]
     pub fn is_clarabel(self) -> bool {
         matches!(self, Self::Clarabel | Self::ClarabelQdldl | Self::ClarabelFaer)
@@ -118,7 +118,7 @@ impl Default for Settings {
 /// A point, how good it is, and what it cost.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solution {
-    /// The minimiser found, fixed rows included.
+    /// The minimizer found, fixed rows included.
     pub values: Columns,
     /// The objective there.
     pub objective: f64,
@@ -132,7 +132,7 @@ pub struct Solution {
     pub gap: f64,
     /// Iterations, summed over separate columns.
     pub iterations: usize,
-    /// Numeric factorisations, summed over separate columns.
+    /// Numeric factorizations, summed over separate columns.
     pub factorisations: usize,
     /// How the solver stopped.
     pub status: Status,

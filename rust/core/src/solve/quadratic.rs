@@ -1,4 +1,4 @@
-//! Quadratic energies: `min ½ Σ_b w_b ‖(H u)_b‖² + Σ_i a_i ‖u_i − t_i‖²` with fixed rows and `A u = b`, by one factorisation.
+//! Quadratic energies: `min ½ Σ_b w_b ‖(H u)_b‖² + Σ_i a_i ‖u_i − t_i‖²` with fixed rows and `A u = b`, by one factorization.
 //!
 //! The factored matrix carries a shift where the energy alone may not determine `u`; conjugate gradients with that factor as
 //! preconditioner (projected on `A u = 0`, Gould, Hribar and Nocedal 2001) take its effect out again. Where there is
@@ -14,7 +14,7 @@ use crate::solve::normal_matrix::NormalMatrix;
 use crate::solve::problem::{Problem, Settings, Solution, Solver, Status};
 use crate::{Error, Result};
 
-/// The shift as a part of the diagonal: above rounding in the factorisation, below the smallest eigenvalue of well posed
+/// The shift as a part of the diagonal: above rounding in the factorization, below the smallest eigenvalue of well posed
 /// problems up to some 100k vertices.
 const SHIFT: f64 = 1e-13;
 
@@ -22,7 +22,7 @@ const SHIFT: f64 = 1e-13;
 /// are told from dependent ones down to 1e-12.
 const SHIFT_UNDER_CONSTRAINTS: f64 = 1e-9;
 
-/// How much larger a shift is tried when the factorisation fails, and how large it gets.
+/// How much larger a shift is tried when the factorization fails, and how large it gets.
 const SHIFT_GROWTH: f64 = 100.0;
 const LARGEST_SHIFT: f64 = 1e-6;
 
@@ -38,7 +38,7 @@ const PROJECTIONS: usize = 2;
 /// Steps at most; well posed problems take one or two, those with a large shift some ten.
 const MOST_STEPS: usize = 300;
 
-/// Minimises the quadratic reading of `problem`, column by column (its coupling does not matter).
+/// Minimizes the quadratic reading of `problem`, column by column (its coupling does not matter).
 ///
 /// The problem of Rowe et al. 2024, eq. (21) with squared norms.
 ///
@@ -49,7 +49,7 @@ const MOST_STEPS: usize = 300;
 /// # Errors
 /// Arguments that do not fit, constraints that contradict or repeat each other, a problem that is not convex, or
 /// [`Error::Cancelled`].
-pub fn minimise(problem: &Problem<'_>, settings: &Settings, progress: &Progress) -> Result<Solution> {
+pub fn minimize(problem: &Problem<'_>, settings: &Settings, progress: &Progress) -> Result<Solution> {
     problem.check_shapes()?;
     let free = FreeOperator::new(problem.operator, &problem.fixed);
     let mut newton = Newton::new(problem, &free, settings.memory_limit)?;
@@ -68,7 +68,7 @@ pub fn minimise(problem: &Problem<'_>, settings: &Settings, progress: &Progress)
         floor: total.floor,
         gap,
         iterations: total.steps,
-        factorisations: newton.cholesky.n_factorisations(),
+        factorisations: newton.cholesky.n_factorizations(),
         status: if reached { Status::Solved } else { Status::Inaccurate },
         solver: Solver::Cholesky,
     })
@@ -93,7 +93,7 @@ struct Newton<'a> {
 impl<'a> Newton<'a> {
     fn new(problem: &'a Problem<'a>, free: &'a FreeOperator, memory_limit: Option<usize>) -> Result<Self> {
         let normal = NormalMatrix::new(&free.operator);
-        let mut cholesky = Cholesky::analyse(normal.pattern().clone(), memory_limit)?;
+        let mut cholesky = Cholesky::analyze(normal.pattern().clone(), memory_limit)?;
         if free.free.is_empty() {
             return Ok(Self { problem, free, cholesky });
         }
@@ -117,7 +117,7 @@ impl<'a> Newton<'a> {
                 // A row without an entry would make the matrix singular; nothing pulls at it, so it stays where it is.
                 values[s] = if *d == 0.0 { scale } else { d + shift * scale };
             }
-            match cholesky.factorise(&values) {
+            match cholesky.factorize(&values) {
                 Ok(()) => return Ok(Self { problem, free, cholesky }),
                 Err(_) if shift < largest => shift = (SHIFT_GROWTH * shift).max(SHIFT),
                 Err(_) if negative => return Err(not_convex()),
@@ -126,7 +126,7 @@ impl<'a> Newton<'a> {
         }
     }
 
-    /// Minimises over the free rows of column `c`; `u` holds the target before.
+    /// Minimizes over the free rows of column `c`; `u` holds the target before.
     fn column(&mut self, c: usize, u: &mut [f64], total: &mut Totals, progress: &Progress) -> Result<()> {
         let target = self.problem.target.column(c);
         let at_target = self.objective(u, target);

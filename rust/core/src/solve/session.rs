@@ -15,7 +15,7 @@ use crate::{Error, Result};
 /// At most this many columns in one joint norm.
 pub const MAX_JOINT_COLUMNS: usize = 16;
 
-/// A solver that keeps the symbolic factorisation while the operator's pattern stays, and starts each run from the
+/// A solver that keeps the symbolic factorization while the operator's pattern stays, and starts each run from the
 /// multipliers of the last one while the problems stay alike.
 #[derive(Debug, Default)]
 pub struct Session {
@@ -29,12 +29,12 @@ struct Structure {
     system: Option<System>,
 }
 
-/// Who minimises the reduced problem.
+/// Who minimizes the reduced problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Method {
     /// [`crate::solve::fast`].
     Fast,
-    /// [`crate::solve::clarabel`] with this factorisation.
+    /// [`crate::solve::clarabel`] with this factorization.
     Clarabel(Solver),
 }
 
@@ -60,7 +60,7 @@ impl Session {
         Self::default()
     }
 
-    /// Forgets the last solution, but not the symbolic factorisation.
+    /// Forgets the last solution, but not the symbolic factorization.
     pub fn forget(&mut self) {
         self.warm.clear();
     }
@@ -68,7 +68,7 @@ impl Session {
     /// Solves `problem`, starting from the last solution if it had as many blocks and columns.
     ///
     /// # Errors
-    /// Arguments that do not fit, a failed factorisation, contradicting constraints, or [`Error::Cancelled`].
+    /// Arguments that do not fit, a failed factorization, contradicting constraints, or [`Error::Cancelled`].
     pub fn solve(&mut self, problem: &Problem<'_>, settings: &Settings, progress: &Progress) -> Result<Solution> {
         self.run(problem, Method::Fast, settings, progress)
     }
@@ -147,17 +147,17 @@ impl Session {
         let outcome = match call.method {
             Method::Clarabel(solver) => {
                 let method = if solver == Solver::ClarabelFaer { "faer" } else { "qdldl" };
-                clarabel::minimise(&reduced, method, call.settings, call.progress)?
+                clarabel::minimize(&reduced, method, call.settings, call.progress)?
             }
             Method::Fast => {
                 let system = match &mut structure.system {
                     Some(system) => system,
                     empty => empty.insert(System::new(&structure.free, call.settings.memory_limit)?),
                 };
-                let before = system.n_factorisations();
+                let before = system.n_factorizations();
                 let warm = warm.and_then(|w| w.restore(structure.free.operator.n_blocks()));
-                let outcome = fast::minimise(reduced, system, warm, call.settings, call.progress)?;
-                total.factorisations += system.n_factorisations() - before;
+                let outcome = fast::minimize(reduced, system, warm, call.settings, call.progress)?;
+                total.factorisations += system.n_factorizations() - before;
                 outcome
             }
         };

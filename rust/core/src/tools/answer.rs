@@ -9,7 +9,7 @@ use crate::Result;
 /// No point of an answer is farther from the box around what went in than this many times the box's longest side.
 ///
 /// A step of the flow weighs moving against bending and stays within the box of sound meshes; where triangles are so uneven
-/// that the factorisation has no correct digit left, points end up anywhere (1e66 was seen on a mesh of size 1e30).
+/// that the factorization has no correct digit left, points end up anywhere (1e66 was seen on a mesh of size 1e30).
 const FARTHEST: f64 = 10.0;
 
 /// The box around points that went in.

@@ -13,7 +13,7 @@ use crate::{Error, Result};
 /// What every problem with an energy can be told about it.
 #[derive(Debug, Clone, Default)]
 pub struct EnergyOptions {
-    /// What to minimise.
+    /// What to minimize.
     pub kind: Energy,
     /// A weight for each face: smaller where ridges are welcome. See [`EnergyForm::new`] for energies that do not live on faces.
     pub face_weights: Option<Vec<f64>>,
@@ -71,7 +71,7 @@ impl EnergyOptions {
             _ if !self.kind.is_quadratic() => Ok(()),
             _ => {
                 let name = self.kind.name();
-                Err(Error::argument("solver", format!("{name} is quadratic and takes one factorisation; use auto")))
+                Err(Error::argument("solver", format!("{name} is quadratic and takes one factorization; use auto")))
             }
         }
     }

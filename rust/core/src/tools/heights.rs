@@ -94,7 +94,7 @@ pub(super) fn axes_along(normal: Point) -> [Point; 3] {
     [s, cross(normal, s), normal]
 }
 
-/// Solves a small positive definite system by Cholesky's factorisation.
+/// Solves a small positive definite system by Cholesky's factorization.
 fn solve(mut a: [[f64; TERMS]; TERMS], mut b: [f64; TERMS]) -> [f64; TERMS] {
     for j in 0..TERMS {
         for k in 0..j {

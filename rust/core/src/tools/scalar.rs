@@ -1,4 +1,4 @@
-//! What denoising and interpolation have in common: one energy on a mesh, minimised under conditions.
+//! What denoising and interpolation have in common: one energy on a mesh, minimized under conditions.
 
 use sprs::CsMat;
 
@@ -22,13 +22,13 @@ const SHARPENING_ROUNDS: usize = 3;
 /// What every scalar problem can be told.
 #[derive(Debug, Clone, Default)]
 pub struct ScalarOptions {
-    /// What to minimise.
+    /// What to minimize.
     pub energy: EnergyOptions,
     /// `A` (p × n) and `b` (p × k) of `A u = b`.
     pub linear_constraints: Option<(CsMat<f64>, Columns)>,
     /// Joint or separate norms of several columns; quadratic energies do not tell them apart.
     pub coupling: Coupling,
-    /// 0: the convex energy; towards 1: reweighted rounds with ever sharper ridges. For [`Energy::L1Hessian`] only.
+    /// 0: the convex energy; toward 1: reweighted rounds with ever sharper ridges. For [`Energy::L1Hessian`] only.
     pub sharpness: f64,
     /// The solver.
     pub solve: SolveOptions,
@@ -103,7 +103,7 @@ impl ScalarProblem<'_> {
         options.solve.run(|| {
             demand.admit(options.solve.memory_limit)?;
             let mut solution = if kind.is_quadratic() {
-                quadratic::minimise(&problem, &settings, progress)?
+                quadratic::minimize(&problem, &settings, progress)?
             } else {
                 sharpened(&mut problem, &mesh, options, &settings, progress)?
             };

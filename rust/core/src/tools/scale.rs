@@ -2,7 +2,7 @@
 
 use crate::mesh::{edge_lengths, triangle, Connectivity};
 
-/// A cube's side over the root mean square distance of its surface from its centre: 0.25 + 2/12 for a side of 1.
+/// A cube's side over the root mean square distance of its surface from its center: 0.25 + 2/12 for a side of 1.
 const SIDE_OF_EXTENT: f64 = 1.549_193_338_482_966_8;
 
 /// The unit of length: energies grow with length, fidelity terms with its fourth power.
@@ -15,7 +15,7 @@ pub enum Scale {
     BoundingBox,
     /// The square root of the surface area: like the bounding box, but independent of rotations.
     Area,
-    /// The side of the cube whose surface is as far from its centre, root mean square: nearer to the bounding box than the area
+    /// The side of the cube whose surface is as far from its center, root mean square: nearer to the bounding box than the area
     /// is, and independent of rotations.
     Extent,
     /// This length, whatever the shape.
@@ -35,18 +35,18 @@ impl Scale {
     }
 }
 
-/// Root mean square distance of the face barycentres, weighted by area, from their centre (a size that rotations do not
+/// Root mean square distance of the face barycenters, weighted by area, from their center (a size that rotations do not
 /// change), and the area.
 pub(super) fn extent(connectivity: &Connectivity, points: &[[f64; 3]]) -> (f64, f64) {
     let (mut total, mut first, mut second) = (0.0, [0.0; 3], 0.0);
     for (face, l) in connectivity.faces().iter().zip(edge_lengths(connectivity.faces(), points)) {
         let area = triangle::area(l);
-        let centre: [f64; 3] = std::array::from_fn(|c| face.iter().map(|&v| points[v as usize][c]).sum::<f64>() / 3.0);
+        let center: [f64; 3] = std::array::from_fn(|c| face.iter().map(|&v| points[v as usize][c]).sum::<f64>() / 3.0);
         total += area;
-        for (f, c) in first.iter_mut().zip(&centre) {
+        for (f, c) in first.iter_mut().zip(&center) {
             *f += area * c;
         }
-        second += area * centre.iter().map(|c| c * c).sum::<f64>();
+        second += area * center.iter().map(|c| c * c).sum::<f64>();
     }
     if total <= 0.0 {
         return (0.0, 0.0);

@@ -1,7 +1,7 @@
 //! Sharpness: iterated reweighting, which makes facets where the plain L1 energy makes domes.
 //!
 //! The Frobenius norm of the Hessian prefers a dome to facets, since `√(κ₁² + κ₂²) < κ₁ + κ₂`. Weights that fall with
-//! the curvature already there (Candès et al. 2008) turn the sum of norms towards the sum of their `p`-th powers.
+//! the curvature already there (Candès et al. 2008) turn the sum of norms toward the sum of their `p`-th powers.
 
 use rayon::prelude::*;
 

@@ -24,7 +24,7 @@ pub(super) fn unseen(mesh: &Mesh, form: &EnergyForm) -> Option<Vec<bool>> {
 /// Sets the values of the `unseen` vertices so that the gradient jumps as little as possible there: linear extrapolation.
 ///
 /// # Errors
-/// [`crate::Error::Cancelled`], and a factorisation that fails.
+/// [`crate::Error::Cancelled`], and a factorization that fails.
 pub(super) fn extend(mesh: &Mesh, unseen: &[bool], values: &mut Columns, progress: &Progress) -> Result<()> {
     let form = EnergyForm::new(Energy::L1EdgeLaplacian, mesh, None, Dual::default())?;
     let problem = Problem {
@@ -36,6 +36,6 @@ pub(super) fn extend(mesh: &Mesh, unseen: &[bool], values: &mut Columns, progres
         linear_constraints: None,
         coupling: Coupling::Separate,
     };
-    *values = quadratic::minimise(&problem, &Settings::default(), progress)?.values;
+    *values = quadratic::minimize(&problem, &Settings::default(), progress)?.values;
     Ok(())
 }

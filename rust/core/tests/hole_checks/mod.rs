@@ -36,7 +36,7 @@ pub fn patched(mesh: &Mesh, patches: &[Patch]) -> Result<Mesh, String> {
 pub struct Shapeliness {
     /// The least quality of a face.
     pub quality: f64,
-    /// The least cosine between the normals of neighbours inside the patches and across their rims.
+    /// The least cosine between the normals of neighbors inside the patches and across their rims.
     pub cosine: f64,
     /// Number of faces.
     pub n_faces: usize,

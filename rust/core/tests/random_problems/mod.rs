@@ -127,8 +127,8 @@ impl Case {
         }
     }
 
-    /// A neighbour of the problem, as the next step of a flow or the next frame would be: a hundredth more noise.
-    pub fn neighbour(&self, seed: u64) -> Problem<'_> {
+    /// A neighbor of the problem, as the next step of a flow or the next frame would be: a hundredth more noise.
+    pub fn neighbor(&self, seed: u64) -> Problem<'_> {
         let mut problem = self.problem();
         let size = problem.target.data.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
         let mut random = Random::new(seed);
@@ -155,9 +155,9 @@ impl Case {
     /// Frees the vertices within a ball around one of them, up to a third of the surface's size.
     fn fix_around_a_patch(&mut self, mesh: &Mesh, random: &mut Random) {
         let points = mesh.positions().unwrap();
-        let centre = points[pick(random, points.len())];
+        let center = points[pick(random, points.len())];
         let radius = (0.1 + 0.25 * random.uniform()) * size(mesh);
-        let distance = |p: &[f64; 3]| (0..3).map(|k| (p[k] - centre[k]).powi(2)).sum::<f64>().sqrt();
+        let distance = |p: &[f64; 3]| (0..3).map(|k| (p[k] - center[k]).powi(2)).sum::<f64>().sqrt();
         self.fixed = points.iter().map(|p| distance(p) > radius).collect();
         if self.fixed.iter().all(|x| !x) {
             self.fixed[0] = true;

@@ -1,4 +1,4 @@
-//! Memory of the factorisation, kept from one to the next: a solver factors the same pattern several times, and fresh pages
+//! Memory of the factorization, kept from one to the next: a solver factors the same pattern several times, and fresh pages
 //! take a tenth of the time.
 
 use std::sync::{Mutex, PoisonError};

@@ -1,4 +1,4 @@
-//! Dense kernels of the factorisation: the first columns of a front, and what they take off the rest.
+//! Dense kernels of the factorization: the first columns of a front, and what they take off the rest.
 //!
 //! Fronts of surface meshes are small: a handful of columns, tens of rows. General dense kernels spend their time on packing
 //! there, so these work straight on the columns; large updates go to the library's product.

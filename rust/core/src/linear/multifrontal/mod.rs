@@ -1,4 +1,4 @@
-//! Numeric Cholesky factorisation front by front (multifrontal; Duff and Reid 1983), subtrees on several threads.
+//! Numeric Cholesky factorization front by front (multifrontal; Duff and Reid 1983), subtrees on several threads.
 //!
 //! A front is a dense matrix: the columns of one panel and what their elimination takes off later rows. Children leave the
 //! latter to their parent. Subtrees know nothing of each other until their common parent, so they go to different threads, and
@@ -21,7 +21,7 @@ use crate::linear::triangular::Panels;
 /// Factors the matrix with these values (one per entry of the pattern) into `factor`, panel by panel as in `panels`; `None` when
 /// it is not positive definite.
 #[must_use]
-pub fn factorise(
+pub fn factorize(
     tree: &Tree,
     panels: &Panels,
     values: &[f64],

@@ -9,7 +9,7 @@ use crate::linear::triangular::Panels;
 /// No panel.
 pub const NONE: u32 = u32::MAX;
 
-/// Multiplications from which on a factorisation is shared between threads: below it takes 15 ms.
+/// Multiplications from which on a factorization is shared between threads: below it takes 15 ms.
 const SHARED: f64 = 2e8;
 
 /// Subtrees with more than this part of all multiplications are split at their root: what is left is many enough for many
@@ -44,7 +44,7 @@ impl Tree {
     /// The tree of the fronts of `panels`. Row `order[i]` of the matrix is row `i` of the factor.
     ///
     /// # Errors
-    /// [`SolveError::Factorisation`] when the panels are in no postorder.
+    /// [`SolveError::Factorization`] when the panels are in no postorder.
     pub fn new(pattern: &LowerPattern, order: &[u32], panels: &Panels) -> Result<Self, SolveError> {
         let count = panels.count();
         let mut panel_of = vec![0u32; pattern.n];
@@ -68,7 +68,7 @@ impl Tree {
                 && next == s as u32
         });
         if !is_postorder {
-            return Err(SolveError::Factorisation { reason: "the ordering of the matrix is no postorder".into() });
+            return Err(SolveError::Factorization { reason: "the ordering of the matrix is no postorder".into() });
         }
         tree.split(panels, &parents);
         tree.find_relative(panels, &parents);

@@ -19,7 +19,7 @@ const GRAIN: usize = 4096;
 /// The rows of a symmetric matrix in the order of their elimination.
 ///
 /// # Errors
-/// [`SolveError::Factorisation`] when the ordering of a part fails.
+/// [`SolveError::Factorization`] when the ordering of a part fails.
 pub fn nested_dissection(pattern: &LowerPattern) -> Result<Vec<u32>, SolveError> {
     let mut order: Vec<u32> = (0..pattern.n as u32).collect();
     dissect(&Graph::new(pattern), &mut order)?;
@@ -42,7 +42,7 @@ fn dissect(graph: &Graph, order: &mut [u32]) -> Result<(), SolveError> {
     let parts = [graph.part(&side, 0), graph.part(&side, 1)];
     let between: Vec<u32> = (0..graph.n() as u32).filter(|&v| side[v as usize] == SEPARATOR).collect();
     if parts.iter().any(|(part, _)| part.n() == graph.n()) {
-        // Nothing can be cut off, as in a graph where all are neighbours.
+        // Nothing can be cut off, as in a graph where all are neighbors.
         place(order, &minimum_degree(&pattern_of(graph))?);
         return Ok(());
     }
@@ -77,7 +77,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    /// The matrix of a grid of `side × side` points with eight neighbours each, and a lone point.
+    /// The matrix of a grid of `side × side` points with eight neighbors each, and a lone point.
     fn grid(side: usize) -> LowerPattern {
         let mut pattern = LowerPattern { n: side * side + 1, starts: vec![0], rows: Vec::new() };
         for v in 0..side * side {

@@ -7,10 +7,10 @@ use crate::random::Random;
 /// An undirected graph with weights on vertices and edges; every edge stands at both of its ends.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Graph {
-    /// Vertex `v` owns the neighbours `starts[v]..starts[v + 1]`.
+    /// Vertex `v` owns the neighbors `starts[v]..starts[v + 1]`.
     pub starts: Vec<u32>,
     /// The other end of each edge.
-    pub neighbours: Vec<u32>,
+    pub neighbors: Vec<u32>,
     /// How many edges of the finest graph each edge stands for.
     pub edges: Vec<u32>,
     /// How many vertices of the finest graph each vertex stands for.
@@ -24,7 +24,7 @@ impl Graph {
     /// The graph of a symmetric matrix; all weights are one.
     #[must_use]
     pub fn new(pattern: &LowerPattern) -> Self {
-        let (starts, neighbours) = Buckets::new(pattern.n, |visit| {
+        let (starts, neighbors) = Buckets::new(pattern.n, |visit| {
             for j in 0..pattern.n {
                 for &i in pattern.rows[pattern.starts[j]..pattern.starts[j + 1]].iter().filter(|&&i| i != j) {
                     visit(i, j as u32);
@@ -34,8 +34,8 @@ impl Graph {
         })
         .into_parts();
         let starts = starts.into_iter().map(|start| start as u32).collect();
-        let edges = vec![1; neighbours.len()];
-        Self { starts, neighbours, edges, weights: vec![1; pattern.n] }
+        let edges = vec![1; neighbors.len()];
+        Self { starts, neighbors, edges, weights: vec![1; pattern.n] }
     }
 
     /// Number of vertices.
@@ -44,13 +44,13 @@ impl Graph {
         self.weights.len()
     }
 
-    /// The neighbours of `v`.
+    /// The neighbors of `v`.
     #[must_use]
     pub fn around(&self, v: usize) -> &[u32] {
-        &self.neighbours[self.starts[v] as usize..self.starts[v + 1] as usize]
+        &self.neighbors[self.starts[v] as usize..self.starts[v + 1] as usize]
     }
 
-    /// Merges vertices with the neighbour that most edges lead to, as long as the two weigh at most `heaviest`; also says
+    /// Merges vertices with the neighbor that most edges lead to, as long as the two weigh at most `heaviest`; also says
     /// which coarse vertex each vertex went into (heavy edge matching, Karypis and Kumar 1998).
     #[must_use]
     pub fn coarsened(&self, heaviest: u32, random: &mut Random) -> (Self, Vec<u32>) {
@@ -62,7 +62,7 @@ impl Graph {
             }
             let range = self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize;
             let mut best = (0, v);
-            for (&u, &edge) in self.neighbours[range.clone()].iter().zip(&self.edges[range]) {
+            for (&u, &edge) in self.neighbors[range.clone()].iter().zip(&self.edges[range]) {
                 let fits = self.weights[u as usize] + self.weights[v as usize] <= heaviest;
                 if edge > best.0 && mate[u as usize] == NONE && fits {
                     best = (edge, u);
@@ -84,17 +84,17 @@ impl Graph {
     }
 
     fn contracted(&self, map: &[u32], firsts: &[u32], mate: &[u32]) -> Self {
-        let mut coarse = Self { starts: vec![0], neighbours: Vec::new(), edges: Vec::new(), weights: Vec::new() };
-        coarse.neighbours.reserve(self.neighbours.len());
-        coarse.edges.reserve(self.neighbours.len());
+        let mut coarse = Self { starts: vec![0], neighbors: Vec::new(), edges: Vec::new(), weights: Vec::new() };
+        coarse.neighbors.reserve(self.neighbors.len());
+        coarse.edges.reserve(self.neighbors.len());
         let mut place = vec![NONE; firsts.len()];
         for (c, &v) in firsts.iter().enumerate() {
-            let begin = coarse.neighbours.len() as u32;
+            let begin = coarse.neighbors.len() as u32;
             let pair = [v, mate[v as usize]];
             let members = if pair[0] == pair[1] { &pair[..1] } else { &pair[..] };
             for &v in members {
                 for k in self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize {
-                    let other = map[self.neighbours[k] as usize];
+                    let other = map[self.neighbors[k] as usize];
                     if other as usize == c {
                         continue;
                     }
@@ -102,13 +102,13 @@ impl Graph {
                     if *at != NONE && *at >= begin {
                         coarse.edges[*at as usize] += self.edges[k];
                     } else {
-                        *at = coarse.neighbours.len() as u32;
-                        coarse.neighbours.push(other);
+                        *at = coarse.neighbors.len() as u32;
+                        coarse.neighbors.push(other);
                         coarse.edges.push(self.edges[k]);
                     }
                 }
             }
-            coarse.starts.push(coarse.neighbours.len() as u32);
+            coarse.starts.push(coarse.neighbors.len() as u32);
             coarse.weights.push(members.iter().map(|&v| self.weights[v as usize]).sum());
         }
         coarse
@@ -122,16 +122,16 @@ impl Graph {
         for (k, &v) in members.iter().enumerate() {
             place[v as usize] = k as u32;
         }
-        let mut part = Self { starts: vec![0], neighbours: Vec::new(), edges: Vec::new(), weights: Vec::new() };
+        let mut part = Self { starts: vec![0], neighbors: Vec::new(), edges: Vec::new(), weights: Vec::new() };
         for &v in &members {
             for k in self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize {
-                let u = place[self.neighbours[k] as usize];
+                let u = place[self.neighbors[k] as usize];
                 if u != NONE {
-                    part.neighbours.push(u);
+                    part.neighbors.push(u);
                     part.edges.push(self.edges[k]);
                 }
             }
-            part.starts.push(part.neighbours.len() as u32);
+            part.starts.push(part.neighbors.len() as u32);
             part.weights.push(self.weights[v as usize]);
         }
         (part, members)

@@ -10,13 +10,13 @@ use crate::linear::pattern::LowerPattern;
 /// The rows of a pattern in an order that approximate minimum degree finds.
 ///
 /// # Errors
-/// [`SolveError::Factorisation`] when the library refuses the pattern.
+/// [`SolveError::Factorization`] when the library refuses the pattern.
 pub fn minimum_degree(pattern: &LowerPattern) -> Result<Vec<u32>, SolveError> {
     let n = pattern.n;
     let view = SymbolicSparseColMatRef::new_checked(n, n, &pattern.starts, None, &pattern.rows);
     let (mut forward, mut backward) = (vec![0usize; n], vec![0usize; n]);
     let mut memory = MemBuffer::new(amd::order_scratch::<usize>(n, pattern.rows.len()));
     amd::order(&mut forward, &mut backward, view, amd::Control::default(), MemStack::new(&mut memory))
-        .map_err(|e| SolveError::Factorisation { reason: format!("{e:?}") })?;
+        .map_err(|e| SolveError::Factorization { reason: format!("{e:?}") })?;
     Ok(forward.iter().map(|&i| i as u32).collect())
 }

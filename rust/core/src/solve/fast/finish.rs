@@ -1,6 +1,6 @@
 //! The end of a run by primal-dual steps, where alternating directions would take long.
 
-use super::{Run, FACTORISATION, RESIDUAL_GOAL};
+use super::{Run, FACTORIZATION, RESIDUAL_GOAL};
 use crate::error::SolveError;
 use crate::linear::conjugate_gradients::{add, conjugate_gradients};
 use crate::progress::Progress;
@@ -11,7 +11,7 @@ use crate::solve::primal_dual::{clip, dual_point, follow, Model, Stiffness};
 use crate::solve::problem::{Problem, Settings};
 use crate::{Error, Result};
 
-/// Alternating directions go this far at least: the steps need few factorisations from where the ridges show.
+/// Alternating directions go this far at least: the steps need few factorizations from where the ridges show.
 pub(super) const FIRST_STEPS: usize = 20;
 
 /// What the objective fell since the last look, this many times over, is an estimate of what it has still to fall.
@@ -23,7 +23,7 @@ const AIM: f64 = 0.8;
 /// The aim of the next step, in gaps reached so far.
 const NEXT_AIM: f64 = 0.1;
 
-/// Factorisations' worth of steps that a run takes which begins with the objective still, and more for each digit that the
+/// Factorizations' worth of steps that a run takes which begins with the objective still, and more for each digit that the
 /// objective has to fall (measured from 8k to 200k vertices; they are what decides, not what is done).
 const STEPS_WHEN_STILL: f64 = 3.0;
 const STEPS_A_DIGIT: f64 = 3.0;
@@ -33,7 +33,7 @@ const IDLE: f64 = 0.7;
 const MOST_IDLE: usize = 6;
 
 /// Iterations of conjugate gradients for a step with an older factor, and the part of the residual that is enough. They cost
-/// as much as the factorisation they save; a run longer than [`LONG`] says that the factor is too old for the next step.
+/// as much as the factorization they save; a run longer than [`LONG`] says that the factor is too old for the next step.
 const MOST_GRADIENTS: usize = 10;
 const LONG: usize = 7;
 const GRADIENT_GOAL: f64 = 0.05;
@@ -60,7 +60,7 @@ impl<const K: usize> Run<'_, '_, K> {
             return false;
         }
         let digits = (self.first_aim(settings, last_primal) / least_aim(settings)).log10();
-        left > FACTORISATION * (STEPS_WHEN_STILL + STEPS_A_DIGIT * digits)
+        left > FACTORIZATION * (STEPS_WHEN_STILL + STEPS_A_DIGIT * digits)
     }
 
     /// The relative gap of the point of the central path to start at: the objective is as far from its minimum there.
@@ -93,7 +93,7 @@ impl<const K: usize> Run<'_, '_, K> {
             let before = self.gap();
             match self.step(settings, &mut steps, aim * self.scale() / n_cones) {
                 // Alternating directions have a tamer matrix.
-                Ok(false) | Err(Error::Solve(SolveError::Factorisation { .. })) => break,
+                Ok(false) | Err(Error::Solve(SolveError::Factorization { .. })) => break,
                 moved => moved?,
             };
             if self.is_certified(settings) || progress.is_finishing() {
@@ -122,7 +122,7 @@ impl<const K: usize> Run<'_, '_, K> {
         let mut z = model.slope().to_vec();
         let is_new = !steps.is_near;
         if is_new {
-            self.system.factorise_stiff(&mut self.reduced, model.stiffness())?;
+            self.system.factorize_stiff(&mut self.reduced, model.stiffness())?;
         }
         self.y.clear();
         let mut step = self.lacking(&z, None);

@@ -53,14 +53,14 @@ const REWEIGHT_COLD: usize = 10;
 /// A warm start brings good penalties along.
 const REWEIGHT_WARM: usize = 30;
 
-/// Iterations that cost as much as one factorisation (12 to 20 measured, from 9k to 200k vertices).
-const FACTORISATION: f64 = 15.0;
+/// Iterations that cost as much as one factorization (12 to 20 measured, from 9k to 200k vertices).
+const FACTORIZATION: f64 = 15.0;
 
-/// Minimises a reduced problem.
+/// Minimizes a reduced problem.
 ///
 /// # Errors
-/// A failed factorisation, dependent constraints, or [`crate::Error::Cancelled`].
-pub fn minimise<const K: usize>(
+/// A failed factorization, dependent constraints, or [`crate::Error::Cancelled`].
+pub fn minimize<const K: usize>(
     reduced: Reduced<'_, K>,
     system: &mut System,
     warm: Option<Warm<K>>,
@@ -127,7 +127,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             None => (uniform(&mut reduced, system, &h, progress)?, REWEIGHT_COLD),
         };
         if warm.is_some() {
-            system.factorise(&mut reduced, &r)?;
+            system.factorize(&mut reduced, &r)?;
         }
         let sweep = Sweep::new(&reduced, &r, |b| match &warm {
             Some(warm) => (warm.z[b], scaled(reduced.weights[b], &warm.p[b])),
@@ -191,7 +191,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             if iterations == self.next_reweighting {
                 self.next_reweighting *= 3;
                 // The first new penalties always pay: the ones to start with are alike everywhere.
-                if iterations == REWEIGHT_COLD || left > FACTORISATION {
+                if iterations == REWEIGHT_COLD || left > FACTORIZATION {
                     self.reweight()?;
                 }
             }
@@ -202,7 +202,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
     /// New penalties from the lengths that the blocks have now; split variables and multipliers stay.
     fn reweight(&mut self) -> Result<()> {
         let r = reweighted(&self.lengths(), &self.reduced.weights);
-        self.system.factorise(&mut self.reduced, &r)?;
+        self.system.factorize(&mut self.reduced, &r)?;
         self.sweep = self.under(&r);
         self.r = r;
         Ok(())

@@ -13,11 +13,11 @@ const BALANCE: f64 = 0.5;
 const CLIP: [f64; 2] = [0.03, 30.0];
 
 /// A scale within this factor of the one sought is taken: new penalties come after a few iterations anyway, and the
-/// search would cost a factorisation more.
+/// search would cost a factorization more.
 const GOOD_ENOUGH: f64 = 3.2;
 
 /// The scale grows with noise, each time by less. On ten problems from light to heavy noise the whole way was the first
-/// growth to the power of 1.6 to 2.6, so this saves one factorisation and rarely overshoots.
+/// growth to the power of 1.6 to 2.6, so this saves one factorization and rarely overshoots.
 const JUMP: f64 = 1.7;
 
 /// The sum of all block lengths of a typical function without noise, in units of its standard deviation and of the mean norm
@@ -28,7 +28,7 @@ const FOLDS: f64 = 20.0;
 /// logarithms.
 const SMOOTH_SHARE: f64 = 5.0 / 6.0;
 
-/// Factorisations that the search may take.
+/// Factorizations that the search may take.
 const MOST_ATTEMPTS: usize = 6;
 
 /// Penalties `R_b = BALANCE · w_b / length_b`, lengths clipped around their mean.
@@ -41,13 +41,13 @@ pub fn reweighted(lengths: &[f64], weights: &[f64]) -> Vec<f64> {
     lengths.iter().zip(weights).map(|(g, w)| BALANCE * w / g.clamp(CLIP[0] * mean, CLIP[1] * mean)).collect()
 }
 
-/// The penalties `R = ρ w` to start with: `ρ · mean ‖H u(ρ) + c‖ ≈ BALANCE`, where `u(ρ)` is the quadratic minimiser.
-/// Leaves `system` factored for them, after one to a few factorisations. `h` is the operator applied to the target.
+/// The penalties `R = ρ w` to start with: `ρ · mean ‖H u(ρ) + c‖ ≈ BALANCE`, where `u(ρ)` is the quadratic minimizer.
+/// Leaves `system` factored for them, after one to a few factorizations. `h` is the operator applied to the target.
 ///
-/// Without fidelity `u(ρ)` does not depend on `ρ`, and one factorisation does.
+/// Without fidelity `u(ρ)` does not depend on `ρ`, and one factorization does.
 ///
 /// # Errors
-/// A failed factorisation, or [`crate::Error::Cancelled`].
+/// A failed factorization, or [`crate::Error::Cancelled`].
 pub fn uniform<const K: usize>(
     reduced: &mut Reduced<'_, K>,
     system: &mut System,
@@ -62,7 +62,7 @@ pub fn uniform<const K: usize>(
     loop {
         progress.check()?;
         let r = penalties(scale);
-        system.factorise(reduced, &r)?;
+        system.factorize(reduced, &r)?;
         attempts += 1;
         if attempts == MOST_ATTEMPTS || progress.is_finishing() {
             return Ok(r);

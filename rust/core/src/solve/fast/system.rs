@@ -1,4 +1,4 @@
-//! The linear system of the fast solver: pattern and ordering once, factorisation as often as the penalties change.
+//! The linear system of the fast solver: pattern and ordering once, factorization as often as the penalties change.
 
 use crate::error::SolveError;
 use crate::linear::cholesky::Cholesky;
@@ -11,7 +11,7 @@ use crate::solve::reduced::Reduced;
 /// definite where the operator alone does not, and vanishes from the iteration as it converges.
 const PROXIMAL: f64 = 1e-10;
 
-/// How much more of it is tried when the factorisation still fails, and how often.
+/// How much more of it is tried when the factorization still fails, and how often.
 const PROXIMAL_GROWTH: f64 = 100.0;
 const PROXIMAL_ATTEMPTS: i32 = 4;
 
@@ -29,47 +29,47 @@ pub struct System {
 }
 
 impl System {
-    /// Analyses the pattern of the free operator.
+    /// Analyzes the pattern of the free operator.
     ///
     /// # Errors
     /// [`SolveError::Memory`] when the factor does not fit into `memory_limit` bytes.
     pub fn new(free: &FreeOperator, memory_limit: Option<usize>) -> Result<Self, SolveError> {
         let normal = NormalMatrix::new(&free.operator);
-        let cholesky = Cholesky::analyse(normal.pattern().clone(), memory_limit)?;
+        let cholesky = Cholesky::analyze(normal.pattern().clone(), memory_limit)?;
         Ok(Self { normal, cholesky, values: Vec::new(), proximal: Vec::new(), scale: 1.0, refined: false })
     }
 
-    /// Numeric factorisations made so far.
+    /// Numeric factorizations made so far.
     #[must_use]
-    pub fn n_factorisations(&self) -> usize {
-        self.cholesky.n_factorisations()
+    pub fn n_factorizations(&self) -> usize {
+        self.cholesky.n_factorizations()
     }
 
     /// Factors the matrix for the penalties `r`.
     ///
     /// # Errors
     /// A matrix that is not positive definite, or dependent linear constraints.
-    pub fn factorise<const K: usize>(&mut self, reduced: &mut Reduced<'_, K>, r: &[f64]) -> Result<(), SolveError> {
+    pub fn factorize<const K: usize>(&mut self, reduced: &mut Reduced<'_, K>, r: &[f64]) -> Result<(), SolveError> {
         let twice: Vec<f64> = reduced.fidelity.iter().map(|a| 2.0 * a).collect();
         self.normal.assemble(&reduced.free.operator, r, &twice, &mut self.values);
-        self.factorise_values(reduced, &twice)
+        self.factorize_values(reduced, &twice)
     }
 
     /// Factors the matrix for a stiffness per block.
     ///
     /// # Errors
-    /// As [`System::factorise`].
-    pub fn factorise_stiff<const K: usize>(
+    /// As [`System::factorize`].
+    pub fn factorize_stiff<const K: usize>(
         &mut self,
         reduced: &mut Reduced<'_, K>,
         stiffness: &[Stiffness],
     ) -> Result<(), SolveError> {
         let twice: Vec<f64> = reduced.fidelity.iter().map(|a| 2.0 * a).collect();
         self.normal.assemble_stiff(&reduced.free.operator, stiffness, &twice, &mut self.values);
-        self.factorise_values(reduced, &twice)
+        self.factorize_values(reduced, &twice)
     }
 
-    fn factorise_values<const K: usize>(
+    fn factorize_values<const K: usize>(
         &mut self,
         reduced: &mut Reduced<'_, K>,
         twice: &[f64],
@@ -84,7 +84,7 @@ impl System {
             for ((&s, d), p) in starts.iter().zip(&diagonal).zip(&self.proximal) {
                 self.values[s] = d + p;
             }
-            match self.cholesky.factorise(&self.values) {
+            match self.cholesky.factorize(&self.values) {
                 Err(error) if attempt + 1 == PROXIMAL_ATTEMPTS => return Err(error),
                 Err(_) => {}
                 Ok(()) => break,

@@ -1,4 +1,4 @@
-//! The chained borders between regions, and what fitted colours make of them.
+//! The chained borders between regions, and what fitted colors make of them.
 
 use super::chains::{sided, CurveEdge};
 use super::fit::Fit;
@@ -19,7 +19,7 @@ pub(super) struct Borders<'a> {
 }
 
 impl Borders<'_> {
-    /// The curves with the colours of `values` on their sides, one row a copy; a side without a face gets those of the other.
+    /// The curves with the colors of `values` on their sides, one row a copy; a side without a face gets those of the other.
     pub fn colored(&self, values: &Columns) -> ColoredCurves {
         let k = values.n_columns;
         let mut curves = ColoredCurves { n_channels: k, ..ColoredCurves::default() };
@@ -39,7 +39,7 @@ impl Borders<'_> {
         curves
     }
 
-    /// Thins the colours of every curve, [`thin`]; returns the number of knots of each.
+    /// Thins the colors of every curve, [`thin`]; returns the number of knots of each.
     pub fn thin(&self, curves: &mut ColoredCurves, lengths: &[[f64; 3]], tolerance: f64) -> Vec<usize> {
         let k = curves.n_channels;
         let length = |e: usize| {
@@ -50,7 +50,7 @@ impl Borders<'_> {
         let mut counts = Vec::with_capacity(self.starts.len());
         for bounds in self.starts.windows(2) {
             let edges = bounds[0]..bounds[1];
-            // A row for each point of the curve: left colours, then right ones.
+            // A row for each point of the curve: left colors, then right ones.
             let mut rows = Vec::with_capacity((edges.len() + 1) * 2 * k);
             for point in 0..=edges.len() {
                 let row = if point < edges.len() { 2 * (bounds[0] + point) } else { 2 * bounds[1] - 1 };
@@ -69,7 +69,7 @@ impl Borders<'_> {
         counts
     }
 
-    /// How many numbers the curves are; `knots` counts them where colours were thinned.
+    /// How many numbers the curves are; `knots` counts them where colors were thinned.
     pub fn n_numbers(&self, curves: &ColoredCurves, knots: Option<&[usize]>) -> usize {
         let k = curves.n_channels;
         let mut count = curves.points.len() * (1 + k);
@@ -84,7 +84,7 @@ impl Borders<'_> {
         count
     }
 
-    /// A face for each vertex that has the copy which the vertex takes its colour from.
+    /// A face for each vertex that has the copy which the vertex takes its color from.
     pub fn sides(&self, fit: &Fit) -> Vec<Option<u32>> {
         let mut sides = vec![None; fit.owners.len()];
         for (f, face) in (0..).zip(&self.cut.faces) {

@@ -13,7 +13,7 @@ pub(super) struct CurveEdge {
 
 /// The halfedges of the edge that starts at vertex `start`, each with whether its face lies left of it.
 ///
-/// Faces run counterclockwise, so the face whose halfedge starts at `start` is on the left and its neighbour on the right. Where
+/// Faces run counterclockwise, so the face whose halfedge starts at `start` is on the left and its neighbor on the right. Where
 /// faces disagree on their orientation, or more than two meet, the first one decides and all others are on its other side.
 pub(super) fn sided<'a>(
     connectivity: &'a Connectivity,

@@ -65,13 +65,13 @@ pub(super) const WORSE: f64 = 1.25;
 /// side (40 dB).
 pub(super) const UNSEEN: f64 = 0.01;
 
-/// Steps towards the nearest mixture of colors. Two colors need one, three at most some ten until the
+/// Steps toward the nearest mixture of colors. Two colors need one, three at most some ten until the
 /// rest is below what is tolerated.
 pub(super) const MIXING_STEPS: usize = 32;
 
 // Curves.
 
-/// Steps towards the mean of the neighbors, half of the way each. Teeth of one edge are gone after five,
+/// Steps toward the mean of the neighbors, half of the way each. Teeth of one edge are gone after five,
 /// steps of lines that cross a lattice at a slant after twenty.
 pub(super) const SMOOTH_STEPS: usize = 20;
 

@@ -1,4 +1,4 @@
-//! The colours of a surface along its curves: the screened Poisson fit of the paper, then least squares.
+//! The colors of a surface along its curves: the screened Poisson fit of the paper, then least squares.
 
 use super::constants::{FIT_LIMITS, MOST_FITS};
 use super::membrane::{Harmonic, Membrane};
@@ -13,13 +13,13 @@ use crate::Result;
 pub(super) struct Task<'a> {
     pub cut: &'a CutMesh,
     pub membrane: &'a Membrane,
-    /// The colours at the vertices, one row each.
+    /// The colors at the vertices, one row each.
     pub colors: &'a Columns,
     /// `α` of (27), per area.
     pub fidelity: f64,
 }
 
-/// Colours of the copies, and which of its copies each vertex takes its colour from.
+/// Colors of the copies, and which of its copies each vertex takes its color from.
 pub(super) struct Fit {
     pub values: Columns,
     /// The copy whose side a vertex is on; nothing for one that is a blend of its sides and for vertices without faces.
@@ -31,8 +31,8 @@ pub(super) struct Fit {
 impl Task<'_> {
     /// Solves (27) on every piece of the cut surface.
     ///
-    /// A vertex on a curve has one colour, which belongs to one of its sides or is a blend of them. A first fit leaves such
-    /// vertices out and tells, by the nearest colour, which it is; the next uses it on its side and nowhere else.
+    /// A vertex on a curve has one color, which belongs to one of its sides or is a blend of them. A first fit leaves such
+    /// vertices out and tells, by the nearest color, which it is; the next uses it on its side and nowhere else.
     pub fn screened(&self, progress: &Progress) -> Result<Fit> {
         let copies = self.copies();
         let mut roots = pieces(self.cut);
@@ -65,7 +65,7 @@ impl Task<'_> {
         Ok(values)
     }
 
-    /// Least squares over the colours of the fixed copies: `min Σ_v m_v (c_v − t_v)²` for the colours `c` that the vertices take
+    /// Least squares over the colors of the fixed copies: `min Σ_v m_v (c_v − t_v)²` for the colors `c` that the vertices take
     /// from the harmonic function through them, each channel within the range of the data. The start is (27), and an
     /// early stop keeps of it what the data do not determine.
     pub fn refined(&self, fit: &mut Fit, harmonic: &mut Harmonic<'_>, progress: &Progress) -> Result<()> {
@@ -77,7 +77,7 @@ impl Task<'_> {
         let mut descent = reading.given_back(Columns { data, ..taken });
         harmonic.transposed(&mut descent, progress)?;
         let bounds: Vec<[f64; 2]> = (0..taken.n_columns).map(|c| self.range(c)).collect();
-        bounded::minimise(&mut fit.values, &descent, &bounds, FIT_LIMITS, |columns| {
+        bounded::minimize(&mut fit.values, &descent, &bounds, FIT_LIMITS, |columns| {
             harmonic.extend(columns, progress)?;
             *columns = reading.given_back(reading.taken(columns));
             harmonic.transposed(columns, progress)
@@ -137,10 +137,10 @@ impl Task<'_> {
     }
 }
 
-/// How vertices take their colours from copies: from one of them, or the mean of theirs; weighted by area.
+/// How vertices take their colors from copies: from one of them, or the mean of theirs; weighted by area.
 struct Reading<'a> {
     vertices: &'a [u32],
-    /// What part of its vertex's colour a copy is.
+    /// What part of its vertex's color a copy is.
     parts: Vec<f64>,
     /// The area of each vertex.
     mass: Vec<f64>,
@@ -161,7 +161,7 @@ impl<'a> Reading<'a> {
         Self { vertices, parts: (0..).zip(vertices).map(part).collect(), mass }
     }
 
-    /// The colours of the vertices.
+    /// The colors of the vertices.
     fn taken(&self, values: &Columns) -> Columns {
         let mut taken = Columns::zeros(self.mass.len(), values.n_columns);
         for c in 0..values.n_columns {
@@ -183,7 +183,7 @@ impl<'a> Reading<'a> {
     }
 }
 
-/// Which of its `copies` has the colour of a vertex; none if the mean of theirs is nearer to it.
+/// Which of its `copies` has the color of a vertex; none if the mean of theirs is nearer to it.
 fn owner(copies: &[u32], values: &Columns, target: &Columns) -> Option<u32> {
     let first = *copies.first()? as usize;
     let distance = |color: &dyn Fn(&[f64]) -> f64| {

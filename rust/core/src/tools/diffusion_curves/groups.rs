@@ -53,7 +53,7 @@ impl Groups {
     /// The groups that edges connect within their regions.
     fn pieces(&self, connectivity: &Connectivity, labels: &[i32]) -> Partition {
         let mut pieces = Partition::new(self.members.len());
-        for (f, g) in neighbours(connectivity).filter(|&(f, g)| labels[f] == labels[g]) {
+        for (f, g) in neighbors(connectivity).filter(|&(f, g)| labels[f] == labels[g]) {
             pieces.unite(self.of[f], self.of[g]);
         }
         pieces
@@ -84,7 +84,7 @@ impl Groups {
         };
         // The labels beyond each edge of each island.
         let mut around: BTreeMap<u32, Vec<i32>> = BTreeMap::new();
-        for (f, g) in neighbours(connectivity).filter(|&(f, g)| labels[f] != labels[g]) {
+        for (f, g) in neighbors(connectivity).filter(|&(f, g)| labels[f] != labels[g]) {
             let piece = pieces.root(self.of[f]);
             if island(piece) && !island(pieces.root(self.of[g])) {
                 around.entry(piece).or_default().push(labels[g]);
@@ -100,7 +100,7 @@ impl Groups {
 }
 
 /// The faces on both sides of every edge that joins two, once from each.
-fn neighbours(connectivity: &Connectivity) -> impl Iterator<Item = (usize, usize)> + '_ {
+fn neighbors(connectivity: &Connectivity) -> impl Iterator<Item = (usize, usize)> + '_ {
     (0..connectivity.n_halfedges()).filter_map(|h| connectivity.mate(h).map(|mate| (h / 3, mate / 3)))
 }
 

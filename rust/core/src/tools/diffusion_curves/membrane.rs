@@ -54,14 +54,14 @@ impl Membrane {
     }
 
     /// `L` plus a diagonal on the rows for which `free` holds, factored.
-    fn factorise(&self, free: &[u32], index: &[u32], diagonal: impl Fn(usize) -> f64) -> Result<Cholesky> {
+    fn factorize(&self, free: &[u32], index: &[u32], diagonal: impl Fn(usize) -> f64) -> Result<Cholesky> {
         let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
         for (j, &v) in free.iter().enumerate() {
             rows.push(j);
             let place = values.len();
             values.push(0.0);
-            let neighbours = self.laplacian.outer_view(v as usize);
-            for (u, &value) in neighbours.iter().flat_map(|row| row.iter()) {
+            let neighbors = self.laplacian.outer_view(v as usize);
+            for (u, &value) in neighbors.iter().flat_map(|row| row.iter()) {
                 if u == v as usize {
                     values[place] += value + diagonal(u);
                 } else if index[u] != FIXED && index[u] as usize > j {
@@ -75,8 +75,8 @@ impl Membrane {
             }
             starts.push(rows.len());
         }
-        let mut cholesky = Cholesky::analyse(LowerPattern { n: free.len(), starts, rows }, None)?;
-        cholesky.factorise(&values)?;
+        let mut cholesky = Cholesky::analyze(LowerPattern { n: free.len(), starts, rows }, None)?;
+        cholesky.factorize(&values)?;
         Ok(cholesky)
     }
 
@@ -84,7 +84,7 @@ impl Membrane {
     /// a positive weight `a`.
     pub fn screened(&self, weights: &[f64], target: &Columns, progress: &Progress) -> Result<Columns> {
         let all: Vec<u32> = (0..weights.len() as u32).collect();
-        let mut cholesky = self.factorise(&all, &all, |v| weights[v])?;
+        let mut cholesky = self.factorize(&all, &all, |v| weights[v])?;
         let mut values = target.clone();
         for c in 0..values.n_columns {
             values.column_mut(c).iter_mut().zip(weights).for_each(|(x, a)| *x *= a);
@@ -110,7 +110,7 @@ impl<'a> Harmonic<'a> {
         let free: Vec<u32> = (0..fixed.len()).filter(|&v| !fixed[v]).map(|v| v as u32).collect();
         let mut index = vec![FIXED; fixed.len()];
         (0..).zip(&free).for_each(|(i, &v)| index[v as usize] = i);
-        let cholesky = if free.is_empty() { None } else { Some(membrane.factorise(&free, &index, |_| 0.0)?) };
+        let cholesky = if free.is_empty() { None } else { Some(membrane.factorize(&free, &index, |_| 0.0)?) };
         Ok(Self { membrane, free, cholesky })
     }
 

@@ -1,7 +1,7 @@
-//! Diffusion curves: the few curves, with a colour on each side, that redraw a painted surface (Rowe et al. 2024,
+//! Diffusion curves: the few curves, with a color on each side, that redraw a painted surface (Rowe et al. 2024,
 //! section 7.6).
 //!
-//! [`regions`] ([`sharpen`]ed paint, [`sorting`] vertices, [`settle`] faces, [`patches`], [`weak`] borders, [`groups`] of faces) → [`chains`] (the edges between them, as curves) → [`fit`] (colours along the curves, (27)) → [`borders`],
+//! [`regions`] ([`sharpen`]ed paint, [`sorting`] vertices, [`settle`] faces, [`patches`], [`weak`] borders, [`groups`] of faces) → [`chains`] (the edges between them, as curves) → [`fit`] (colors along the curves, (27)) → [`borders`],
 //! [`thinning`] (what is stored) → [`redraw()`] ((26)); fit and drawing on the Laplacian of [`membrane`].
 //! [`trace`] brings curves that were drawn or moved by hand onto the edges, [`smooth`] draws curves without teeth.
 
@@ -42,16 +42,16 @@ use fit::{pieces, Fit, Task};
 use membrane::{Harmonic, Membrane};
 use redraw::Conditions;
 
-/// How to find the colours of the curves.
+/// How to find the colors of the curves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DiffusionCurvesOptions {
-    /// `α` of (27), in the unit that makes the area of the surface 1: colours are smoothed over a length of `1 / √α`.
+    /// `α` of (27), in the unit that makes the area of the surface 1: colors are smoothed over a length of `1 / √α`.
     pub fidelity: f64,
     /// Whether the rims of an open mesh are curves too, with one side.
     pub rims: bool,
-    /// Whether the colours of (27) are improved until the rebuilt surface is closest to the original.
+    /// Whether the colors of (27) are improved until the rebuilt surface is closest to the original.
     pub refine: bool,
-    /// How much a colour on a curve may change for fewer of them; 0 keeps one at every vertex.
+    /// How much a color on a curve may change for fewer of them; 0 keeps one at every vertex.
     pub color_error: f64,
 }
 
@@ -61,30 +61,30 @@ impl Default for DiffusionCurvesOptions {
     }
 }
 
-/// Curves with colours, and the surface that they rebuild.
+/// Curves with colors, and the surface that they rebuild.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DiffusionCurves {
-    /// The curves, edge after edge of one after another, and the colours on their sides; a point for every piece of surface
+    /// The curves, edge after edge of one after another, and the colors on their sides; a point for every piece of surface
     /// that no curve reaches.
     pub curves: ColoredCurves,
     /// Where each curve starts among the edges, and their number.
     pub starts: Vec<usize>,
-    /// The rebuilt colours.
+    /// The rebuilt colors.
     pub redrawn: Redrawn,
     /// A face for each vertex whose side it takes; nothing for a vertex that is a blend of its sides, and without faces.
     pub sides: Vec<Option<u32>>,
-    /// Mean squared error of the rebuilt colours over the area and the channels.
+    /// Mean squared error of the rebuilt colors over the area and the channels.
     pub error: f64,
-    /// How many numbers the curves are: two for each of their vertices (which it is, and its side), the colours, and one for
-    /// each knot where colours were thinned; for a point its vertex and colour.
+    /// How many numbers the curves are: two for each of their vertices (which it is, and its side), the colors, and one for
+    /// each knot where colors were thinned; for a point its vertex and color.
     pub n_numbers: usize,
 }
 
-/// The curves along the borders of the regions `labels` (one a face), with colours that rebuild `colors` (n × c).
+/// The curves along the borders of the regions `labels` (one a face), with colors that rebuild `colors` (n × c).
 ///
 /// On each piece of the surface cut open along the borders `min uᵀ L u + α ‖u − u₀‖²` is solved; its values at the borders are
-/// the colours of the curves. A vertex on a border counts for the side whose colour is nearest, and for none where the mean of its sides is nearer. With
-/// [`DiffusionCurvesOptions::refine`] least squares then improve them. Every colour stays within the range of `colors`,
+/// the colors of the curves. A vertex on a border counts for the side whose color is nearest, and for none where the mean of its sides is nearer. With
+/// [`DiffusionCurvesOptions::refine`] least squares then improve them. Every color stays within the range of `colors`,
 /// channel by channel.
 ///
 /// Source: Rowe et al. 2024, eqs. (26) and (27).
@@ -108,7 +108,7 @@ pub fn diffusion_curves(
     Ok(found)
 }
 
-/// [`diffusion_curves`] of colours and a mesh whose sizes are sane.
+/// [`diffusion_curves`] of colors and a mesh whose sizes are sane.
 fn in_their_unit(
     mesh: &Mesh,
     colors: &Columns,
@@ -138,7 +138,7 @@ fn in_their_unit(
     let cut = CutMesh::new(connectivity, &table, &flags);
     let membrane = Membrane::new(&cut, mesh.edge_lengths())?;
 
-    report("fitting colours", 0.1)?;
+    report("fitting colors", 0.1)?;
     let task = Task { cut: &cut, membrane: &membrane, colors, fidelity: options.fidelity / area };
     let mut fit = task.screened(progress)?;
     let borders = Borders { connectivity, table: &table, cut: &cut, edges: &edges, starts: &starts };
@@ -149,7 +149,7 @@ fn in_their_unit(
     let fixed = Conditions::new(connectivity, &table, &cut, &curves).fixed;
     let mut harmonic = Harmonic::new(&membrane, &fixed)?;
     if options.refine {
-        report("improving colours", 0.4)?;
+        report("improving colors", 0.4)?;
         task.refined(&mut fit, &mut harmonic, progress)?;
         curves = ColoredCurves { points, point_colors, ..borders.colored(&fit.values) };
     }
@@ -180,7 +180,7 @@ fn check_fidelity(fidelity: f64) -> Result<()> {
     Err(Error::argument("fidelity", format!("is {fidelity}; it must be positive")))
 }
 
-/// A vertex for every piece of surface without a curve, and the mean colour of the piece.
+/// A vertex for every piece of surface without a curve, and the mean color of the piece.
 fn points(task: &Task<'_>, fit: &Fit, on_curves: &[bool]) -> (Vec<u32>, Vec<f64>) {
     let mut roots = pieces(task.cut);
     let means = task.means(fit, &mut roots);

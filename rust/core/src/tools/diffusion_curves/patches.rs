@@ -1,15 +1,15 @@
-//! Painted patches that segmentation has left in a region of another colour.
+//! Painted patches that segmentation has left in a region of another color.
 
 use super::constants::{PAINT_NOISE, SHADING};
 use super::groups::Groups;
 use super::sorting::{Paint, Sorted};
 use crate::mesh::partition::Partition;
 
-/// Vertices joined by edges over which colours hardly change.
+/// Vertices joined by edges over which colors hardly change.
 pub(super) struct Parts {
     /// A vertex of the part of each vertex, the same one for all of the part.
     pub root: Vec<usize>,
-    /// Colours change by less than this over the edges that join.
+    /// Colors change by less than this over the edges that join.
     pub tolerance: f64,
 }
 
@@ -28,7 +28,7 @@ impl Parts {
     }
 }
 
-/// Gives each patch a region of its own: a part of the vertices, none of which has the colour of its region, and that `least` faces
+/// Gives each patch a region of its own: a part of the vertices, none of which has the color of its region, and that `least` faces
 /// or more touch.
 pub(super) fn add_patches(paint: &Paint<'_>, sorted: &Sorted, groups: &Groups, least: usize, labels: &mut [i32]) {
     let connectivity = paint.mesh.connectivity();

@@ -1,4 +1,4 @@
-//! Colours from curves: Laplace's equation between them (Rowe et al. 2024, eq. (26)).
+//! Colors from curves: Laplace's equation between them (Rowe et al. 2024, eq. (26)).
 
 use super::chains::sided;
 use super::fit::pieces;
@@ -10,38 +10,38 @@ use crate::progress::{Progress, Report};
 use crate::unit::Unit;
 use crate::{Error, Result};
 
-/// Colours on both sides of edges of a mesh, and at single vertices.
+/// Colors on both sides of edges of a mesh, and at single vertices.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ColoredCurves {
     /// Start and end vertex of every edge.
     pub edges: Vec<[u32; 2]>,
-    /// Numbers of a colour.
+    /// Numbers of a color.
     pub n_channels: usize,
-    /// The colours at the start and at the end of every edge on its left, where faces run from start to end:
+    /// The colors at the start and at the end of every edge on its left, where faces run from start to end:
     /// `edges × 2 × channels`. Where no face is on that side they are not used.
     pub left: Vec<f64>,
     /// The same on the right.
     pub right: Vec<f64>,
-    /// Vertices with a colour of their own, away from curves.
+    /// Vertices with a color of their own, away from curves.
     pub points: Vec<u32>,
-    /// Their colours, `points × channels`.
+    /// Their colors, `points × channels`.
     pub point_colors: Vec<f64>,
 }
 
-/// The colours of a surface between curves.
+/// The colors of a surface between curves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Redrawn {
-    /// One colour a vertex. A vertex on a curve takes the colour of the side that was asked for, else the mean of its sides;
+    /// One color a vertex. A vertex on a curve takes the color of the side that was asked for, else the mean of its sides;
     /// vertices without faces get 0.
     pub colors: Columns,
-    /// The colours at the three corners of every face, `faces × 3 × channels`: across a curve they jump.
+    /// The colors at the three corners of every face, `faces × 3 × channels`: across a curve they jump.
     pub corners: Vec<f64>,
 }
 
-/// Diffuses the colours of curves over a mesh: `Δu = 0` between the curves and `u` as given on each of their sides, for the
+/// Diffuses the colors of curves over a mesh: `Δu = 0` between the curves and `u` as given on each of their sides, for the
 /// cotangent Laplacian on the intrinsic Delaunay triangulation of the mesh cut open along the curves.
 ///
-/// Every colour lies within the range of the given ones, channel by channel. Where curves meet, the colours that they give to
+/// Every color lies within the range of the given ones, channel by channel. Where curves meet, the colors that they give to
 /// the same side are averaged. `sides` names for each vertex a face whose side it takes.
 ///
 /// Source: Rowe et al. 2024, eq. (26); Orzan et al. 2008.
@@ -80,7 +80,7 @@ pub fn redraw(
 }
 
 impl Redrawn {
-    /// The colours back in the unit that they came in.
+    /// The colors back in the unit that they came in.
     pub(super) fn restore(&mut self, unit: Unit) {
         unit.restore_all(self.colors.data.iter_mut().chain(&mut self.corners));
     }
@@ -91,14 +91,14 @@ impl ColoredCurves {
         self.left.iter().chain(&self.right).chain(&self.point_colors)
     }
 
-    /// The colours back in the unit that they came in.
+    /// The colors back in the unit that they came in.
     pub(super) fn restore(&mut self, unit: Unit) {
         unit.restore_all(self.left.iter_mut().chain(&mut self.right).chain(&mut self.point_colors));
     }
 
     fn check(&self, connectivity: &Connectivity) -> Result<()> {
         if self.n_channels == 0 {
-            return Err(Error::argument("left", "has no channels; pass at least one number a colour"));
+            return Err(Error::argument("left", "has no channels; pass at least one number a color"));
         }
         let sized = [
             ("left", &self.left, 2 * self.edges.len(), "two rows an edge"),
@@ -160,7 +160,7 @@ pub(super) struct Conditions {
 }
 
 impl Conditions {
-    /// Gives each copy the mean of the colours that curves give it, and those of points to the copies that no curve reaches.
+    /// Gives each copy the mean of the colors that curves give it, and those of points to the copies that no curve reaches.
     pub fn new(connectivity: &Connectivity, table: &EdgeTable, cut: &CutMesh, curves: &ColoredCurves) -> Self {
         let (n, k) = (cut.n_copies(), curves.n_channels);
         let mut counts = vec![0_u32; n];
@@ -189,21 +189,21 @@ impl Conditions {
         Self { fixed: counts.iter().map(|&count| count > 0).collect(), values }
     }
 
-    /// Refuses a piece of surface that nothing colours.
+    /// Refuses a piece of surface that nothing colors.
     fn check(&self, cut: &CutMesh) -> Result<()> {
         let mut roots = pieces(cut);
         let mut reached = vec![false; cut.n_copies()];
         (0..).zip(&self.fixed).filter(|(_, fixed)| **fixed).for_each(|(i, _)| reached[roots.root(i) as usize] = true);
         match cut.faces.iter().position(|face| !reached[roots.root(face[0]) as usize]) {
             Some(face) => {
-                let problem = format!("none of them reaches the piece of surface of face {face}; colour it by a point");
+                let problem = format!("none of them reaches the piece of surface of face {face}; color it by a point");
                 Err(Error::argument("edges", problem))
             }
             None => Ok(()),
         }
     }
 
-    /// Solves for the other copies and gives vertices and corners their colours.
+    /// Solves for the other copies and gives vertices and corners their colors.
     pub fn solve(
         &self,
         connectivity: &Connectivity,

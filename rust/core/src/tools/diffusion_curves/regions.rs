@@ -1,4 +1,4 @@
-//! The regions of a painted surface: segments of its colours, whose borders then follow the paint vertex by vertex.
+//! The regions of a painted surface: segments of its colors, whose borders then follow the paint vertex by vertex.
 
 use super::constants::{REGION_ROUNDS, SURE};
 use super::groups::Groups;
@@ -16,12 +16,12 @@ use crate::tools::{segment, SegmentOptions};
 use crate::unit::Unit;
 use crate::Result;
 
-/// The region of each face by the colours at the vertices (n × c): what [`segment`] finds, its borders moved by [`follow_colors`].
+/// The region of each face by the colors at the vertices (n × c): what [`segment`] finds, its borders moved by [`follow_colors`].
 ///
 /// Soft edges of the paint count as sharp ones, or the blends in them would become regions.
 ///
-/// If no number of regions is asked for, patches that it has left in a region of another colour get regions of their own, and
-/// regions without which the surface comes back as well become part of a neighbour.
+/// If no number of regions is asked for, patches that it has left in a region of another color get regions of their own, and
+/// regions without which the surface comes back as well become part of a neighbor.
 ///
 /// Faces with the same number in `groups`, the triangles of a polygon, come into one region: that of most of them.
 ///
@@ -50,7 +50,7 @@ pub fn color_regions(
         progress.report(Report { fraction, stage: stage.into(), ..Report::default() });
         progress.check()
     };
-    report("following colours", 0.0)?;
+    report("following colors", 0.0)?;
     follow(&paint, &groups, false, &mut labels)?;
     if options.n_segments.is_none() {
         groups.absorb_islands(connectivity, &mut labels);
@@ -62,13 +62,13 @@ pub fn color_regions(
         report("leaving out borders", 0.5)?;
         merge_weak(&paint, &mut labels)?;
     }
-    // Where within a blend the border is best, its own colours tell.
+    // Where within a blend the border is best, its own colors tell.
     settle(&original, &groups, &mut labels)?;
     renumber(&mut labels);
     Ok(labels)
 }
 
-/// Moves the borders of regions until they follow the colours: each vertex is told by its colour to which of the regions around it
+/// Moves the borders of regions until they follow the colors: each vertex is told by its color to which of the regions around it
 /// it belongs, and has a face of that region in the end; no face lies in a region that none of its vertices belongs to. Among
 /// the borders that do so, short ones are taken.
 ///

@@ -4,7 +4,7 @@ use super::constants::{SETTLE_SWEEPS, SHORTER_BY};
 use super::groups::{majority, Groups};
 use crate::mesh::{Connectivity, Mesh};
 
-/// Labels of faces that are changed, and which region each vertex has the colour of.
+/// Labels of faces that are changed, and which region each vertex has the color of.
 pub(super) struct Faces<'a> {
     connectivity: &'a Connectivity,
     lengths: &'a [[f64; 3]],

@@ -1,23 +1,23 @@
-//! Paint without its soft edges: what a soft brush or a smoothed image leaves between two colours is no colour of its own.
+//! Paint without its soft edges: what a soft brush or a smoothed image leaves between two colors is no color of its own.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
 use super::constants::MIXING_STEPS;
 use super::patches::Parts;
-use super::sorting::{neighbours, Paint};
+use super::sorting::{neighbors, Paint};
 use crate::linear::Columns;
 
-/// The colours, with every blend replaced by the one of the colours that it is a blend of to which it is nearest.
+/// The colors, with every blend replaced by the one of the colors that it is a blend of to which it is nearest.
 ///
-/// Of a part of the surface that edges join over which colours hardly change, all vertices may be blends but those that are no
-/// end of another edge. Where there is none such, the part is a blend if most of its vertices have a mixture of the colours around it.
+/// Of a part of the surface that edges join over which colors hardly change, all vertices may be blends but those that are no
+/// end of another edge. Where there is none such, the part is a blend if most of its vertices have a mixture of the colors around it.
 /// Blends are filled from what is around them, the most similar vertex first (seeded region growing, Adams and Bischof 1994). Borders
-/// then are where one colour outweighs the other, and flat paint stays as it is.
+/// then are where one color outweighs the other, and flat paint stays as it is.
 pub(super) fn sharpened(paint: &Paint<'_>) -> Columns {
     let colors = paint.colors;
     let connectivity = paint.mesh.connectivity();
-    let around = neighbours(connectivity.faces(), colors.n_rows, |_| true);
+    let around = neighbors(connectivity.faces(), colors.n_rows, |_| true);
     let blended = blends(paint, &around);
     let mut source: Vec<Option<usize>> = (0..colors.n_rows).map(|v| (!blended[v]).then_some(v)).collect();
     let mut waiting = BinaryHeap::new();
@@ -62,7 +62,7 @@ fn blends(paint: &Paint<'_>, around: &[Vec<u32>]) -> Vec<bool> {
     root.iter().zip(&flat).map(blended).collect()
 }
 
-/// Whether a mixture of the colours of `others` comes as near to the colour of `v` as `tolerance`: steps towards the nearest point of
+/// Whether a mixture of the colors of `others` comes as near to the color of `v` as `tolerance`: steps toward the nearest point of
 /// their convex hull (Frank and Wolfe 1956).
 fn is_mixture(colors: &Columns, v: usize, others: &[u32], tolerance: f64) -> bool {
     let color = |v: usize| (0..colors.n_columns).map(|c| colors.column(c)[v]).collect::<Vec<f64>>();
@@ -88,7 +88,7 @@ fn is_mixture(colors: &Columns, v: usize, others: &[u32], tolerance: f64) -> boo
     false
 }
 
-/// The colour of a vertex for another one, and how far off it is.
+/// The color of a vertex for another one, and how far off it is.
 struct Offer {
     off: f64,
     vertex: usize,

@@ -1,4 +1,4 @@
-//! Curves without saw teeth, to be looked at: their colours stay at vertices.
+//! Curves without saw teeth, to be looked at: their colors stay at vertices.
 
 use super::chains::border_edges;
 use super::constants::{FARTHEST, SMOOTH_STEPS};

@@ -1,4 +1,4 @@
-//! Which region the colour of each vertex belongs to.
+//! Which region the color of each vertex belongs to.
 
 use super::chains::border_edges;
 use super::constants::{BROAD, LEAST_GAIN, NEARER};
@@ -21,10 +21,10 @@ pub(super) struct Paint<'a> {
 
 /// Vertices by regions.
 pub(super) struct Sorted {
-    /// The region that each vertex has the colour of: of several with that colour the one with most faces around it. Nothing where
+    /// The region that each vertex has the color of: of several with that color the one with most faces around it. Nothing where
     /// all that are near explain it about as well.
     pub regions: Vec<Option<i32>>,
-    /// How far each colour is from that of the region nearest to it.
+    /// How far each color is from that of the region nearest to it.
     pub off: Vec<f64>,
 }
 
@@ -38,7 +38,7 @@ impl Paint<'_> {
         (0..self.colors.n_columns).map(range).map(|[least, most]| most - least).fold(0.0, f64::max)
     }
 
-    /// How far the colours of two vertices are from each other.
+    /// How far the colors of two vertices are from each other.
     pub fn distance(&self, a: usize, b: usize) -> f64 {
         let column = |c: usize| self.colors.column(c);
         (0..self.colors.n_columns).map(|c| (column(c)[a] - column(c)[b]).powi(2)).sum::<f64>().sqrt()
@@ -46,7 +46,7 @@ impl Paint<'_> {
 
     /// Compares every vertex on a border, or beside one, with the fits (27) of the regions there.
     ///
-    /// A region that does not reach a vertex is compared by the mean of its colours at the vertices around it.
+    /// A region that does not reach a vertex is compared by the mean of its colors at the vertices around it.
     pub fn sort(&self, labels: &[i32]) -> Result<Sorted> {
         let connectivity = self.mesh.connectivity();
         let area: f64 = self.mesh.edge_lengths().iter().map(|&l| triangle::area(l)).sum();
@@ -62,7 +62,7 @@ impl Paint<'_> {
         let copies = task.copies();
         let mut label_of = vec![0; cut.n_copies()];
         cut.faces.iter().zip(labels).for_each(|(face, &label)| face.iter().for_each(|&i| label_of[i as usize] = label));
-        let around = neighbours(connectivity.faces(), connectivity.n_vertices(), |v| copies[v as usize].len() > 1);
+        let around = neighbors(connectivity.faces(), connectivity.n_vertices(), |v| copies[v as usize].len() > 1);
         let mut corners = vec![Vec::new(); copies.len()];
         for (face, &label) in connectivity.faces().iter().zip(labels) {
             face.iter().for_each(|&v| corners[v as usize].push(label));
@@ -91,7 +91,7 @@ impl Paint<'_> {
     }
 }
 
-/// The colours of regions at and around one vertex: label, their sum, and their number.
+/// The colors of regions at and around one vertex: label, their sum, and their number.
 struct Misfits<'a> {
     labels: &'a [i32],
     values: &'a Columns,
@@ -108,7 +108,7 @@ impl Misfits<'_> {
         self.found.push((self.labels[copy as usize], self.color(copy), 1.0));
     }
 
-    /// A copy of a neighbour; it counts if no copy of the vertex, the first `here`, is of its region.
+    /// A copy of a neighbor; it counts if no copy of the vertex, the first `here`, is of its region.
     fn add_beside(&mut self, copy: u32, here: usize) {
         let label = self.labels[copy as usize];
         if self.found[..here].iter().any(|found| found.0 == label) {
@@ -124,7 +124,7 @@ impl Misfits<'_> {
         }
     }
 
-    /// How far each is from the colour of vertex `v`.
+    /// How far each is from the color of vertex `v`.
     fn offs(&self, colors: &Columns, v: usize) -> Vec<(i32, f64)> {
         let off = |sum: &[f64], count: f64| {
             let squares = sum.iter().enumerate().map(|(c, s)| (s / count - colors.column(c)[v]).powi(2));
@@ -134,8 +134,8 @@ impl Misfits<'_> {
     }
 }
 
-/// The neighbours of every vertex that `on_border` holds for or that has such a neighbour.
-pub(super) fn neighbours(faces: &[[u32; 3]], n_vertices: usize, on_border: impl Fn(u32) -> bool) -> Vec<Vec<u32>> {
+/// The neighbors of every vertex that `on_border` holds for or that has such a neighbor.
+pub(super) fn neighbors(faces: &[[u32; 3]], n_vertices: usize, on_border: impl Fn(u32) -> bool) -> Vec<Vec<u32>> {
     let mut around = vec![Vec::new(); n_vertices];
     for face in faces.iter().filter(|face| face.iter().any(|&v| on_border(v))) {
         for i in 0..3 {

@@ -1,8 +1,8 @@
-//! Fewer colours along a curve: knots, and linear colours by arc length between them.
+//! Fewer colors along a curve: knots, and linear colors by arc length between them.
 
-/// Thins the colours of one curve: `rows` has a row of `width` numbers a point, `lengths` the edges between the points.
+/// Thins the colors of one curve: `rows` has a row of `width` numbers a point, `lengths` the edges between the points.
 ///
-/// The knots are the ends and, again and again, the point that is farthest from the linear colours between its neighbouring
+/// The knots are the ends and, again and again, the point that is farthest from the linear colors between its neighboring
 /// knots (Ramer 1972; Douglas and Peucker 1973), until no number is off by more than `tolerance`. Returns how many there are.
 pub(super) fn thin(rows: &mut [f64], width: usize, lengths: &[f64], tolerance: f64) -> usize {
     let last = lengths.len();

@@ -74,7 +74,7 @@ pub fn trace_curves(mesh: &Mesh, curves: &[(Vec<Point>, bool)]) -> Result<Vec<Tr
 /// The edges around every vertex, and what a search marks.
 struct Search<'a> {
     positions: &'a [Point],
-    neighbours: Buckets<u32>,
+    neighbors: Buckets<u32>,
     mean_edge: f64,
     /// For each vertex the search that reached it, its cost, and the vertex before it.
     seen: Vec<(u32, f64, u32)>,
@@ -86,7 +86,7 @@ impl<'a> Search<'a> {
         let table = EdgeTable::new(connectivity);
         let ends = |h: usize| [connectivity.tail(h), connectivity.head(h)];
         let edges: Vec<[u32; 2]> = table.edges().filter_map(|mut edge| edge.next()).map(ends).collect();
-        let neighbours = Buckets::new(positions.len(), |visit| {
+        let neighbors = Buckets::new(positions.len(), |visit| {
             for &[a, b] in &edges {
                 visit(a as usize, b);
                 visit(b as usize, a);
@@ -94,7 +94,7 @@ impl<'a> Search<'a> {
         });
         let total: f64 = edges.iter().map(|&[a, b]| distance(positions[a as usize], positions[b as usize])).sum();
         let mean_edge = (total / edges.len().max(1) as f64).max(f64::MIN_POSITIVE);
-        Self { positions, neighbours, mean_edge, seen: vec![(0, 0.0, 0); positions.len()], stamp: 0 }
+        Self { positions, neighbors, mean_edge, seen: vec![(0, 0.0, 0); positions.len()], stamp: 0 }
     }
 
     /// The path over `vertices`, which stand for `points`; `first` is the row of the first point.
@@ -148,8 +148,8 @@ impl<'a> Search<'a> {
             if cost > self.seen[vertex as usize].1 {
                 continue;
             }
-            for k in 0..self.neighbours.of(vertex as usize).len() {
-                let next = self.neighbours.of(vertex as usize)[k];
+            for k in 0..self.neighbors.of(vertex as usize).len() {
+                let next = self.neighbors.of(vertex as usize)[k];
                 let there = cost + self.cost(vertex, next, line);
                 let held = &mut self.seen[next as usize];
                 if held.0 != stamp || there < held.1 {

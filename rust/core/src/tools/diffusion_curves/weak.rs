@@ -69,7 +69,7 @@ impl Trial<'_> {
         diffusion_curves(mesh, colors, labels, &options, &progress.quiet())
     }
 
-    /// The area of every region and the squared error of its colours over it.
+    /// The area of every region and the squared error of its colors over it.
     fn errors(&self, found: &DiffusionCurves, labels: &[i32]) -> BTreeMap<i32, [f64; 2]> {
         let faces = self.paint.mesh.connectivity().faces();
         let mut side = found.sides.clone();
@@ -87,7 +87,7 @@ impl Trial<'_> {
         errors
     }
 
-    /// For every two regions with a border its length, and the sum over it of how far colours jump.
+    /// For every two regions with a border its length, and the sum over it of how far colors jump.
     fn jumps(&self, found: &DiffusionCurves, labels: &[i32]) -> BTreeMap<[i32; 2], [f64; 2]> {
         let connectivity = self.paint.mesh.connectivity();
         let lengths = self.paint.mesh.edge_lengths();

@@ -57,7 +57,7 @@ fn part_of(region: &Region, parts: &Parts, labels: &[u32], f: u32) -> u32 {
     }
 }
 
-/// Gives every face without a part that of a neighbour, best fits first.
+/// Gives every face without a part that of a neighbor, best fits first.
 fn flood(region: &Region, parts: &Parts, edge: f64, labels: &mut [u32]) {
     let first = region.n_outer as u32;
     let mut heap = BinaryHeap::new();

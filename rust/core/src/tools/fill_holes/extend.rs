@@ -124,7 +124,7 @@ fn cut(region: &mut Region, parts: &Parts, labels: &mut Vec<u32>, edge: f64) -> 
     labels.len() > before
 }
 
-/// Free vertices that belong where a neighbour is, and that neighbour: remeshing does not join two vertices that are both fixed.
+/// Free vertices that belong where a neighbor is, and that neighbor: remeshing does not join two vertices that are both fixed.
 fn merges(region: &Region, parts: &Parts, labels: &[u32], edge: f64) -> Vec<[u32; 2]> {
     let found = |v: u32| {
         let own = parts_at(region, parts, labels, v);
@@ -136,7 +136,7 @@ fn merges(region: &Region, parts: &Parts, labels: &[u32], edge: f64) -> Vec<[u32
                     w < v && own.len() > 2 && own == parts_at(region, parts, labels, w)
                 }
         };
-        region.mesh.neighbours(v).into_iter().find(|&w| joins(w))
+        region.mesh.neighbors(v).into_iter().find(|&w| joins(w))
     };
     region.free().filter_map(|v| Some([v, found(v)?])).collect()
 }
@@ -226,7 +226,7 @@ mod tests {
         let shape = shapes::cylinder(48, 12, 1.0, 1.5);
         let bottom = shape.vertices.iter().zip(0..).filter(|(p, _)| p[2] == 0.0).map(|(_, v)| v).collect::<Vec<u32>>();
         let mut capped = shape.clone();
-        // Rings towards the centre, as wide as the edges of the rim.
+        // Rings toward the center, as wide as the edges of the rim.
         let mut ring = bottom.clone();
         for k in 1..7 {
             let next: Vec<u32> = (0..48).map(|i| capped.vertices.len() as u32 + i).collect();

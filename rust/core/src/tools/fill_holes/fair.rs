@@ -15,7 +15,7 @@ use crate::progress::Progress;
 use crate::solve::{quadratic, Coupling, Problem, Settings};
 use crate::Result;
 
-/// Moves the patch to the minimiser of the L2 Hessian energy of its coordinates on both sides of its ridges, everything around it
+/// Moves the patch to the minimizer of the L2 Hessian energy of its coordinates on both sides of its ridges, everything around it
 /// fixed; edges bent by more than `ridge` radians are ridges. Returns the longest move.
 ///
 /// The surface is cut along the ridges and its parts stay joined there: with the natural boundary conditions of the energy (Stein
@@ -46,7 +46,7 @@ pub(super) fn fair(region: &mut Region, ridge: f64, progress: &Progress) -> Resu
         coupling: Coupling::Joint,
     };
     let settings = Settings { announce: false, ..Settings::default() };
-    let goal = quadratic::minimise(&problem, &settings, progress)?.values.to_points()?;
+    let goal = quadratic::minimize(&problem, &settings, progress)?.values.to_points()?;
     Ok(move_guarded(region, &goal))
 }
 

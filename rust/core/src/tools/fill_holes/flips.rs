@@ -8,7 +8,7 @@ use crate::remesh::editable::key;
 use crate::remesh::EditableMesh;
 use crate::shape_guard::FLIPPED_SLIVER;
 
-/// Flips edges of the patch while that lowers `Σ length · |dihedral angle|` over the edge and its four neighbours, and
+/// Flips edges of the patch while that lowers `Σ length · |dihedral angle|` over the edge and its four neighbors, and
 /// makes no triangle of less quality than [`FLIPPED_SLIVER`] unless the old one was worse. Returns the number of flips.
 pub(super) fn flip_along_ridges(region: &mut Region, sweeps: usize) -> usize {
     let mut edges: Vec<[u32; 2]> = (region.n_outer as u32..region.mesh.n_faces() as u32)

@@ -8,7 +8,7 @@ use crate::shape_guard::{FOLD_ANGLE, KEPT, MOVED_SLIVER, PARTS_OF_A_MOVE, TURNED
 /// How often the steps at a bad face are halved before they are taken back.
 const HALVINGS: usize = 4;
 
-/// Moves the free vertices towards `goal` as far as the faces around them stay in order, and returns the longest move.
+/// Moves the free vertices toward `goal` as far as the faces around them stay in order, and returns the longest move.
 pub(super) fn move_guarded(region: &mut Region, goal: &[Point]) -> f64 {
     let old = region.mesh.positions().to_vec();
     let mut part: Vec<f64> = (0..old.len() as u32).map(|v| if region.is_anchor(v) { 0.0 } else { 1.0 }).collect();

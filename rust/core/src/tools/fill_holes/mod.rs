@@ -1,6 +1,6 @@
 //! Hole filling that brings ridges back (Rowe et al. 2024, section 7.4.2, and beyond it).
 //!
-//! Each hole is a problem of its own ([`region`]): the patch and a few rings around it. The patch starts as the minimiser of a
+//! Each hole is a problem of its own ([`region`]): the patch and a few rings around it. The patch starts as the minimizer of a
 //! quadratic energy ([`start`]). Where the surface around is smooth ([`decide`]) that is the result. Where it has ridges,
 //! cycles follow: the L1 flow flattens ([`flow`]), edges flip along the ridges ([`flips`]). Then the smooth parts around the
 //! hole ([`parts`]), each a plane or gently bent ([`model`]), are given the faces of the patch ([`assign`]) and go on until they
@@ -23,7 +23,7 @@ mod give_back;
 mod guard;
 mod meeting;
 mod model;
-mod neighbourhoods;
+mod neighborhoods;
 mod options;
 mod parts;
 mod region;
@@ -52,7 +52,7 @@ use crate::progress::{Progress, Report};
 use crate::remesh::budget;
 use crate::Result;
 use constants::{MARKED_ANGLE, REGION_RINGS};
-use neighbourhoods::Neighbourhoods;
+use neighborhoods::Neighborhoods;
 use region::Region;
 use restore::Restored;
 use sound::restored_in_order;
@@ -133,7 +133,7 @@ fn fill(working: &Working<'_>, options: &FillHolesOptions, progress: &Progress) 
         status: HoleStatus::Converged,
         ridges: Vec::new(),
     };
-    let near = Neighbourhoods::new(mesh.connectivity(), &at_loops);
+    let near = Neighborhoods::new(mesh.connectivity(), &at_loops);
     let shared = choice::on_several(&chosen);
     let filling = Filling { working, near, shared, options, progress };
     let total = patches.iter().map(|patch| patch.faces.len()).sum::<usize>().max(1) as f64;
@@ -179,7 +179,7 @@ fn fill(working: &Working<'_>, options: &FillHolesOptions, progress: &Progress) 
 /// What the filling of every hole knows.
 struct Filling<'a> {
     working: &'a Working<'a>,
-    near: Neighbourhoods<'a>,
+    near: Neighborhoods<'a>,
     /// The vertices on several loops.
     shared: HashSet<u32>,
     options: &'a FillHolesOptions,

@@ -13,7 +13,7 @@ pub enum Sharpness {
     /// Per hole: as sharp as can be where there are ridges around it, smooth where there are none.
     #[default]
     Auto,
-    /// 0: the flow of the paper, without flips and snapping; towards 1: ever sharper.
+    /// 0: the flow of the paper, without flips and snapping; toward 1: ever sharper.
     Value(f64),
 }
 

@@ -80,7 +80,7 @@ fn rings(region: &Region, on_rim: &[bool]) -> Vec<u32> {
     while !front.is_empty() {
         ring += 1;
         let mut next = Vec::new();
-        for w in front.into_iter().flat_map(|v| region.mesh.neighbours(v)) {
+        for w in front.into_iter().flat_map(|v| region.mesh.neighbors(v)) {
             if rings[w as usize] == u32::MAX {
                 rings[w as usize] = ring;
                 next.push(w);

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::neighbourhoods::Neighbourhoods;
+use super::neighborhoods::Neighborhoods;
 use crate::error::MeshError;
 use crate::hole_filling::Patch;
 use crate::mesh::vector::Point;
@@ -33,7 +33,7 @@ impl Region {
     /// two vertices of `shared`.
     pub(super) fn new(
         mesh: &Mesh,
-        near: &Neighbourhoods<'_>,
+        near: &Neighborhoods<'_>,
         patch: &Patch,
         first_new: u32,
         rings: usize,
@@ -157,7 +157,7 @@ pub(super) mod tests {
         let hole = find_holes(&mesh).unwrap().remove(0).vertices;
         let patch = fill_loop(&mesh, &hole, &FillOptions::default(), &Progress::new()).unwrap();
         let at = faces_at(&mesh, std::slice::from_ref(&hole)).unwrap();
-        let near = Neighbourhoods::new(mesh.connectivity(), &at);
+        let near = Neighborhoods::new(mesh.connectivity(), &at);
         let n = mesh.connectivity().n_vertices() as u32;
         Region::new(&mesh, &near, &patch, n, super::super::constants::REGION_RINGS, &HashSet::new()).unwrap()
     }

@@ -20,7 +20,7 @@ pub(super) struct Kept<'a> {
     pub ridge: f64,
     /// and so do these, smaller vertex first.
     pub borders: &'a [[u32; 2]],
-    /// Free vertices and the neighbours with which they are joined first.
+    /// Free vertices and the neighbors with which they are joined first.
     pub merges: &'a [[u32; 2]],
 }
 
@@ -119,7 +119,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use std::collections::HashSet;
 
-    use super::super::neighbourhoods::Neighbourhoods;
+    use super::super::neighborhoods::Neighborhoods;
     use super::*;
     use crate::hole_filling::{faces_at, fill_loop, find_holes, FillOptions};
     use crate::shapes::grid;
@@ -132,7 +132,7 @@ mod tests {
         let (progress, coarse) = (Progress::new(), FillOptions { max_faces: 1500, ..FillOptions::default() });
         let patch = fill_loop(&mesh, &hole, &coarse, &progress).unwrap();
         let at = faces_at(&mesh, std::slice::from_ref(&hole)).unwrap();
-        let near = Neighbourhoods::new(mesh.connectivity(), &at);
+        let near = Neighborhoods::new(mesh.connectivity(), &at);
         let n = mesh.connectivity().n_vertices() as u32;
         let mut region = Region::new(&mesh, &near, &patch, n, 2, &HashSet::new()).unwrap();
         let mut faces_after = |max_faces| {

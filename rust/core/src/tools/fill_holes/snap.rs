@@ -28,7 +28,7 @@ pub(super) struct Snapping {
     pub drop: f64,
     /// A vertex moves at most so many edge lengths.
     pub reach: f64,
-    /// How far a vertex goes towards the middle of its neighbours, in the directions that no plane determines.
+    /// How far a vertex goes toward the middle of its neighbors, in the directions that no plane determines.
     pub relaxation: f64,
 }
 
@@ -48,12 +48,12 @@ impl Snapping {
     };
 }
 
-/// Moves every free vertex where the planes around it say where, and to the middle of its neighbours where they do not;
+/// Moves every free vertex where the planes around it say where, and to the middle of its neighbors where they do not;
 /// returns the longest move.
 ///
 /// Where an edge nearby is bent by more than the threshold, the pseudo-inverse of the quadric (Garland and Heckbert 1997) of
 /// the planes takes it onto a plane, onto the line of two, into the corner of three. In the directions that the planes
-/// leave free, it goes to the centroid of its neighbours: ridges and plane parts keep their triangles in shape.
+/// leave free, it goes to the centroid of its neighbors: ridges and plane parts keep their triangles in shape.
 pub(super) fn snap(region: &mut Region, how: &Snapping) -> f64 {
     let surface = Surface::of(region);
     let bent = near_bends(region, &surface, how);
@@ -92,23 +92,23 @@ fn near_bends(region: &Region, surface: &Surface, how: &Snapping) -> Vec<bool> {
 fn step(region: &Region, surface: &Surface, bent: &[bool], around: &mut Rings<'_>, v: u32, how: &Snapping) -> Point {
     let mesh = &region.mesh;
     let at = mesh.position(v);
-    let neighbours = mesh.neighbours(v);
-    let count = neighbours.len().max(1) as f64;
-    let edge = neighbours.iter().map(|&w| distance(at, mesh.position(w))).sum::<f64>() / count;
+    let neighbors = mesh.neighbors(v);
+    let count = neighbors.len().max(1) as f64;
+    let edge = neighbors.iter().map(|&w| distance(at, mesh.position(w))).sum::<f64>() / count;
     let mut quadric = Quadric::default();
     let near_ridge = bent[v as usize];
     let rings = if near_ridge { how.rings } else { 1 };
     for f in around.within(v, rings).iter().map(|&f| f as usize) {
         let Some(face) = mesh.face(f as u32) else { continue };
         let normal = surface.normals[f];
-        let away = distance(surface.centres[f], at) / (how.width * edge);
+        let away = distance(surface.centers[f], at) / (how.width * edge);
         let confidence = 1.0 / (0.01 + (surface.face_angles[f] / how.doubt).powi(4));
         let trust = if region.is_patch(f as u32) { 1.0 } else { how.trust };
         let weight = trust * surface.areas[f] * (-0.5 * away * away).exp() * confidence;
         quadric.add(weight, normal, dot(normal, sub(mesh.position(face[0]), at)));
     }
     let mut step = [0.0; 3];
-    let centroid = neighbours.iter().fold([0.0; 3], |sum, &w| add(sum, scale(mesh.position(w), 1.0 / count)));
+    let centroid = neighbors.iter().fold([0.0; 3], |sum, &w| add(sum, scale(mesh.position(w), 1.0 / count)));
     let mut slide = scale(sub(centroid, at), how.relaxation);
     for (vector, along) in quadric.determined(how.drop) {
         if near_ridge {

@@ -7,7 +7,7 @@ use crate::progress::Progress;
 use crate::solve::{quadratic, Coupling, Problem, Settings};
 use crate::Result;
 
-/// Moves the patch to the minimiser of a quadratic energy of its coordinates, everything around it fixed, `rounds` times:
+/// Moves the patch to the minimizer of a quadratic energy of its coordinates, everything around it fixed, `rounds` times:
 /// the energy is that of the surface before each round.
 pub(super) fn smooth(region: &mut Region, energy: Energy, rounds: usize, progress: &Progress) -> Result<()> {
     let settings = Settings { announce: false, ..Settings::default() };
@@ -24,7 +24,7 @@ pub(super) fn smooth(region: &mut Region, energy: Energy, rounds: usize, progres
             linear_constraints: None,
             coupling: Coupling::Joint,
         };
-        let solution = quadratic::minimise(&problem, &settings, progress)?;
+        let solution = quadratic::minimize(&problem, &settings, progress)?;
         for (v, point) in (0..).zip(solution.values.to_points()?).skip(region.anchors.len()) {
             region.mesh.set_position(v, point);
         }

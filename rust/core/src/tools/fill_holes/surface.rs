@@ -15,8 +15,8 @@ pub(super) struct Surface {
     pub normals: Vec<Point>,
     /// The area of every face.
     pub areas: Vec<f64>,
-    /// The barycentre of every face.
-    pub centres: Vec<Point>,
+    /// The barycenter of every face.
+    pub centers: Vec<Point>,
     /// The largest dihedral angle (0 where flat) at the edges of every face.
     pub face_angles: Vec<f64>,
 }
@@ -30,7 +30,7 @@ impl Surface {
         let normal = |(a, &area): (&Point, &f64)| if area > 0.0 { scale(*a, 1.0 / area) } else { [0.0; 3] };
         let mut surface = Self {
             normals: vectors.iter().zip(&areas).map(normal).collect(),
-            centres: corners.into_iter().map(centroid).collect(),
+            centers: corners.into_iter().map(centroid).collect(),
             face_angles: vec![0.0; areas.len()],
             areas,
         };

@@ -1,4 +1,4 @@
-//! Folds of a patch that already lies on its surfaces: faces that look backwards, in a plane with their neighbours.
+//! Folds of a patch that already lies on its surfaces: faces that look backwards, in a plane with their neighbors.
 
 use super::constants::{UNTANGLE_PASSES, UNTANGLE_RINGS};
 use super::meeting::{meeting_point, turned};
@@ -6,7 +6,7 @@ use super::parts::Parts;
 use super::region::Region;
 use crate::mesh::vector::{add, scale, Point};
 
-/// Moves vertices around faces that are turned away from their part to the mean of their neighbours, as in an embedding with fixed
+/// Moves vertices around faces that are turned away from their part to the mean of their neighbors, as in an embedding with fixed
 /// surroundings, which has no folds (Tutte 1963), and back onto their surfaces. Nothing changes if as many faces are turned after that.
 pub(super) fn untangle(region: &mut Region, parts: &Parts, labels: &[u32]) {
     let before = turned(region, parts, labels);
@@ -15,7 +15,7 @@ pub(super) fn untangle(region: &mut Region, parts: &Parts, labels: &[u32]) {
     }
     let mut near: Vec<u32> = before.iter().filter_map(|&f| region.mesh.face(f)).flatten().collect();
     for _ in 0..UNTANGLE_RINGS {
-        let more: Vec<u32> = near.iter().flat_map(|&v| region.mesh.neighbours(v)).collect();
+        let more: Vec<u32> = near.iter().flat_map(|&v| region.mesh.neighbors(v)).collect();
         near.extend(more);
         near.sort_unstable();
         near.dedup();
@@ -24,7 +24,7 @@ pub(super) fn untangle(region: &mut Region, parts: &Parts, labels: &[u32]) {
     let start: Vec<Point> = near.iter().map(|&v| region.mesh.position(v)).collect();
     for _ in 0..UNTANGLE_PASSES {
         for &v in &near {
-            let around = region.mesh.neighbours(v);
+            let around = region.mesh.neighbors(v);
             let share = 1.0 / around.len().max(1) as f64;
             let mean = around.iter().fold([0.0; 3], |sum, &w| add(sum, scale(region.mesh.position(w), share)));
             region.mesh.set_position(v, mean);

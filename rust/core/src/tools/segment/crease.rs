@@ -25,7 +25,7 @@ impl Slopes {
             .connectivity
             .edges()
             .filter(|&h| {
-                let g = surface.neighbours[h / 3][h % 3];
+                let g = surface.neighbors[h / 3][h % 3];
                 g != NONE && labels[g as usize] != labels[h / 3]
             })
             .collect();

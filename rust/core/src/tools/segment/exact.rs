@@ -1,4 +1,4 @@
-//! Shapes that were modelled, not measured: every vertex lies where it should, and a side may be two triangles.
+//! Shapes that were modeled, not measured: every vertex lies where it should, and a side may be two triangles.
 //!
 //! The Hessian needs some rows of faces to tell a side from noise. Where the shape is exact there is no noise: faces in one plane are
 //! one side, and the angle between two planes is known from one edge.
@@ -113,7 +113,7 @@ impl<'a> Facets<'a> {
         (2.0 * norm(self.surface.vector_area(h / 3)) / length).max(f64::MIN_POSITIVE)
     }
 
-    /// The faces joined over the edges that `joins`, slivers with the neighbour at their longest edge: a label for each, from 0.
+    /// The faces joined over the edges that `joins`, slivers with the neighbor at their longest edge: a label for each, from 0.
     fn joined(&self, edges: &[Turn], joins: impl Fn(&Turn) -> bool) -> Vec<u32> {
         let n = self.surface.n_faces();
         let mut partition = Partition::new(n);
@@ -125,7 +125,7 @@ impl<'a> Facets<'a> {
         contiguous(&roots).0
     }
 
-    /// Joins each sliver with the neighbour at its longest edge, or where that leads to slivers only, at another one.
+    /// Joins each sliver with the neighbor at its longest edge, or where that leads to slivers only, at another one.
     fn place_slivers(&self, partition: &mut Partition) {
         let mut placed: Vec<bool> = self.slivers.iter().map(|sliver| !sliver).collect();
         let mut left: Vec<usize> = (0..placed.len()).filter(|&f| !placed[f]).collect();

@@ -1,4 +1,4 @@
-//! Segments that are noise on a neighbour: what the plane or the patch of a larger one explains is no part.
+//! Segments that are noise on a neighbor: what the plane or the patch of a larger one explains is no part.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,16 +10,16 @@ use crate::mesh::vector::{add, dot};
 use crate::progress::Progress;
 use crate::Result;
 
-/// How much a neighbour explains.
+/// How much a neighbor explains.
 pub(super) struct Explain<'a> {
     pub surface: &'a Surface<'a>,
     /// Standard deviation of the distances from a plane.
     pub deviation: f64,
     /// The most that the corners of faces of one plane are off it, root mean square.
     pub flat: f64,
-    /// Segments of no more faces are specks, and may be part of a curved neighbour.
+    /// Segments of no more faces are specks, and may be part of a curved neighbor.
     pub most_faces: usize,
-    /// Whether neighbours may be curved.
+    /// Whether neighbors may be curved.
     pub curved: bool,
     pub progress: &'a Progress,
 }
@@ -34,7 +34,7 @@ struct Segments {
 }
 
 impl Explain<'_> {
-    /// Gives segments to the larger neighbours that explain them, the smallest first. Labels are contiguous then.
+    /// Gives segments to the larger neighbors that explain them, the smallest first. Labels are contiguous then.
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
@@ -86,7 +86,7 @@ impl Explain<'_> {
         }
     }
 
-    /// The larger neighbour that explains the segment `own`, that with the longest border of several.
+    /// The larger neighbor that explains the segment `own`, that with the longest border of several.
     fn home(&self, labels: &[u32], segments: &Segments, own: u32) -> Option<u32> {
         let around: Vec<(u32, f64)> =
             segments.borders.range((own, 0)..=(own, u32::MAX)).map(|(&(_, to), &length)| (to, length)).collect();
@@ -101,7 +101,7 @@ impl Explain<'_> {
         home.map(|(to, _)| *to)
     }
 
-    /// Whether `faces` lie on the plane of a neighbour, on the side that it shows; if `enclosed` by it, on any.
+    /// Whether `faces` lie on the plane of a neighbor, on the side that it shows; if `enclosed` by it, on any.
     fn lies_on(&self, plane: &Plane, faces: &[u32], area: f64, enclosed: bool) -> bool {
         let surface = self.surface;
         let (mut vector, mut squares) = ([0.0; 3], 0.0);

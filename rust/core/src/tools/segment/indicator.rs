@@ -1,4 +1,4 @@
-//! The alternating minimisation of the Ambrosio-Tortorelli functional with the L1 Hessian (Rowe et al. 2024, eq. (41)).
+//! The alternating minimization of the Ambrosio-Tortorelli functional with the L1 Hessian (Rowe et al. 2024, eq. (41)).
 
 use super::constants::{LEAST_WEIGHT, MOST_ALTERNATIONS, NOISE_ATTEMPTS, NOISE_POWER, NOISE_TOLERANCE};
 use super::indicator_step::IndicatorStep;
@@ -11,7 +11,7 @@ use crate::solve::{solve, Coupling, Problem, Session, Settings, Solution, Solver
 use crate::tools::sharpness::block_norms;
 use crate::Result;
 
-/// How the functional is minimised.
+/// How the functional is minimized.
 pub(super) struct Functional<'a> {
     pub surface: &'a Surface<'a>,
     /// `u₀`, in the unit of the segmentation.
@@ -31,8 +31,8 @@ pub(super) struct Functional<'a> {
     pub settings: Settings,
 }
 
-/// Where the minimisation ended.
-pub(super) struct Minimiser {
+/// Where the minimization ended.
+pub(super) struct Minimizer {
     /// `u`
     pub values: Columns,
     /// `v`, one for each face.
@@ -49,8 +49,8 @@ impl Functional<'_> {
     /// Minimizes Rowe et al. 2024, eq. (25), in matrices eq. (41), for every `ε` in turn, starting each from the last.
     ///
     /// # Errors
-    /// A failed factorisation, or [`crate::Error::Cancelled`].
-    pub fn minimise(&self, progress: &Progress) -> Result<Minimiser> {
+    /// A failed factorization, or [`crate::Error::Cancelled`].
+    pub fn minimize(&self, progress: &Progress) -> Result<Minimizer> {
         let surface = self.surface;
         let operator = self.operator()?;
         let mass = voronoi_mass(surface.connectivity, &surface.lengths);
@@ -63,7 +63,7 @@ impl Functional<'_> {
             solver: Session::new(),
             step: IndicatorStep::new(surface, self.length_weight, self.face_costs)?,
             progress,
-            reached: Minimiser {
+            reached: Minimizer {
                 values: self.values.clone(),
                 indicator: vec![1.0; surface.n_faces()],
                 fidelity: self.fidelity,
@@ -89,11 +89,11 @@ impl Functional<'_> {
         Ok(HessianPattern::new(connectivity).assemble(connectivity, lengths, Dual::Barycentric)?)
     }
 
-    /// The minimiser over `v` alone, for the last `ε` and the values as they are: where nothing is to be smoothed.
+    /// The minimizer over `v` alone, for the last `ε` and the values as they are: where nothing is to be smoothed.
     ///
     /// # Errors
-    /// A failed factorisation, or [`crate::Error::Cancelled`].
-    pub fn indicate(&self, progress: &Progress) -> Result<Minimiser> {
+    /// A failed factorization, or [`crate::Error::Cancelled`].
+    pub fn indicate(&self, progress: &Progress) -> Result<Minimizer> {
         progress.check()?;
         let surface = self.surface;
         let operator = self.operator()?;
@@ -101,9 +101,9 @@ impl Functional<'_> {
         if let Some(epsilon) = self.epsilons.last() {
             step.prepare(*epsilon);
         }
-        Ok(Minimiser {
+        Ok(Minimizer {
             values: self.values.clone(),
-            indicator: step.minimise(&block_norms(&operator, self.values, Coupling::Joint))?,
+            indicator: step.minimize(&block_norms(&operator, self.values, Coupling::Joint))?,
             fidelity: self.fidelity,
             alternations: 1,
             status: Status::Solved,
@@ -120,7 +120,7 @@ struct Run<'a> {
     solver: Session,
     step: IndicatorStep,
     progress: &'a Progress,
-    reached: Minimiser,
+    reached: Minimizer,
 }
 
 impl Run<'_> {
@@ -153,7 +153,7 @@ impl Run<'_> {
         (sum / self.total.max(f64::MIN_POSITIVE)).sqrt()
     }
 
-    /// Both minimisations in turns for one `ε`.
+    /// Both minimizations in turns for one `ε`.
     fn alternate(&mut self, level: usize, epsilon: f64) -> Result<()> {
         self.step.prepare(epsilon);
         let levels = self.functional.epsilons.len();
@@ -164,7 +164,7 @@ impl Run<'_> {
                 return Ok(());
             }
             let norms = block_norms(self.operator, &self.reached.values, Coupling::Joint);
-            let v = self.step.minimise(&norms)?;
+            let v = self.step.minimize(&norms)?;
             let change = self.mean_squared_change(&v);
             self.reached.indicator = v;
             let energy = self.update_values()?;

@@ -1,4 +1,4 @@
-//! The indicator of borders for a fixed signal: one linear system on the faces, its pattern analysed once.
+//! The indicator of borders for a fixed signal: one linear system on the faces, its pattern analyzed once.
 
 use super::surface::Surface;
 use crate::linear::cholesky::Cholesky;
@@ -19,7 +19,7 @@ pub(super) struct IndicatorStep {
 }
 
 impl IndicatorStep {
-    /// Analyses the pattern.
+    /// Analyzes the pattern.
     ///
     /// # Errors
     /// Too little memory for the factor.
@@ -49,7 +49,7 @@ impl IndicatorStep {
         let weighted_areas =
             surface.areas.iter().zip(face_costs).map(|(area, cost)| length_weight * cost * area).collect();
         Ok(Self {
-            cholesky: Cholesky::analyse(LowerPattern { n: m, starts, rows }, None)?,
+            cholesky: Cholesky::analyze(LowerPattern { n: m, starts, rows }, None)?,
             weighted_areas,
             values: laplacian.clone(),
             laplacian,
@@ -62,11 +62,11 @@ impl IndicatorStep {
         self.epsilon = epsilon;
     }
 
-    /// The minimiser for the norms `‖(H u)_f‖`. Faces that nothing determines, those without area, get 1.
+    /// The minimizer for the norms `‖(H u)_f‖`. Faces that nothing determines, those without area, get 1.
     ///
     /// # Errors
     /// A matrix that is not positive definite.
-    pub fn minimise(&mut self, norms: &[f64]) -> Result<Vec<f64>> {
+    pub fn minimize(&mut self, norms: &[f64]) -> Result<Vec<f64>> {
         let largest = self.weighted_areas.iter().fold(0.0_f64, |a, b| a.max(*b)).max(f64::MIN_POSITIVE);
         for (value, entry) in self.values.iter_mut().zip(&self.laplacian) {
             *value = self.epsilon * entry;
@@ -77,7 +77,7 @@ impl IndicatorStep {
             self.values[start] += norm + pull(area);
         }
         let mut v: Vec<[f64; 1]> = self.weighted_areas.iter().map(|&area| [pull(area)]).collect();
-        self.cholesky.factorise(&self.values)?;
+        self.cholesky.factorize(&self.values)?;
         self.cholesky.solve(&mut v);
         // Exactly, 0 < v ≤ 1 by the maximum principle.
         Ok(v.into_iter().map(|[v]| v.clamp(0.0, 1.0)).collect())

@@ -81,7 +81,7 @@ impl Merging<'_> {
         Ok(borders)
     }
 
-    /// Gives every segment of fewer than `least` faces to the neighbour behind its weakest border, smallest first.
+    /// Gives every segment of fewer than `least` faces to the neighbor behind its weakest border, smallest first.
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].

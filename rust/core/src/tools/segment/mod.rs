@@ -1,8 +1,8 @@
 //! Segmentation: the faces that a person would name, with clean borders (Rowe et al. 2024, section 7.5).
 //!
-//! [`indicator`] minimises the functional (41), whose `v` is low at borders. From there on the paper's way is [`threshold`]; the
+//! [`indicator`] minimizes the functional (41), whose `v` is low at borders. From there on the paper's way is [`threshold`]; the
 //! other one ([`passes`]) is [`watershed`], then merging across borders that bend little ([`crease`], [`merge`]), dividing what lies across a
-//! ridge ([`divide`]), joining what a neighbour explains ([`explain`]), and moving faces at borders
+//! ridge ([`divide`]), joining what a neighbor explains ([`explain`]), and moving faces at borders
 //! to the segment that they fit best ([`relabel`]), or, between curved segments, along creases ([`straighten`]). Sides of a few triangles, which the Hessian cannot see, are told by their planes
 //! ([`exact`]), those of a few rows under little noise by the normals of their faces ([`flat_sides`]). In any case a [`hierarchy`] of nested segmentations comes with it.
 
@@ -80,7 +80,7 @@ pub struct Segmentation {
 
 /// Divides the faces of `mesh` into segments on which `values`, or without them the vertex positions, are nearly affine.
 ///
-/// Minimises `α ‖u − u₀‖²_M + Σ_f v_f² ‖(H u)_f‖ + λ ε vᵀ L v + λ/(4ε) ‖1 − v‖²_{M_F}` (Rowe et al. 2024, eq. (41)) in turns over `u` and
+/// Minimizes `α ‖u − u₀‖²_M + Σ_f v_f² ‖(H u)_f‖ + λ ε vᵀ L v + λ/(4ε) ‖1 − v‖²_{M_F}` (Rowe et al. 2024, eq. (41)) in turns over `u` and
 /// `v`, with `ε` halved down, and makes segments from `v`: see [`SegmentMethod`].
 ///
 /// Faces are oriented first, and for a shape its seams joined ([`Working`]).
@@ -183,7 +183,7 @@ fn whole(
         solver: options.solve.solver,
         settings: *settings,
     };
-    let found = if is_exact { functional.indicate(progress)? } else { functional.minimise(progress)? };
+    let found = if is_exact { functional.indicate(progress)? } else { functional.minimize(progress)? };
     let passes = Passes {
         surface: &surface,
         start: &start,

@@ -28,7 +28,7 @@ pub struct SegmentOptions {
     /// `λ`, what a border costs per length. A crease that bends by more (radians; for other signals the jump of the slope, with the
     /// signal's range and the shape's size as 1) is worth a border.
     pub length_weight: f64,
-    /// `α`. Without it as the noise found in the signal wants it; for [`SegmentMethod::Paper`] 1000. With it even modelled shapes of a
+    /// `α`. Without it as the noise found in the signal wants it; for [`SegmentMethod::Paper`] 1000. With it even modeled shapes of a
     /// few faces a side are smoothed, which otherwise go by their planes.
     pub fidelity: Option<f64>,
     /// `ε` at the start.
@@ -40,7 +40,7 @@ pub struct SegmentOptions {
     /// For [`SegmentMethod::Paper`]: edges with a lower indicator are cut.
     pub cut_threshold: f64,
     /// Segments of fewer faces are merged. Without it 20, or where [`SegmentMethod::Fitted`] finds less noise down to
-    /// 4; none for modelled shapes of a few faces a side.
+    /// 4; none for modeled shapes of a few faces a side.
     pub min_faces: Option<usize>,
     /// How many segments are wanted; as many as the length weight makes where `None`.
     pub n_segments: Option<usize>,

@@ -1,6 +1,6 @@
 //! Moving faces at borders to the segment that they fit best, with straight borders.
 //!
-//! Minimises `Σ_f misfit(f, label) + Σ_border edges length` over the labels of the faces at borders, face by face, as variational
+//! Minimizes `Σ_f misfit(f, label) + Σ_border edges length` over the labels of the faces at borders, face by face, as variational
 //! shape approximation does (Cohen-Steiner et al. 2004) with the length of the borders added (Potts 1952, Besag 1986).
 
 use std::collections::BTreeMap;
@@ -98,7 +98,7 @@ impl Relabel<'_> {
         EDGE_COST * cost / self.surface.mean_edge.max(f64::MIN_POSITIVE)
     }
 
-    /// Gives every small piece of a segment but its largest to the neighbour with which it has the longest border; other pieces
+    /// Gives every small piece of a segment but its largest to the neighbor with which it has the longest border; other pieces
     /// become segments of their own.
     pub fn rejoin(&self, labels: &mut [u32]) {
         loop {

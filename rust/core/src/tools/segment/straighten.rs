@@ -24,7 +24,7 @@ pub(super) struct Straighten<'a> {
 }
 
 impl<'a> Straighten<'a> {
-    /// Measures all edges. Normals are those of a face and its neighbours together, so that noise does not count as creases.
+    /// Measures all edges. Normals are those of a face and its neighbors together, so that noise does not count as creases.
     pub fn new(surface: &'a Surface<'a>, flat: f64, progress: &'a Progress) -> Self {
         let normals: Vec<Point> = (0..surface.n_faces())
             .map(|f| {

@@ -1,4 +1,4 @@
-//! What all parts of the segmentation know of the surface: sizes in the chosen unit, neighbours, frames.
+//! What all parts of the segmentation know of the surface: sizes in the chosen unit, neighbors, frames.
 
 use crate::mesh::vector::area_vector;
 use crate::mesh::{edge_lengths, triangle, Connectivity};
@@ -19,7 +19,7 @@ pub(super) struct Surface<'a> {
     /// Centroids of the faces.
     pub centroids: Vec<[f64; 3]>,
     /// The face across each halfedge, or [`NONE`].
-    pub neighbours: Vec<[u32; 3]>,
+    pub neighbors: Vec<[u32; 3]>,
     /// What a border along each halfedge costs per length, 1 where nothing was asked for.
     pub costs: Vec<[f64; 3]>,
     /// Mean length of the edges.
@@ -36,7 +36,7 @@ impl<'a> Surface<'a> {
         let centroid = |face: &[u32; 3]| {
             std::array::from_fn(|c| face.iter().map(|&v| positions[v as usize][c]).sum::<f64>() / 3.0)
         };
-        let neighbours = (0..connectivity.n_faces())
+        let neighbors = (0..connectivity.n_faces())
             .map(|f| [0, 1, 2].map(|i| connectivity.twin(3 * f + i).map_or(NONE, |twin| (twin / 3) as u32)))
             .collect();
         let (sum, count) =
@@ -46,7 +46,7 @@ impl<'a> Surface<'a> {
             connectivity,
             positions,
             areas,
-            neighbours,
+            neighbors,
             costs,
             mean_edge: sum / count.max(1) as f64,
             lengths,
@@ -60,10 +60,10 @@ impl<'a> Surface<'a> {
 
     /// The faces next to `f`, each with the halfedge of `f` that leads there.
     pub fn around(&self, f: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
-        self.neighbours[f].iter().enumerate().filter(|(_, g)| **g != NONE).map(move |(i, g)| (3 * f + i, *g as usize))
+        self.neighbors[f].iter().enumerate().filter(|(_, g)| **g != NONE).map(move |(i, g)| (3 * f + i, *g as usize))
     }
 
-    /// Whether a neighbour of `f` has another label.
+    /// Whether a neighbor of `f` has another label.
     pub fn is_at_border(&self, labels: &[u32], f: usize) -> bool {
         self.around(f).any(|(_, g)| labels[g] != labels[f])
     }

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::surface::{contiguous, Surface};
 
 /// Cuts the mesh along the edges where the mean of the indicator over both faces is below `threshold`, and merges the pieces of
-/// fewer than `min_faces` faces into the neighbour with which they share most edges, smallest first. Returns contiguous labels
+/// fewer than `min_faces` faces into the neighbor with which they share most edges, smallest first. Returns contiguous labels
 /// and how many there are.
 ///
 /// Source: Rowe et al. 2024, supplement E.
@@ -30,9 +30,9 @@ pub(super) fn cut_and_merge(
     let mut small: BTreeSet<(usize, u32)> =
         (0..count as u32).map(|l| (sizes[l as usize], l)).filter(|(size, _)| *size < min_faces).collect();
     while let Some((size, gone)) = small.pop_first() {
-        let neighbours = std::mem::take(&mut shared[gone as usize]);
+        let neighbors = std::mem::take(&mut shared[gone as usize]);
         // The smallest name where several have most edges.
-        let majority = neighbours.iter().max_by_key(|(label, edges)| (**edges, Reverse(**label)));
+        let majority = neighbors.iter().max_by_key(|(label, edges)| (**edges, Reverse(**label)));
         let Some((&kept, _)) = majority else { continue };
         home[gone as usize] = kept;
         small.remove(&(sizes[kept as usize], kept));
@@ -40,7 +40,7 @@ pub(super) fn cut_and_merge(
         if sizes[kept as usize] < min_faces {
             small.insert((sizes[kept as usize], kept));
         }
-        for (third, edges) in neighbours {
+        for (third, edges) in neighbors {
             shared[third as usize].remove(&gone);
             if third != kept {
                 *shared[third as usize].entry(kept).or_default() += edges;

@@ -81,7 +81,7 @@ pub(super) struct Walk<'a> {
     pub slopes: &'a Slopes,
     pub surface: &'a Surface<'a>,
     pub labels: &'a [u32],
-    /// Which faces have a neighbour of another label.
+    /// Which faces have a neighbor of another label.
     pub at_border: &'a [bool],
 }
 
@@ -89,7 +89,7 @@ impl Walk<'_> {
     /// The bend across the edge of halfedge `h`.
     pub fn bend(&self, h: usize, marks: &mut Marks) -> Bend {
         let (f, surface) = (h / 3, self.surface);
-        let g = surface.neighbours[f][h % 3] as usize;
+        let g = surface.neighbors[f][h % 3] as usize;
         let p = self.slopes.layouts[f];
         let (tail, head) = (p[(h + 1) % 3], p[(h + 2) % 3]);
         let length = surface.lengths[f][h % 3].max(f64::MIN_POSITIVE);

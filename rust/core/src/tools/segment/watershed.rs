@@ -16,7 +16,7 @@ pub(super) fn watershed(surface: &Surface<'_>, indicator: &[f64], persistence: f
     for &face in &order {
         let f = face as usize;
         basins.clear();
-        // The neighbour that lies highest decides where the face goes when basins stay apart.
+        // The neighbor that lies highest decides where the face goes when basins stay apart.
         let mut best: Option<(f64, u32)> = None;
         for (_, g) in surface.around(f) {
             if !flooded[g] {

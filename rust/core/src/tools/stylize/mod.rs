@@ -1,4 +1,4 @@
-//! The flow towards piecewise flat shapes (Rowe et al. 2024, eq. (24)), with sharpness.
+//! The flow toward piecewise flat shapes (Rowe et al. 2024, eq. (24)), with sharpness.
 
 mod flatness;
 mod options;
@@ -30,9 +30,9 @@ const STILL: f64 = 1e-7;
 /// A shape has collapsed when its size has fallen below this part of what it was, or its area below the tenth of that.
 const COLLAPSED: f64 = 1e-2;
 
-/// Moves the vertices of `mesh` towards piecewise flat patches with crisp ridges.
+/// Moves the vertices of `mesh` toward piecewise flat patches with crisp ridges.
 ///
-/// Each step minimises `Σ_f w_f A_f ‖H_f x‖ + η ‖x − x⁽ⁱ⁾‖²_M` over the coordinates `x`, with operator and mass of the
+/// Each step minimizes `Σ_f w_f A_f ‖H_f x‖ + η ‖x − x⁽ⁱ⁾‖²_M` over the coordinates `x`, with operator and mass of the
 /// mesh as it is then. Rowe et al. 2024, eq. (24); the weights are those of [`sharpened_weights`], the sizes of the steps
 /// those of [`Pace`].
 ///

@@ -112,7 +112,7 @@ pub struct Stylized {
     pub gap: Vec<f64>,
     /// The solver's iterations in every step.
     pub solver_iterations: Vec<usize>,
-    /// Numeric factorisations in all.
+    /// Numeric factorizations in all.
     pub factorisations: usize,
     /// How far the shape is made of planes, before the first and after the last step.
     pub flatness: [Flatness; 2],

@@ -1,4 +1,4 @@
-//! The parts of a linear solution with 40k rows, on one thread and on two: analysis, factorisation, triangular solves.
+//! The parts of a linear solution with 40k rows, on one thread and on two: analysis, factorization, triangular solves.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use criterion::{criterion_group, criterion_main, BatchSize, Criterion};
@@ -7,7 +7,7 @@ use ridgeform_core::operators::{voronoi_mass, Dual, HessianPattern};
 use ridgeform_core::shapes;
 use ridgeform_core::solve::normal_matrix::NormalMatrix;
 
-fn factorisation(criterion: &mut Criterion) {
+fn factorization(criterion: &mut Criterion) {
     let shape = shapes::torus(250, 160, 3.0, 1.0).noisy(0.01, 1);
     let mesh = shape.mesh().unwrap();
     let (connectivity, lengths) = (mesh.connectivity(), mesh.edge_lengths());
@@ -23,12 +23,12 @@ fn factorisation(criterion: &mut Criterion) {
         let mut group = criterion.benchmark_group(format!("40k rows, threads: {threads}"));
         group.sample_size(10);
         group.bench_function("analysis", |bencher| {
-            let analyse = |pattern| pool.install(|| Cholesky::analyse(pattern, None));
-            bencher.iter_batched(|| normal.pattern().clone(), analyse, BatchSize::PerIteration);
+            let analyze = |pattern| pool.install(|| Cholesky::analyze(pattern, None));
+            bencher.iter_batched(|| normal.pattern().clone(), analyze, BatchSize::PerIteration);
         });
-        let mut cholesky = pool.install(|| Cholesky::analyse(normal.pattern().clone(), None)).unwrap();
-        group.bench_function("factorisation", |bencher| {
-            bencher.iter(|| pool.install(|| cholesky.factorise(&entries)));
+        let mut cholesky = pool.install(|| Cholesky::analyze(normal.pattern().clone(), None)).unwrap();
+        group.bench_function("factorization", |bencher| {
+            bencher.iter(|| pool.install(|| cholesky.factorize(&entries)));
         });
         group.bench_function("triangular solves, one column", |bencher| {
             let solve = |mut right: Vec<[f64; 1]>| pool.install(|| cholesky.solve(&mut right));
@@ -42,5 +42,5 @@ fn factorisation(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, factorisation);
+criterion_group!(benches, factorization);
 criterion_main!(benches);

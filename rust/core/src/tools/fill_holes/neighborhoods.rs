@@ -5,13 +5,13 @@ use std::collections::HashSet;
 use crate::mesh::Connectivity;
 
 /// The faces at the loops of a mesh, and those around them on demand.
-pub(super) struct Neighbourhoods<'a> {
+pub(super) struct Neighborhoods<'a> {
     connectivity: &'a Connectivity,
     /// Every vertex of a face at a loop, with that face; sorted.
     corners: Vec<(u32, u32)>,
 }
 
-impl<'a> Neighbourhoods<'a> {
+impl<'a> Neighborhoods<'a> {
     /// Those of `connectivity`, given the faces at the loops ([`crate::hole_filling::faces_at`]).
     pub(super) fn new(connectivity: &'a Connectivity, at_loops: &[u32]) -> Self {
         let corners = |&f: &u32| connectivity.faces()[f as usize].map(|v| (v, f));
@@ -100,7 +100,7 @@ mod tests {
         for shape in [open, grid(9, 7)] {
             let mesh = shape.mesh().unwrap();
             let loops = boundary_loops(mesh.connectivity());
-            let near = Neighbourhoods::new(mesh.connectivity(), &faces_at(&mesh, &loops).unwrap());
+            let near = Neighborhoods::new(mesh.connectivity(), &faces_at(&mesh, &loops).unwrap());
             for (vertices, rings) in loops.iter().flat_map(|vertices| [1, 2, 5].map(|rings| (vertices, rings))) {
                 let expected = by_passes(mesh.connectivity().faces(), vertices, rings);
                 assert_eq!(near.within(vertices, rings), expected);
@@ -113,7 +113,7 @@ mod tests {
         // Two tetrahedra, open at the bottom, that touch in vertex 0 of both loops.
         let faces = vec![[0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 4, 6], [4, 5, 6], [5, 0, 6]];
         let connectivity = Connectivity::new(faces, 7).unwrap();
-        let near = Neighbourhoods::new(&connectivity, &[0, 1, 2, 3, 5]);
+        let near = Neighborhoods::new(&connectivity, &[0, 1, 2, 3, 5]);
         assert_eq!(near.within(&[0, 1, 2], 1), [0, 1, 2, 3, 5]);
         assert_eq!(near.within(&[0, 1, 2], 2), [0, 1, 2, 3, 4, 5]);
     }
