@@ -107,6 +107,9 @@ def _put_back(mesh: bpy.types.Mesh, layer: mesh_layers.Layer) -> None:
     """Write a layer as it was, 0 on new elements; makes its attribute if that is gone."""
     attribute = mesh.attributes.get(layer.name)
     attribute = attribute or mesh.attributes.new(layer.name, layer.data_type, layer.domain)
+    if attribute.data_type != layer.data_type:
+        # Blender 5.0 gives the selection of the edges of some meshes a wrong type; it is set anew afterwards.
+        return
     full = np.zeros(len(attribute.data) * layer.values.shape[1], layer.values.dtype)
     full[: layer.values.size] = layer.values.ravel()
     attribute.data.foreach_set(ATTRIBUTE_KINDS[layer.data_type][0], full)
