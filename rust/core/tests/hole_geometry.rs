@@ -263,3 +263,47 @@ fn loops_that_cannot_be_filled_are_refused_by_name() {
     let lengths = Mesh::from_edge_lengths(vec![[0, 1, 2]], vec![[1.0; 3]], None).unwrap();
     assert_eq!(find_holes(&lengths), Err(MeshError::NoPositions.into()));
 }
+
+/// A ring around one round hole of `n` edges.
+fn wide_ring(n: u32) -> Mesh {
+    let at = |i: u32, radius: f64, z: f64| {
+        let angle = 2.0 * std::f64::consts::PI * f64::from(i) / f64::from(n);
+        [radius * angle.cos(), radius * angle.sin(), z]
+    };
+    let vertices = (0..n).map(|i| at(i, 1.0, 0.0)).chain((0..n).map(|i| at(i, 1.1, 0.05))).collect();
+    let faces = (0..n).flat_map(|i| [[i, n + i, n + (i + 1) % n], [i, n + (i + 1) % n, (i + 1) % n]]).collect();
+    Mesh::new(vertices, faces).unwrap()
+}
+
+#[test]
+fn a_budget_that_a_rim_cannot_meet_gives_way_and_the_patch_stays_bounded() {
+    for (n, max_faces) in [(400, 10), (400, 1000), (1500, 2000), (900, 40_000)] {
+        let mesh = wide_ring(n);
+        let hole = find_holes(&mesh).unwrap().into_iter().find(|hole| hole.vertices[0] < n).unwrap();
+        let options = FillOptions { max_faces, ..FillOptions::default() };
+        let patch = fill_loop(&mesh, &hole.vertices, &options, &Progress::new()).unwrap();
+        let most = 2 * max_faces.max(5 * n as usize);
+        assert!((n as usize - 2..most).contains(&patch.faces.len()), "{n} edges: {} faces", patch.faces.len());
+    }
+}
+
+#[test]
+fn lengths_that_coordinates_cannot_tell_apart_end() {
+    let shape = shapes::grid(7, 7);
+    let fine = |p: &[f64; 3]| p.map(|x| 1.0 + f64::EPSILON * (1.0 + x.round()));
+    let mesh = Mesh::new(shape.vertices.iter().map(fine).collect(), shape.faces).unwrap();
+    for hole in find_holes(&mesh).unwrap() {
+        if let Ok(patch) = fill_loop(&mesh, &hole.vertices, &FillOptions::default(), &Progress::new()) {
+            assert!(patch.faces.len() < 10_000, "{} faces", patch.faces.len());
+        }
+    }
+}
+
+#[test]
+fn an_edge_length_that_asks_for_more_faces_than_there_is_memory_is_refused() {
+    let mesh = wide_ring(40);
+    let hole = find_holes(&mesh).unwrap().remove(0).vertices;
+    let options = FillOptions { edge_length: Some(1e-12), ..FillOptions::default() };
+    let error = fill_loop(&mesh, &hole, &options, &Progress::new()).unwrap_err();
+    assert!(error.to_string().starts_with("edge_length: 0.000000000001 would make"), "{error}");
+}

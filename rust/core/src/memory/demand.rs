@@ -37,7 +37,7 @@ impl Demand {
     #[must_use]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     pub fn estimate(&self) -> usize {
-        let is_solved = self.tool.cost().logarithmic > 0.0;
+        let is_solved = self.tool.solves();
         let is_clarabel = is_solved && self.is_clarabel;
         let Cost { face, logarithmic, column } = if is_clarabel { CLARABEL } else { self.tool.cost() };
         let faces = self.n_faces as f64;
@@ -45,7 +45,7 @@ impl Demand {
         // Clarabel takes columns as they are; our own rows fill vector registers.
         let lanes = if is_clarabel { n_columns } else { n_columns.max(1).next_power_of_two() };
         let further = lanes.saturating_sub(1) as f64;
-        let loose = self.n_vertices.saturating_sub(3 * self.n_faces.div_ceil(2)) as f64;
+        let loose = self.n_vertices.saturating_sub(self.n_faces.div_ceil(2).saturating_mul(3)) as f64;
         let per_loose = if is_solved { LOOSE[0] } else { LOOSE[1] };
         let bytes = faces * (face + logarithmic * faces.max(2.0).log2() + column * further) + per_loose * loose;
         bytes.min(1e18) as usize
@@ -78,7 +78,7 @@ impl Demand {
     /// [`Error::Memory`] with what is needed, what there is, and what would fit.
     pub fn admit(&self, limit: Option<usize>) -> Result<usize> {
         let needed = self.estimate();
-        if needed >= SMALL {
+        if self.tool.solves() {
             settle(self.tool.name())?;
         }
         let most = limit.unwrap_or_else(|| share_of_free(needed));

@@ -84,6 +84,11 @@ impl Tool {
         Self::ALL.iter().find(|(_, tool)| *tool == self).map_or("the call", |(name, _)| name)
     }
 
+    /// Whether a linear system is solved in it.
+    pub(super) const fn solves(self) -> bool {
+        self.cost().logarithmic > 0.0 || matches!(self, Self::FillHoles)
+    }
+
     pub(super) const fn cost(self) -> Cost {
         let (face, logarithmic, column) = match self {
             Self::Mesh => (60.0, 0.0, 0.0),

@@ -67,6 +67,8 @@ impl ScalarProblem<'_> {
         }
         options.energy.check_solver(options.solve.solver)?;
         let demand = self.demand();
+        // Once before anything is made, and once on the threads that compute.
+        demand.admit(options.solve.memory_limit)?;
         let right = options.linear_constraints.iter().flat_map(|(_, right)| &right.data);
         let value = Unit::of(self.target.data.iter().chain(right).copied());
         let length = self.mesh.unit();
