@@ -1,7 +1,7 @@
 //! From clusters back to faces: the borders between parts, drawn along edges of the mesh and pulled tight
 //! there.
 
-use super::constants::CLUSTERS_WIDE;
+use super::constants::{CLUSTERS_WIDE, LEAST_PART};
 use super::cut::{area_of, cost};
 use super::division::Division;
 use super::graph::{Graph, NONE};
@@ -9,8 +9,17 @@ use super::tighten::moved;
 use crate::progress::Progress;
 use crate::Result;
 
-/// The part of every face after all divisions, numbered as they are: each border the shortest one in its
-/// band.
+/// What the divisions are on the faces.
+pub(super) struct Drawn {
+    /// The part of every face, from 0.
+    pub labels: Vec<u32>,
+    /// For each division the part that was divided, the part that came of it, and what the cut costs, or the one
+    /// before if that is more. Borders between clusters are longer than those between faces, by their corners: with
+    /// the costs of the faces every density has the same.
+    pub divisions: Vec<([u32; 2], f64)>,
+}
+
+/// Draws each border where it is shortest in its band. A division that leaves less than a part is none.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`].
@@ -20,29 +29,39 @@ pub(super) fn drawn(
     n_clusters: usize,
     divisions: &[Division],
     progress: &Progress,
-) -> Result<(Vec<u32>, Vec<f64>)> {
+) -> Result<Drawn> {
     let mut labels = vec![0_u32; graph.n_nodes()];
+    let mut kept: Vec<([u32; 2], f64)> = Vec::with_capacity(divisions.len());
     let width = CLUSTERS_WIDE * (graph.area() / n_clusters as f64).sqrt();
-    // The part of each cluster, as divisions go on.
+    // The part of each cluster as divisions go on, and what that part is called on the faces.
     let mut owners = vec![0_u32; n_clusters];
-    let mut costs: Vec<f64> = Vec::with_capacity(divisions.len());
+    let mut names = vec![0_u32];
     let mut place = vec![NONE; graph.n_nodes()];
     for (number, division) in (1..).zip(divisions) {
         progress.check()?;
         division.gone.iter().for_each(|&cluster| owners[cluster as usize] = number);
-        let faces: Vec<u32> = (0..graph.n_nodes() as u32).filter(|&f| labels[f as usize] == division.part).collect();
+        names.push(names[division.part as usize]);
+        let name = names[division.part as usize];
+        let faces: Vec<u32> = (0..graph.n_nodes() as u32).filter(|&f| labels[f as usize] == name).collect();
         let part = graph.subgraph(&faces, &mut place);
         let owner = |f: u32| owners[clusters[f as usize] as usize];
-        let mut side = spread_out(&part, faces.iter().map(|&f| owner(f)), [division.part, number]);
-        if n_clusters < graph.n_nodes() {
-            side = moved(&part, &side, width).unwrap_or(side);
-        }
-        keep_whole(&part, &mut side);
-        let before = costs.last().copied().unwrap_or(0.0);
-        costs.push(cost(&part, &side).max(before));
-        faces.iter().zip(&side).filter(|(_, side)| **side).for_each(|(&f, _)| labels[f as usize] = number);
+        let rough = spread_out(&part, faces.iter().map(|&f| owner(f)), [division.part, number]);
+        let fine = if n_clusters < graph.n_nodes() { moved(&part, &rough, width) } else { None };
+        let Some(side) = fine.into_iter().chain([rough]).find_map(|side| whole_parts(&part, side)) else { continue };
+        let fresh = kept.len() as u32 + 1;
+        names[number as usize] = fresh;
+        let before = kept.last().map_or(0.0, |(_, cost)| *cost);
+        kept.push(([name, fresh], cost(&part, &side).max(before)));
+        faces.iter().zip(&side).filter(|(_, side)| **side).for_each(|(&f, _)| labels[f as usize] = fresh);
     }
-    Ok((labels, costs))
+    Ok(Drawn { labels, divisions: kept })
+}
+
+/// The cut with both sides in one piece, unless one is less than a part then.
+fn whole_parts(part: &Graph, mut side: Vec<bool>) -> Option<Vec<bool>> {
+    keep_whole(part, &mut side);
+    let area = area_of(part, &side);
+    (area.min(part.area() - area) >= LEAST_PART).then_some(side)
 }
 
 /// Which faces are on the second side, by the parts of their clusters; faces of clusters that are in

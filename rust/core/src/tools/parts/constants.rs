@@ -96,9 +96,9 @@ pub(super) const MOST_PARTS: usize = 40;
 /// shapes); 0.8 gains nothing.
 pub(super) const AREA_POWER: f64 = 0.7;
 
-/// A cut between sides whose mean thickness differs by this, in logarithms, costs a third: a wing and a body
-/// are two parts however softly they meet. Without it 10.9 as found, with it and no other thickness 10.5 where
-/// parts are merged from the bottom up.
+/// A cut costs a third where the smaller side is thinner than the rest by this on the mean, in logarithms: a
+/// wing and a body are two parts however softly they meet. A side that is thicker is none for that: the end of
+/// a limb is, seen from its tip.
 pub(super) const STEP: f64 = 1.0;
 
 /// Eigenfunctions that are swept: more find no better cuts at a part's first division, and later ones have

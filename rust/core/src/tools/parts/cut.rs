@@ -47,8 +47,9 @@ impl Side {
     /// What a cut with this border between this side and `other` costs.
     fn price(self, other: Self, border: f64) -> f64 {
         let mean = |side: Self| side.thickness / side.area.max(f64::MIN_POSITIVE);
-        let step = (mean(self) - mean(other)).abs();
-        (-step / STEP).exp() * border / self.area.min(other.area).max(f64::MIN_POSITIVE).powf(AREA_POWER)
+        let (small, large) = if self.area < other.area { (self, other) } else { (other, self) };
+        let step = (mean(large) - mean(small)).max(0.0);
+        (-step / STEP).exp() * border / small.area.max(f64::MIN_POSITIVE).powf(AREA_POWER)
     }
 }
 

@@ -28,7 +28,7 @@ use crate::progress::{Progress, Report};
 use crate::solve::Status;
 use crate::tools::segment::{boundary_edges, Hierarchy};
 use crate::Result;
-use division::Division;
+use borders::Drawn;
 use surface::Surface;
 
 /// What came out of a division into parts.
@@ -74,8 +74,9 @@ fn found(mesh: &Mesh, options: &PartsOptions, progress: &Progress) -> Result<Par
     say(progress, "dividing");
     let divisions = division::divisions(&coarse, options.n_parts, progress)?;
     say(progress, "drawing borders");
-    let (leaves, costs) = borders::drawn(&graph, &clusters, n_clusters, &divisions, progress)?;
-    let hierarchy = nested(leaves, &divisions, &costs).spread(&faces, n_faces);
+    let drawn = borders::drawn(&graph, &clusters, n_clusters, &divisions, progress)?;
+    let costs: Vec<f64> = drawn.divisions.iter().map(|(_, cost)| *cost).collect();
+    let hierarchy = nested(drawn).spread(&faces, n_faces);
     let n_parts = options.n_parts.unwrap_or_else(|| choice::count(&costs, options.most_cost()));
     let n_parts = n_parts.min(hierarchy.range()[0]);
     let labels = hierarchy.labels_at(n_parts)?;
@@ -83,12 +84,11 @@ fn found(mesh: &Mesh, options: &PartsOptions, progress: &Progress) -> Result<Par
     Ok(Parts { boundary_edges: boundary_edges(mesh, &labels), labels, n_parts, hierarchy, status })
 }
 
-/// The divisions undone from the last on, given what they cost.
-fn nested(leaves: Vec<u32>, divisions: &[Division], costs: &[f64]) -> Hierarchy {
-    let pairs = (1..).zip(divisions).map(|(number, division)| [division.part, number]);
-    let strengths = costs.iter().map(|cost| 1.0 / cost.max(f64::MIN_POSITIVE));
-    let merges: Vec<([u32; 2], f64)> = pairs.zip(strengths).collect();
-    Hierarchy::new(leaves, divisions.len() + 1, merges.into_iter().rev())
+/// The divisions undone from the last on.
+fn nested(drawn: Drawn) -> Hierarchy {
+    let count = drawn.divisions.len() + 1;
+    let undone = drawn.divisions.into_iter().rev().map(|(parts, cost)| (parts, 1.0 / cost.max(f64::MIN_POSITIVE)));
+    Hierarchy::new(drawn.labels, count, undone)
 }
 
 fn say(progress: &Progress, stage: &str) {

@@ -1,6 +1,6 @@
 //! Joints across gaps: pieces that nothing joins belong to what lies nearest.
 //!
-//! A piece large enough to be a part is joined as through a hollow, so that a cut may take it off. Smaller
+//! A piece large enough to be a part is joined by less than any hollow, so that it comes off before all limbs. Smaller
 //! ones, down to loose triangles, are joined along their open edges as if the surface went on.
 
 use super::constants::{HOLLOW, LEAST_PART, LOOKOUTS};
@@ -39,7 +39,7 @@ pub(super) fn stitched(surface: &Surface, graph: Graph) -> Graph {
         let areas = piece_areas(&graph, &pieces, count);
         for (ends, area) in nearest_pairs(surface, &graph, &pieces, &areas, &tree) {
             let length = area.sqrt();
-            edges.push(Edge { ends, length, cost: HOLLOW * length, distance: distance_of(&graph, ends) });
+            edges.push(Edge { ends, length, cost: HOLLOW * HOLLOW * length, distance: distance_of(&graph, ends) });
         }
         graph = graph.with_edges(edges.clone());
         (pieces, count) = graph.pieces(|_| true);
