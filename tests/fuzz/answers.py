@@ -36,7 +36,9 @@ def crowded(faces: np.ndarray) -> tuple[int, int]:
 def operators(mesh: ridgeform.Mesh, given: Given, sane: bool) -> None:
     """The operators, and the report."""
     report = mesh.report
-    assert report.n_boundary_loops == len(ridgeform.boundary_loops(mesh)) == len(ridgeform.find_holes(mesh))
+    # Holes are looked for after faces are oriented and seams joined, so they are not always as many.
+    assert report.n_boundary_loops == len(ridgeform.boundary_loops(mesh))
+    ridgeform.find_holes(mesh)
     finite(ridgeform.cotangent_laplacian(mesh).data, ridgeform.intrinsic_delaunay(mesh).edge_lengths)
     dual = given["dual"]
     finite(ridgeform.hessian(mesh, dual=dual).data)
@@ -73,7 +75,16 @@ def denoise(mesh: ridgeform.Mesh, given: Given, sane: bool) -> None:
         _objective(mesh, given, found)
 
 
+def _is_plain(mesh: ridgeform.Mesh) -> bool:
+    """Whether tools compute on the mesh as it is: no face is turned and no seam is joined first."""
+    if mesh.vertices is None or ridgeform.orient(mesh.faces)[1].any():
+        return False
+    return len(ridgeform.weld(mesh.vertices, mesh.faces)[0]) == mesh.n_vertices
+
+
 def _objective(mesh: ridgeform.Mesh, given: Given, found: ridgeform.Solution) -> None:
+    if not _is_plain(mesh):
+        return
     if given.get("delaunay") or given.get("sharpness") or given.get("coupling") == "separate":
         return
     words = {name: given[name] for name in ("dual", "face_weights") if name in given}
