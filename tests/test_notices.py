@@ -37,7 +37,13 @@ def test_authors_of_the_same_repository_stand_in(tmp_path):
 @pytest.mark.parametrize(("license_", "authors"), [("Apache-2.0", ("Ada",)), ("MIT", ()), (None, ("Ada",))])
 def test_missing_text_stops(tmp_path, license_, authors):
     with pytest.raises(SystemExit, match=r"made 1\.0\.0"):
-        notices.texts(crate(tmp_path, license_, authors), [])
+        notices.texts(crate(tmp_path, license_, authors) | {"repository": None}, [])
+
+
+def test_the_repository_stands_for_authors_that_are_not_named(tmp_path):
+    made = crate(tmp_path, "Zlib OR MIT", ()) | {"repository": "https://example.org/made"}
+    (text,) = notices.texts(made, [])
+    assert "Copyright (c) the authors of https://example.org/made\n" in text
 
 
 def test_wheel_without_license_stops(tmp_path):
