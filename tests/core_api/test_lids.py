@@ -125,6 +125,20 @@ def test_no_patch_in_a_fringed_rim_folds_or_faces_inwards(shape, depth, seed):
     assert np.array_equal(filled.vertices[: len(vertices)], vertices)
 
 
+@pytest.mark.parametrize("depth", [1, 2])
+@pytest.mark.parametrize("n", [8, 12, 20])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_fringed_rim_is_closed_flat(n, depth, seed):
+    vertices, faces = fringed(n, depth, seed)
+    mesh = ridgeform.Mesh(vertices, faces)
+    holes = ridgeform.find_holes(mesh)
+    rim = max(range(len(holes)), key=lambda i: len(holes[i].vertices))
+    filled = ridgeform.fill_holes(mesh, loops=[rim])
+    assert [hole.shape for hole in filled.holes] == ["flat"]
+    assert np.abs(filled.new_vertices[:, 2] - 1).max() < 0.5 * 2 / n
+    assert normals(filled.vertices, filled.new_faces)[:, 2].min() > -1e-9
+
+
 def test_holes_that_are_no_lids_stay_what_they_are():
     vertices, faces = box(16)
     centers = vertices[faces].mean(axis=1)

@@ -30,8 +30,12 @@ const WINDOW: usize = 4;
 /// the deep ones first; without any if that leaves a lid that is in order.
 const DEPTHS: [f64; 4] = [f64::INFINITY, 0.6, 0.3, 0.1];
 
-/// A notch is closed by a triangle that goes on with the faces beside it: turned from them by less than 45 degrees.
-const ALONG: f64 = std::f64::consts::FRAC_1_SQRT_2;
+/// A notch is closed by a triangle that goes on with the faces beside it: turned from those on one side by less than 45 degrees,
+/// and from those on the other by no more than 95, as around the edge of a box.
+const ALONG: [f64; 2] = [-0.09, std::f64::consts::FRAC_1_SQRT_2];
+
+/// What closes notches is no more than this part of the lid: a hole that is closed by going on with the sides around it has none.
+const MOST_NOTCHES: f64 = 0.5;
 
 /// Faces of a lid look along its normal by more than this, those at a noisy rim too.
 const LEAST_COSINE: f64 = 0.05;
@@ -82,8 +86,10 @@ struct Trimmed {
 /// The normal of a lid, to the side that it shows, if the rim of a hole calls for one: if it is planar, but for notches, and met
 /// steeply all round.
 pub(super) fn normal(polygon: &Polygon) -> Option<Point> {
-    let plane = |depth: f64| plane_of(polygon, &trimmed(polygon, depth, |_, _| false));
-    DEPTHS.into_iter().find_map(plane).map(|plane| plane.normal)
+    let rims = DEPTHS.into_iter().map(|depth| trimmed(polygon, depth, |_, _| false));
+    let mut few =
+        rims.take_while(|rim| notches_area(polygon, rim) <= MOST_NOTCHES * lid_area(&points_of(polygon, rim)));
+    few.find_map(|rim| plane_of(polygon, &rim)).map(|plane| plane.normal)
 }
 
 /// The new points of a flat patch, and its faces as places in the polygon; places from its length on are the new points.
@@ -107,6 +113,9 @@ pub(super) fn lid(
             continue;
         }
         before = rim.notches.len();
+        if notches_area(polygon, &rim) > MOST_NOTCHES * lid_area(&points_of(polygon, &rim)) {
+            break;
+        }
         let Some(plane) = plane_of(polygon, &rim).or_else(|| any.then(|| Plane::of(&points_of(polygon, &rim)))) else {
             continue;
         };
@@ -119,6 +128,19 @@ pub(super) fn lid(
 
 fn points_of(polygon: &Polygon, rim: &Trimmed) -> Vec<Point> {
     rim.places.iter().map(|&i| polygon.points[i]).collect()
+}
+
+/// The area of the projection of a polygon onto its mean plane.
+fn lid_area(points: &[Point]) -> f64 {
+    let Some(&first) = points.first() else { return 0.0 };
+    let doubled =
+        points.windows(2).fold([0.0; 3], |sum, pair| add(sum, cross(sub(pair[0], first), sub(pair[1], first))));
+    0.5 * norm(doubled)
+}
+
+/// The area of what closes the notches.
+fn notches_area(polygon: &Polygon, rim: &Trimmed) -> f64 {
+    rim.notches.iter().map(|face| norm(area_vector(face.map(|v| polygon.points[v as usize])))).sum()
 }
 
 /// The mean plane of a rim that is planar and met steeply.
@@ -134,9 +156,7 @@ fn plane_of(polygon: &Polygon, rim: &Trimmed) -> Option<Plane> {
     let squares: f64 =
         (0..n).map(|i| 0.5 * (lengths[i] + lengths[(i + n - 1) % n]) * plane.height(points[i]).powi(2)).sum();
     let off = (squares / total.max(f64::MIN_POSITIVE)).sqrt();
-    let doubled =
-        points.windows(2).fold([0.0; 3], |sum, pair| add(sum, cross(sub(pair[0], points[0]), sub(pair[1], points[0]))));
-    let size = (0.5 * norm(doubled)).sqrt();
+    let size = lid_area(&points).sqrt();
     let is_planar = off <= (OFF_EDGE * total / n as f64).min(OFF_SIZE * size);
     let lean = |i: usize| {
         let around = (i + n - WINDOW.min(n)..=i + n + WINDOW.min(n)).map(|k| k % n);
@@ -170,7 +190,8 @@ fn trimmed(polygon: &Polygon, depth: f64, is_taken: impl Fn(usize, usize) -> boo
             let area = area_vector([p, c, q]);
             let width = distance(p, q);
             let normal = unit(area);
-            let goes_on = [rim.outside[(i + n - 1) % n], rim.outside[i]].into_iter().all(|m| dot(m, normal) > ALONG);
+            let turns = [rim.outside[(i + n - 1) % n], rim.outside[i]].map(|m| dot(m, normal));
+            let goes_on = turns[0].min(turns[1]) > ALONG[0] && turns[0].max(turns[1]) > ALONG[1];
             let height = 2.0 * norm(area) / width.max(f64::MIN_POSITIVE);
             let free = !is_taken(rim.places[(i + n - 1) % n], rim.places[(i + 1) % n]);
             (goes_on && height > least && free).then_some((width, i, normal))
