@@ -83,7 +83,7 @@ impl Parts {
 /// ----------
 /// mesh : Mesh with positions
 /// n_parts : number of parts wanted, or None: as `coarseness` has it; fewer where the shape has no more
-/// coarseness : float > 0, larger gives fewer parts: cuts are made up to a cost of 1.8 / coarseness. Cuts of about
+/// coarseness : float > 0, larger gives fewer parts: cuts are made up to a cost of 1.25 / coarseness. Cuts of about
 ///     the same cost, as of two arms, are made all or none
 /// face_weights : (m,) array ≥ 0, what borders cost there: 1 is neutral, smaller attracts them
 /// edge_weights : (m,3) array ≥ 0, the same for edges, column i opposite corner i; the mean of both faces' entries

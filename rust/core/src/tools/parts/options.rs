@@ -12,7 +12,7 @@ pub struct PartsOptions {
     pub n_parts: Option<usize>,
     /// How much cheaper cuts must be than is usual, 1: larger finds fewer parts. A cut costs the length of its
     /// border, in hollows down to a tenth of it, over the 0.7th power of the area that it cuts off, both in
-    /// units of the whole area; up to 1.8 over the coarseness it is made.
+    /// units of the whole area; up to 1.25 over the coarseness it is made.
     pub coarseness: f64,
     /// What borders cost in each face, 1 neutral, smaller where they are welcome.
     pub face_weights: Option<Vec<f64>>,
