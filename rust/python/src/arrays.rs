@@ -16,7 +16,7 @@ use crate::errors::{argument, exception};
 const RESULT: &str = "the result";
 
 /// Numbers in C order, and the shape that they came in.
-pub struct Numbers<T> {
+pub(crate) struct Numbers<T> {
     /// The entries, last axis fastest.
     pub data: Vec<T>,
     /// The length of every axis.
@@ -28,7 +28,7 @@ impl<T: Copy> Numbers<T> {
     ///
     /// # Errors
     /// `ArgumentError` for another shape.
-    pub fn rows<const N: usize>(self, py: Python<'_>, name: &'static str) -> PyResult<Vec<[T; N]>> {
+    pub(crate) fn rows<const N: usize>(self, py: Python<'_>, name: &'static str) -> PyResult<Vec<[T; N]>> {
         // An empty list has shape (0,): it is an array of no rows.
         if self.shape.len() != 2 && !self.data.is_empty() || self.shape.len() == 2 && self.shape[1] != N {
             return Err(argument(
@@ -44,7 +44,7 @@ impl<T: Copy> Numbers<T> {
     ///
     /// # Errors
     /// `ArgumentError` for another shape; `what` says what there is one entry for.
-    pub fn exactly(self, py: Python<'_>, name: &'static str, length: usize, what: &str) -> PyResult<Vec<T>> {
+    pub(crate) fn exactly(self, py: Python<'_>, name: &'static str, length: usize, what: &str) -> PyResult<Vec<T>> {
         if self.shape != [length] {
             let problem =
                 format!("expected one entry for each {what}, shape ({length},), got {}", shape_text(&self.shape));
@@ -55,7 +55,9 @@ impl<T: Copy> Numbers<T> {
 }
 
 /// The array itself if it is one of shape (k, N) in C order with entries of type `T`, to be read without a copy.
-pub fn plain_rows<'py, T: Element, const N: usize>(object: &Bound<'py, PyAny>) -> Option<PyReadonlyArray2<'py, T>> {
+pub(crate) fn plain_rows<'py, T: Element, const N: usize>(
+    object: &Bound<'py, PyAny>,
+) -> Option<PyReadonlyArray2<'py, T>> {
     let array: PyReadonlyArray2<'py, T> = object.extract().ok()?;
     (array.shape()[1] == N && array.is_c_contiguous() && array.as_slice().is_ok()).then_some(array)
 }
@@ -64,7 +66,7 @@ pub fn plain_rows<'py, T: Element, const N: usize>(object: &Bound<'py, PyAny>) -
 ///
 /// # Errors
 /// `ArgumentError` for anything that is not an array of real numbers.
-pub fn floats(name: &'static str, object: &Bound<'_, PyAny>) -> PyResult<Numbers<f64>> {
+pub(crate) fn floats(name: &'static str, object: &Bound<'_, PyAny>) -> PyResult<Numbers<f64>> {
     let array = numeric_array(name, object)?;
     convert(name, &array)
 }
@@ -73,7 +75,7 @@ pub fn floats(name: &'static str, object: &Bound<'_, PyAny>) -> PyResult<Numbers
 ///
 /// # Errors
 /// As [`floats`]; `ArgumentError` that names the first row with a NaN or an infinity.
-pub fn finite_floats(name: &'static str, object: &Bound<'_, PyAny>) -> PyResult<Numbers<f64>> {
+pub(crate) fn finite_floats(name: &'static str, object: &Bound<'_, PyAny>) -> PyResult<Numbers<f64>> {
     let numbers = floats(name, object)?;
     if let Some(i) = numbers.data.iter().position(|x| !x.is_finite()) {
         let row = i / numbers.shape.iter().skip(1).product::<usize>().max(1);
@@ -87,7 +89,7 @@ pub fn finite_floats(name: &'static str, object: &Bound<'_, PyAny>) -> PyResult<
 ///
 /// # Errors
 /// `ArgumentError` for anything that is not an array of whole numbers.
-pub fn integers(name: &'static str, object: &Bound<'_, PyAny>) -> PyResult<Numbers<i64>> {
+pub(crate) fn integers(name: &'static str, object: &Bound<'_, PyAny>) -> PyResult<Numbers<i64>> {
     let py = object.py();
     let array = numeric_array(name, object)?;
     match array.dtype().kind() {
@@ -111,7 +113,7 @@ pub fn integers(name: &'static str, object: &Bound<'_, PyAny>) -> PyResult<Numbe
 ///
 /// # Errors
 /// `ArgumentError` for another shape or an index out of range; `what` names the things.
-pub fn mask(name: &'static str, object: &Bound<'_, PyAny>, length: usize, what: &str) -> PyResult<Vec<bool>> {
+pub(crate) fn mask(name: &'static str, object: &Bound<'_, PyAny>, length: usize, what: &str) -> PyResult<Vec<bool>> {
     if numeric_array(name, object)?.dtype().kind() == b'b' {
         let numbers: Numbers<f64> = floats(name, object)?;
         return Ok(numbers.exactly(object.py(), name, length, what)?.iter().map(|&x| x != 0.0).collect());
@@ -127,7 +129,12 @@ pub fn mask(name: &'static str, object: &Bound<'_, PyAny>, length: usize, what: 
 ///
 /// # Errors
 /// `ArgumentError` for another shape or an index out of range; `what` names the things.
-pub fn indices(name: &'static str, object: &Bound<'_, PyAny>, length: usize, what: &str) -> PyResult<Vec<usize>> {
+pub(crate) fn indices(
+    name: &'static str,
+    object: &Bound<'_, PyAny>,
+    length: usize,
+    what: &str,
+) -> PyResult<Vec<usize>> {
     let py = object.py();
     let numbers = integers(name, object)?;
     if numbers.shape.len() != 1 {
@@ -147,7 +154,7 @@ pub fn indices(name: &'static str, object: &Bound<'_, PyAny>, length: usize, wha
 ///
 /// # Errors
 /// `MemoryLimitError` where there is no room for it.
-pub fn copied<T: Copy>(py: Python<'_>, name: &'static str, values: &[T]) -> PyResult<Vec<T>> {
+pub(crate) fn copied<T: Copy>(py: Python<'_>, name: &'static str, values: &[T]) -> PyResult<Vec<T>> {
     memory::copied(name, values).map_err(|error| exception(py, &error))
 }
 
@@ -155,7 +162,7 @@ pub fn copied<T: Copy>(py: Python<'_>, name: &'static str, values: &[T]) -> PyRe
 ///
 /// # Errors
 /// `MemoryLimitError` where there is no room for them.
-pub fn converted<T, U>(
+pub(crate) fn converted<T, U>(
     py: Python<'_>,
     name: &'static str,
     values: &[T],
@@ -167,7 +174,7 @@ pub fn converted<T, U>(
 }
 
 /// `(3, 2)` as Python writes it.
-pub fn shape_text(shape: &[usize]) -> String {
+pub(crate) fn shape_text(shape: &[usize]) -> String {
     match shape {
         [] => "a single number".into(),
         [length] => format!("shape ({length},)"),
@@ -179,7 +186,10 @@ pub fn shape_text(shape: &[usize]) -> String {
 ///
 /// # Errors
 /// `MemoryLimitError` where there is no room for it, as of all arrays that are made here.
-pub fn float_rows<'py, const N: usize>(py: Python<'py>, rows: &[[f64; N]]) -> PyResult<Bound<'py, PyArray2<f64>>> {
+pub(crate) fn float_rows<'py, const N: usize>(
+    py: Python<'py>,
+    rows: &[[f64; N]],
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
     Ok(Array2::from(copied(py, RESULT, rows)?).into_pyarray(py))
 }
 
@@ -187,12 +197,15 @@ pub fn float_rows<'py, const N: usize>(py: Python<'py>, rows: &[[f64; N]]) -> Py
 ///
 /// # Errors
 /// As [`float_rows`].
-pub fn index_rows<'py, const N: usize>(py: Python<'py>, rows: &[[u32; N]]) -> PyResult<Bound<'py, PyArray2<i32>>> {
+pub(crate) fn index_rows<'py, const N: usize>(
+    py: Python<'py>,
+    rows: &[[u32; N]],
+) -> PyResult<Bound<'py, PyArray2<i32>>> {
     Ok(Array2::from(converted(py, RESULT, rows, |row| row.map(u32::cast_signed))?).into_pyarray(py))
 }
 
 /// A fresh array of `rows`, converted by `convert`, and after them `more` rows, flat; written once.
-pub fn joined_rows<T: Copy, U: Element + Copy, const N: usize>(
+pub(crate) fn joined_rows<T: Copy, U: Element + Copy, const N: usize>(
     py: Python<'_>,
     rows: &[[T; N]],
     convert: impl Fn(T) -> U,
@@ -208,7 +221,7 @@ pub fn joined_rows<T: Copy, U: Element + Copy, const N: usize>(
 ///
 /// # Errors
 /// As [`float_rows`].
-pub fn index_array<'py>(py: Python<'py>, indices: &[u32]) -> PyResult<Bound<'py, PyArray1<i32>>> {
+pub(crate) fn index_array<'py>(py: Python<'py>, indices: &[u32]) -> PyResult<Bound<'py, PyArray1<i32>>> {
     Ok(converted(py, RESULT, indices, |i| i.cast_signed())?.into_pyarray(py))
 }
 

@@ -9,7 +9,7 @@ use crate::arrays::{finite_floats, shape_text};
 use crate::errors::argument;
 
 /// Columns, and whether Python sees them as a single array (n,).
-pub struct Values {
+pub(crate) struct Values {
     /// The numbers.
     pub columns: Columns,
     /// (n,) instead of (n,1).
@@ -18,7 +18,7 @@ pub struct Values {
 
 impl Values {
     /// The same shape in Python with each column replaced.
-    pub fn map(&self, replace: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+    pub(crate) fn map(&self, replace: impl Fn(&[f64]) -> Vec<f64>) -> Self {
         let k = self.columns.n_columns;
         let data: Vec<f64> = (0..k).flat_map(|c| replace(self.columns.column(c))).collect();
         let columns = Columns { n_rows: data.len() / k, n_columns: k, data };
@@ -30,7 +30,7 @@ impl Values {
 ///
 /// # Errors
 /// `ArgumentError` for another shape, `what` says what there is one row for, and for numbers that are not finite.
-pub fn read(name: &'static str, object: &Bound<'_, PyAny>, rows: usize, what: &str) -> PyResult<Values> {
+pub(crate) fn read(name: &'static str, object: &Bound<'_, PyAny>, rows: usize, what: &str) -> PyResult<Values> {
     let numbers = finite_floats(name, object)?;
     let (single, k) = match numbers.shape[..] {
         [found] if found == rows => (true, 1),
@@ -48,7 +48,7 @@ pub fn read(name: &'static str, object: &Bound<'_, PyAny>, rows: usize, what: &s
 }
 
 /// A fresh C-contiguous `float64` array (rows,) or (rows,k).
-pub fn write<'py>(py: Python<'py>, values: Values) -> Bound<'py, PyAny> {
+pub(crate) fn write<'py>(py: Python<'py>, values: Values) -> Bound<'py, PyAny> {
     let Columns { n_rows, n_columns, data } = values.columns;
     if values.single {
         return Array1::from_vec(data).into_pyarray(py).into_any();

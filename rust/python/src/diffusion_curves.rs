@@ -111,7 +111,7 @@ impl DiffusionCurves {
 #[pyo3(signature = (mesh, colors, *, labels=None, n_regions=None, length_weight=0.5, min_faces=20, face_groups=None, fidelity=1e3, rims=false,
     refine=true, color_error=0.0, progress=None))]
 #[allow(clippy::too_many_arguments)]
-pub fn diffusion_curves(
+pub(crate) fn diffusion_curves(
     py: Python<'_>,
     mesh: &Mesh,
     colors: &Bound<'_, PyAny>,
@@ -218,7 +218,7 @@ impl Redrawn {
 #[pyfunction]
 #[pyo3(signature = (mesh, edges, left, right, *, points=None, point_colors=None, sides=None, progress=None))]
 #[allow(clippy::too_many_arguments)]
-pub fn redraw(
+pub(crate) fn redraw(
     py: Python<'_>,
     mesh: &Mesh,
     edges: &Bound<'_, PyAny>,
@@ -280,7 +280,7 @@ pub fn redraw(
 /// ----------
 /// Taubin 1995 (Laplacian smoothing), with bounded steps.
 #[pyfunction]
-pub fn smooth_curves(py: Python<'_>, mesh: &Mesh, edges: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
+pub(crate) fn smooth_curves(py: Python<'_>, mesh: &Mesh, edges: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
     let edges = read_edges(edges, mesh.n_vertices())?;
     let places = doorway::call_briefly(py, || tools::smooth_curves(mesh.inner(), &edges))?;
     let data = places.into_iter().flatten().flatten().collect();

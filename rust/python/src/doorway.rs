@@ -14,7 +14,11 @@ use crate::watch::{watch, Outcome};
 /// A call for which not even the threads and small arrays of any call have room is refused before it starts.
 ///
 /// Signal handlers run meanwhile, so Ctrl-C cancels the work and raises `KeyboardInterrupt`.
-pub fn call<T: Send>(py: Python<'_>, progress: &Progress, work: impl FnOnce() -> Result<T> + Send) -> PyResult<T> {
+pub(crate) fn call<T: Send>(
+    py: Python<'_>,
+    progress: &Progress,
+    work: impl FnOnce() -> Result<T> + Send,
+) -> PyResult<T> {
     memory::floor("the call").map_err(|error| errors::exception(py, &error))?;
     let work = || threads::in_this_process(work);
     let outcome = py.detach(|| watch(progress, work, || Python::attach(|py| py.check_signals().err())));
@@ -28,12 +32,16 @@ pub fn call<T: Send>(py: Python<'_>, progress: &Progress, work: impl FnOnce() ->
 }
 
 /// [`call`] for work too short to be watched from outside.
-pub fn call_briefly<T: Send>(py: Python<'_>, work: impl FnOnce() -> Result<T> + Send) -> PyResult<T> {
+pub(crate) fn call_briefly<T: Send>(py: Python<'_>, work: impl FnOnce() -> Result<T> + Send) -> PyResult<T> {
     call(py, &Progress::new(), work)
 }
 
 /// [`call_briefly`] for work that does not ask for its memory by itself.
-pub fn call_sized<T: Send>(py: Python<'_>, demand: Demand, work: impl FnOnce() -> Result<T> + Send) -> PyResult<T> {
+pub(crate) fn call_sized<T: Send>(
+    py: Python<'_>,
+    demand: Demand,
+    work: impl FnOnce() -> Result<T> + Send,
+) -> PyResult<T> {
     call_briefly(py, || {
         demand.admit(None)?;
         work()

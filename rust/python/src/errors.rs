@@ -6,7 +6,7 @@ use ridgeform_core::error::SolveError;
 use ridgeform_core::Error;
 
 /// A `MeshError`, `ArgumentError`, `SolveError`, `MemoryLimitError`, `Cancelled` or `RidgeformError` that says what `error` says.
-pub fn exception(py: Python<'_>, error: &Error) -> PyErr {
+pub(crate) fn exception(py: Python<'_>, error: &Error) -> PyErr {
     let class = match error {
         Error::Mesh(_) => "MeshError",
         Error::Argument { .. } => "ArgumentError",
@@ -19,12 +19,12 @@ pub fn exception(py: Python<'_>, error: &Error) -> PyErr {
 }
 
 /// An `ArgumentError` for the argument `name`.
-pub fn argument(py: Python<'_>, name: &'static str, problem: impl Into<String>) -> PyErr {
+pub(crate) fn argument(py: Python<'_>, name: &'static str, problem: impl Into<String>) -> PyErr {
     exception(py, &Error::argument(name, problem))
 }
 
 /// A `RidgeformError` for a panic in the core, with the panic's message.
-pub fn internal(py: Python<'_>, message: &str) -> PyErr {
+pub(crate) fn internal(py: Python<'_>, message: &str) -> PyErr {
     let sentence = format!("an internal check failed: {message}; please report this with the mesh that caused it");
     raise(py, "RidgeformError", sentence)
 }

@@ -36,7 +36,7 @@ impl Hole {
 /// steeply to say so and the loop is no planar rim that calls for a lid, it is the largest loop of a component whose area
 /// vectors add up to more than 0.57 of its area. A tube has none: its two ends are holes. MeshError for a mesh without positions.
 #[pyfunction]
-pub fn find_holes(py: Python<'_>, mesh: &Mesh) -> PyResult<Vec<Hole>> {
+pub(crate) fn find_holes(py: Python<'_>, mesh: &Mesh) -> PyResult<Vec<Hole>> {
     let holes =
         doorway::call_sized(py, mesh.inner().demand(Tool::FindHoles), || hole_filling::find_holes(mesh.inner()))?;
     let convert = |hole: hole_filling::Hole| {

@@ -27,7 +27,7 @@ macro_rules! solver_function {
         #[pyo3(signature = ($($signature)*, solver="auto", tolerance=$tolerance, max_iterations=None, memory_limit=None,
             threads=None, progress=None) $(, text_signature = $text)?)]
         #[allow(clippy::too_many_arguments)]
-        pub fn $name $(<$lifetime>)? (
+        pub(crate) fn $name $(<$lifetime>)? (
             $py: $python,
             $($argument: $type,)*
             solver: &str,

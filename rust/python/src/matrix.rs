@@ -105,7 +105,7 @@ impl SparseMatrix {
 ///
 /// # Errors
 /// `ArgumentError` for anything else and for entries that are not finite.
-pub fn read(name: &'static str, object: &Bound<'_, PyAny>, n_columns: usize) -> PyResult<CsMat<f64>> {
+pub(crate) fn read(name: &'static str, object: &Bound<'_, PyAny>, n_columns: usize) -> PyResult<CsMat<f64>> {
     let py = object.py();
     let matrix = if let Ok(own) = object.cast::<SparseMatrix>() {
         own.get().matrix.clone()
@@ -125,7 +125,7 @@ pub fn read(name: &'static str, object: &Bound<'_, PyAny>, n_columns: usize) -> 
 ///
 /// # Errors
 /// `ArgumentError` for shapes that do not fit and for entries that are not finite.
-pub fn read_constraints(
+pub(crate) fn read_constraints(
     a: &Bound<'_, PyAny>,
     b: &Bound<'_, PyAny>,
     n: usize,

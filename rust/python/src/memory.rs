@@ -14,7 +14,7 @@ use crate::options;
 ///
 /// Without `memory_limit` a call takes at most 80 % of it.
 #[pyfunction]
-pub fn memory_available() -> usize {
+pub(crate) fn memory_available() -> usize {
     memory::available()
 }
 
@@ -34,7 +34,7 @@ pub fn memory_available() -> usize {
 /// ArgumentError
 #[pyfunction]
 #[pyo3(signature = (tool, mesh, *, columns=1, solver="auto"))]
-pub fn memory_estimate(
+pub(crate) fn memory_estimate(
     py: Python<'_>,
     tool: &str,
     mesh: &Bound<'_, PyAny>,

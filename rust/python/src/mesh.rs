@@ -203,7 +203,7 @@ fn making(n_vertices: usize, n_faces: usize) -> Demand {
 }
 
 /// Read faces; indices that the core's type cannot hold are refused here, the others by the core.
-pub fn read_faces(faces: &Bound<'_, PyAny>, n_vertices: Option<usize>) -> PyResult<Vec<[u32; 3]>> {
+pub(crate) fn read_faces(faces: &Bound<'_, PyAny>, n_vertices: Option<usize>) -> PyResult<Vec<[u32; 3]>> {
     let py = faces.py();
     // The two usual types are read where they are: a copy of each kind costs as much as all else here.
     if let Some(array) = plain_rows::<i32, 3>(faces) {

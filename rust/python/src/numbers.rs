@@ -8,7 +8,7 @@ use crate::errors::argument;
 ///
 /// # Errors
 /// `ArgumentError` below that.
-pub fn at_least(py: Python<'_>, name: &'static str, given: i64, least: usize) -> PyResult<usize> {
+pub(crate) fn at_least(py: Python<'_>, name: &'static str, given: i64, least: usize) -> PyResult<usize> {
     let refuse = || argument(py, name, format!("got {given}; pass a whole number of at least {least}"));
     usize::try_from(given).ok().filter(|&count| count >= least).ok_or_else(refuse)
 }

@@ -19,7 +19,7 @@ use crate::{columns, doorway, options};
 /// Source: Rowe et al. 2024, eq. (30).
 #[pyfunction]
 #[pyo3(signature = (mesh, *, dual="barycentric"))]
-pub fn hessian(py: Python<'_>, mesh: &Mesh, dual: &str) -> PyResult<SparseMatrix> {
+pub(crate) fn hessian(py: Python<'_>, mesh: &Mesh, dual: &str) -> PyResult<SparseMatrix> {
     let dual = options::dual(py, dual)?;
     let matrix =
         doorway::call_sized(py, mesh.inner().demand(Tool::Hessian), || operators::hessian(mesh.inner(), dual))?;
@@ -34,7 +34,7 @@ pub fn hessian(py: Python<'_>, mesh: &Mesh, dual: &str) -> PyResult<SparseMatrix
 /// Source: Rowe et al. 2024, section 5.
 #[pyfunction]
 #[pyo3(signature = (mesh, values, *, dual="barycentric"))]
-pub fn hessian_norm<'py>(
+pub(crate) fn hessian_norm<'py>(
     py: Python<'py>,
     mesh: &Mesh,
     values: &Bound<'py, PyAny>,
@@ -70,7 +70,7 @@ pub fn hessian_norm<'py>(
 /// ArgumentError; MeshError as `hessian`, and for energies in space of a mesh without positions
 #[pyfunction]
 #[pyo3(signature = (mesh, values, *, kind="l1_hessian", face_weights=None, dual="barycentric"))]
-pub fn energy(
+pub(crate) fn energy(
     py: Python<'_>,
     mesh: &Mesh,
     values: &Bound<'_, PyAny>,
@@ -89,7 +89,7 @@ pub fn energy(
 ///
 /// Source: Meyer et al. 2003, section 3.3.
 #[pyfunction]
-pub fn voronoi_mass<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Bound<'py, PyArray1<f64>>> {
+pub(crate) fn voronoi_mass<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let mesh = mesh.inner();
     let mass = doorway::call_sized(py, mesh.demand(Tool::Report), || operators::mass_of(mesh))?;
     Ok(mass.into_pyarray(py))
@@ -99,7 +99,7 @@ pub fn voronoi_mass<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Bound<'py, Py
 ///
 /// Source: Pinkall and Polthier 1993.
 #[pyfunction]
-pub fn cotangent_laplacian(py: Python<'_>, mesh: &Mesh) -> PyResult<SparseMatrix> {
+pub(crate) fn cotangent_laplacian(py: Python<'_>, mesh: &Mesh) -> PyResult<SparseMatrix> {
     let mesh = mesh.inner();
     let matrix = doorway::call_sized(py, mesh.demand(Tool::Laplacian), || {
         Ok(operators::cotangent_laplacian(mesh.connectivity(), mesh.measured(mesh.unit())?.edge_lengths()))
@@ -111,7 +111,7 @@ pub fn cotangent_laplacian(py: Python<'_>, mesh: &Mesh) -> PyResult<SparseMatrix
 ///
 /// Source: Bobenko and Springborn 2007; Rowe et al. 2024, section 6.1.
 #[pyfunction]
-pub fn intrinsic_delaunay(py: Python<'_>, mesh: &Mesh) -> PyResult<Mesh> {
+pub(crate) fn intrinsic_delaunay(py: Python<'_>, mesh: &Mesh) -> PyResult<Mesh> {
     let mesh = mesh.inner();
     let flipped = doorway::call_sized(py, mesh.demand(Tool::Delaunay), || {
         let (unit, connectivity) = (mesh.unit(), mesh.connectivity());
@@ -125,7 +125,7 @@ pub fn intrinsic_delaunay(py: Python<'_>, mesh: &Mesh) -> PyResult<Mesh> {
 
 /// The boundary loops, a list of (k,) int32 arrays of vertex indices in the direction of the faces' halfedges.
 #[pyfunction]
-pub fn boundary_loops<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Vec<Bound<'py, PyArray1<i32>>>> {
+pub(crate) fn boundary_loops<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Vec<Bound<'py, PyArray1<i32>>>> {
     let demand = mesh.inner().demand(Tool::FindHoles);
     let loops = doorway::call_sized(py, demand, || Ok(core::boundary_loops(mesh.inner().connectivity())))?;
     loops.iter().map(|vertices| index_array(py, vertices)).collect()

@@ -14,7 +14,7 @@ use crate::numbers::at_least;
 ///
 /// # Errors
 /// `ArgumentError` that lists the accepted words.
-pub fn choice<T: Copy>(py: Python<'_>, name: &'static str, given: &str, accepted: &[(&str, T)]) -> PyResult<T> {
+pub(crate) fn choice<T: Copy>(py: Python<'_>, name: &'static str, given: &str, accepted: &[(&str, T)]) -> PyResult<T> {
     accepted.iter().find(|(word, _)| *word == given).map(|&(_, value)| value).ok_or_else(|| {
         let words: Vec<_> = accepted.iter().map(|(word, _)| format!("\"{word}\"")).collect();
         argument(py, name, format!("\"{given}\" is not known here; use {}", words.join(" or ")))
@@ -25,7 +25,7 @@ pub fn choice<T: Copy>(py: Python<'_>, name: &'static str, given: &str, accepted
 ///
 /// # Errors
 /// `ArgumentError` for an unknown word.
-pub fn energy(py: Python<'_>, name: &'static str, given: &str) -> PyResult<Energy> {
+pub(crate) fn energy(py: Python<'_>, name: &'static str, given: &str) -> PyResult<Energy> {
     choice(py, name, given, &Energy::ALL)
 }
 
@@ -33,7 +33,7 @@ pub fn energy(py: Python<'_>, name: &'static str, given: &str) -> PyResult<Energ
 ///
 /// # Errors
 /// `ArgumentError` for an unknown word.
-pub fn dual(py: Python<'_>, given: &str) -> PyResult<Dual> {
+pub(crate) fn dual(py: Python<'_>, given: &str) -> PyResult<Dual> {
     let duals = [
         ("barycentric", Dual::Barycentric),
         ("circumcentric", Dual::Circumcentric),
@@ -46,7 +46,7 @@ pub fn dual(py: Python<'_>, given: &str) -> PyResult<Dual> {
 ///
 /// # Errors
 /// `ArgumentError` for an unknown word.
-pub fn coupling(py: Python<'_>, given: &str) -> PyResult<Coupling> {
+pub(crate) fn coupling(py: Python<'_>, given: &str) -> PyResult<Coupling> {
     choice(py, "coupling", given, &[("joint", Coupling::Joint), ("separate", Coupling::Separate)])
 }
 
@@ -54,7 +54,7 @@ pub fn coupling(py: Python<'_>, given: &str) -> PyResult<Coupling> {
 ///
 /// # Errors
 /// `ArgumentError` for an unknown word.
-pub fn scale(py: Python<'_>, given: &str) -> PyResult<Scale> {
+pub(crate) fn scale(py: Python<'_>, given: &str) -> PyResult<Scale> {
     let scales = [
         ("max_edge", Scale::MaxEdge),
         ("bounding_box", Scale::BoundingBox),
@@ -68,7 +68,7 @@ pub fn scale(py: Python<'_>, given: &str) -> PyResult<Scale> {
 ///
 /// # Errors
 /// `ArgumentError` for an unknown word.
-pub fn solver(py: Python<'_>, given: &str) -> PyResult<Solver> {
+pub(crate) fn solver(py: Python<'_>, given: &str) -> PyResult<Solver> {
     let solvers = [
         ("auto", Solver::Auto),
         ("fast", Solver::Fast),
@@ -83,7 +83,7 @@ pub fn solver(py: Python<'_>, given: &str) -> PyResult<Solver> {
 ///
 /// # Errors
 /// `ArgumentError` for an unknown solver and for counts below 1; the core judges the tolerance.
-pub fn solve(
+pub(crate) fn solve(
     py: Python<'_>,
     solver: &str,
     tolerance: Option<f64>,
@@ -104,7 +104,7 @@ pub fn solve(
 ///
 /// # Errors
 /// `ArgumentError` for another shape and for numbers that are not finite; `what` names the things.
-pub fn weights(
+pub(crate) fn weights(
     name: &'static str,
     given: Option<&Bound<'_, PyAny>>,
     length: usize,
@@ -115,7 +115,7 @@ pub fn weights(
 
 /// The keywords that say which energy, as they came from Python.
 #[derive(Clone, Copy)]
-pub struct EnergyWords<'a, 'py> {
+pub(crate) struct EnergyWords<'a, 'py> {
     /// `energy=`
     pub energy: &'a str,
     /// `face_weights=`
@@ -131,7 +131,7 @@ impl EnergyWords<'_, '_> {
     ///
     /// # Errors
     /// `ArgumentError` for unknown words and for weights that do not fit.
-    pub fn read(self, py: Python<'_>, mesh: &Mesh) -> PyResult<EnergyOptions> {
+    pub(crate) fn read(self, py: Python<'_>, mesh: &Mesh) -> PyResult<EnergyOptions> {
         Ok(EnergyOptions {
             kind: energy(py, "energy", self.energy)?,
             face_weights: weights("face_weights", self.face_weights, mesh.n_faces(), "face")?,

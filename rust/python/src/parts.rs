@@ -108,7 +108,7 @@ impl Parts {
 #[pyo3(signature = (mesh, *, n_parts=None, coarseness=1.0, face_weights=None, edge_weights=None, faces=None,
     threads=None, progress=None))]
 #[allow(clippy::too_many_arguments)]
-pub fn parts(
+pub(crate) fn parts(
     py: Python<'_>,
     mesh: &Mesh,
     n_parts: Option<i64>,

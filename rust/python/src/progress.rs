@@ -95,6 +95,6 @@ impl Progress {
 }
 
 /// The core's handle of `progress=`, or a fresh one.
-pub fn handle(progress: Option<&Bound<'_, Progress>>) -> core::Progress {
+pub(crate) fn handle(progress: Option<&Bound<'_, Progress>>) -> core::Progress {
     progress.map_or_else(core::Progress::new, |given| given.get().inner.clone())
 }

@@ -65,7 +65,7 @@ impl Remeshed {
 /// Botsch and Kobbelt 2004, A remeshing approach to multiresolution modeling.
 #[pyfunction]
 #[pyo3(signature = (mesh, *, edge_length=None, iterations=10, fixed=None, feature_angle=45.0, progress=None))]
-pub fn remesh(
+pub(crate) fn remesh(
     py: Python<'_>,
     mesh: &Mesh,
     edge_length: Option<f64>,

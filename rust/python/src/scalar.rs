@@ -7,7 +7,7 @@ use crate::mesh::Mesh;
 use crate::options::{self, EnergyWords};
 
 /// The keywords of both, as they came from Python, but those of the solver.
-pub struct ScalarWords<'a, 'py> {
+pub(crate) struct ScalarWords<'a, 'py> {
     /// Those of the energy.
     pub energy: EnergyWords<'a, 'py>,
     /// `linear_constraints=`
@@ -23,7 +23,7 @@ impl ScalarWords<'_, '_> {
     ///
     /// # Errors
     /// `ArgumentError` for unknown words and for arrays that do not fit, and the errors of `solve`.
-    pub fn read(
+    pub(crate) fn read(
         self,
         py: Python<'_>,
         mesh: &Mesh,

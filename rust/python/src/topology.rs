@@ -33,7 +33,7 @@ use crate::mesh::read_faces;
 #[pyfunction]
 #[pyo3(signature = (vertices, faces, *, tolerance=None))]
 #[allow(clippy::type_complexity)]
-pub fn weld<'py>(
+pub(crate) fn weld<'py>(
     py: Python<'py>,
     vertices: &Bound<'py, PyAny>,
     faces: &Bound<'py, PyAny>,
@@ -77,7 +77,7 @@ pub fn weld<'py>(
 /// ArgumentError.
 #[pyfunction]
 #[allow(clippy::type_complexity)]
-pub fn orient<'py>(
+pub(crate) fn orient<'py>(
     py: Python<'py>,
     faces: &Bound<'py, PyAny>,
 ) -> PyResult<(Bound<'py, PyArray2<i32>>, Bound<'py, PyArray1<bool>>)> {

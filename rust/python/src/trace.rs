@@ -39,7 +39,7 @@ type Traced<'py> = (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<i32>>, Bound<
 /// Dijkstra 1959.
 #[pyfunction]
 #[pyo3(signature = (mesh, points, *, starts=None, closed=None))]
-pub fn trace_curves<'py>(
+pub(crate) fn trace_curves<'py>(
     py: Python<'py>,
     mesh: &Mesh,
     points: &Bound<'py, PyAny>,

@@ -8,11 +8,11 @@ use std::time::Duration;
 use ridgeform_core::Progress;
 
 /// How often the caller looks for an interruption: short against a person's patience, long against its cost.
-pub const INTERVAL: Duration = Duration::from_millis(50);
+pub(crate) const INTERVAL: Duration = Duration::from_millis(50);
 
 /// How watched work ended.
 #[derive(Debug, PartialEq)]
-pub enum Outcome<T, I> {
+pub(crate) enum Outcome<T, I> {
     /// It returned.
     Done(T),
     /// It panicked, with this message.
@@ -27,7 +27,7 @@ pub enum Outcome<T, I> {
 ///
 /// At the first reason `progress` is cancelled; the call returns once the work has noticed, so nothing outlives it. A
 /// panic of the work ends here.
-pub fn watch<T: Send, I>(
+pub(crate) fn watch<T: Send, I>(
     progress: &Progress,
     work: impl FnOnce() -> T + Send,
     mut interrupted: impl FnMut() -> Option<I>,

@@ -9,7 +9,7 @@ use crate::list;
 const LEAST: f64 = 0.1;
 
 /// Repeated measurements of one thing, in seconds.
-pub struct Samples {
+pub(crate) struct Samples {
     repeats: usize,
     budget: f64,
     /// By the clock on the wall.
@@ -20,14 +20,14 @@ pub struct Samples {
 
 impl Samples {
     /// As many as `repeats` says (5), or fewer once they have taken `budget` seconds (60) together.
-    pub fn new(arguments: &Arguments) -> Result<Self, Box<dyn std::error::Error>> {
+    pub(crate) fn new(arguments: &Arguments) -> Result<Self, Box<dyn std::error::Error>> {
         let repeats = (arguments.number("repeats", 5.0)? as usize).max(1);
         let budget = arguments.number("budget", 60.0)?;
         Ok(Self { repeats, budget, wall: Vec::new(), cpu: Vec::new() })
     }
 
     /// Takes the samples and returns the last result of `work`. Short work is done several times per sample.
-    pub fn take<T, E>(&mut self, mut work: impl FnMut() -> Result<T, E>) -> Result<T, E> {
+    pub(crate) fn take<T, E>(&mut self, mut work: impl FnMut() -> Result<T, E>) -> Result<T, E> {
         let mut times_per_sample = 1;
         loop {
             let (wall, cpu) = (Instant::now(), processor_time());
@@ -50,7 +50,7 @@ impl Samples {
     }
 
     /// The two lists as JSON fields.
-    pub fn fields(&self) -> Vec<(&'static str, String)> {
+    pub(crate) fn fields(&self) -> Vec<(&'static str, String)> {
         vec![("wall_s", list(&self.wall)), ("cpu_s", list(&self.cpu))]
     }
 }
@@ -66,7 +66,7 @@ fn processor_time() -> Option<f64> {
 }
 
 /// The most memory that this process has held so far, in bytes; 0 where the system does not tell.
-pub fn peak_memory() -> u64 {
+pub(crate) fn peak_memory() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
     let kilobytes = line.and_then(|rest| rest.split_whitespace().next()?.parse::<u64>().ok());

@@ -9,7 +9,7 @@ use ridgeform_core::mesh::Mesh;
 use sprs::{CsMat, TriMat};
 
 /// `KIND FOLDER [KEY=VALUE ...]`.
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// What to measure.
     pub kind: String,
     /// Where the problem is.
@@ -19,7 +19,7 @@ pub struct Arguments {
 
 impl Arguments {
     /// Splits the command line.
-    pub fn parse(mut words: impl Iterator<Item = String>) -> Result<Self, Box<dyn Error>> {
+    pub(crate) fn parse(mut words: impl Iterator<Item = String>) -> Result<Self, Box<dyn Error>> {
         let (Some(kind), Some(folder)) = (words.next(), words.next()) else {
             return Err("usage: measure KIND FOLDER [KEY=VALUE ...]".into());
         };
@@ -32,12 +32,12 @@ impl Arguments {
     }
 
     /// The word given for `key`.
-    pub fn word<'a>(&'a self, key: &str, default: &'a str) -> &'a str {
+    pub(crate) fn word<'a>(&'a self, key: &str, default: &'a str) -> &'a str {
         self.settings.get(key).map_or(default, String::as_str)
     }
 
     /// The number given for `key`.
-    pub fn number(&self, key: &str, default: f64) -> Result<f64, Box<dyn Error>> {
+    pub(crate) fn number(&self, key: &str, default: f64) -> Result<f64, Box<dyn Error>> {
         self.settings.get(key).map_or(Ok(default), |word| Ok(word.parse()?))
     }
 }
@@ -46,7 +46,7 @@ impl Arguments {
 type Equations = (CsMat<f64>, Columns);
 
 /// A mesh and data on it.
-pub struct Problem {
+pub(crate) struct Problem {
     /// `vertices.f64`.
     pub vertices: Vec<[f64; 3]>,
     /// `faces.u32`.
@@ -56,7 +56,7 @@ pub struct Problem {
 
 impl Problem {
     /// Reads the mesh.
-    pub fn read(folder: &Path) -> Result<Self, Box<dyn Error>> {
+    pub(crate) fn read(folder: &Path) -> Result<Self, Box<dyn Error>> {
         let vertices = doubles(&folder.join("vertices.f64"))?;
         let faces = integers(&folder.join("faces.u32"))?;
         Ok(Self {
@@ -67,19 +67,19 @@ impl Problem {
     }
 
     /// The mesh with its connectivity.
-    pub fn mesh(&self) -> Result<Mesh, Box<dyn Error>> {
+    pub(crate) fn mesh(&self) -> Result<Mesh, Box<dyn Error>> {
         Ok(Mesh::new(self.vertices.clone(), self.faces.clone())?)
     }
 
     /// `values.f64`: a number per vertex, column by column.
-    pub fn values(&self) -> Result<Columns, Box<dyn Error>> {
+    pub(crate) fn values(&self) -> Result<Columns, Box<dyn Error>> {
         let data = doubles(&self.folder.join("values.f64"))?;
         let n_rows = self.vertices.len();
         Ok(Columns { n_rows, n_columns: data.len() / n_rows.max(1), data })
     }
 
     /// `indices.u32`: the vertices whose values are known, and those values.
-    pub fn known(&self) -> Result<(Vec<usize>, Columns), Box<dyn Error>> {
+    pub(crate) fn known(&self) -> Result<(Vec<usize>, Columns), Box<dyn Error>> {
         let indices = self.places("indices.u32")?;
         let values = self.values()?;
         let mut known = Columns::zeros(indices.len(), values.n_columns);
@@ -92,13 +92,13 @@ impl Problem {
     }
 
     /// `weights.f64`, if there is one: a weight per face.
-    pub fn face_weights(&self) -> Result<Option<Vec<f64>>, Box<dyn Error>> {
+    pub(crate) fn face_weights(&self) -> Result<Option<Vec<f64>>, Box<dyn Error>> {
         let path = self.folder.join("weights.f64");
         Ok(if path.exists() { Some(doubles(&path)?) } else { None })
     }
 
     /// `constraint_*`, if there are any: the entries of `A` by row, column and value, and `b`, for one column of values.
-    pub fn linear_constraints(&self) -> Result<Option<Equations>, Box<dyn Error>> {
+    pub(crate) fn linear_constraints(&self) -> Result<Option<Equations>, Box<dyn Error>> {
         if !self.folder.join("constraint_rows.u32").exists() {
             return Ok(None);
         }

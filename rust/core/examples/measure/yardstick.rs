@@ -18,7 +18,7 @@ use crate::input::{Arguments, Problem};
 use crate::{list, Outcome};
 
 /// The whole solution, from the mesh on, and its parts.
-pub fn measure(problem: &Problem, arguments: &Arguments) -> Outcome {
+pub(crate) fn measure(problem: &Problem, arguments: &Arguments) -> Outcome {
     match problem.values()?.n_columns {
         1 => of_columns::<1>(problem, arguments),
         3 => of_columns::<3>(problem, arguments),

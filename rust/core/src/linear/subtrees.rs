@@ -20,7 +20,7 @@ const LEAST: usize = 1 << 17;
 
 /// Subtrees that are solved for on threads of their own, and what is left for one thread.
 #[derive(Debug)]
-pub struct Subtrees {
+pub(super) struct Subtrees {
     /// Panels of each subtree.
     list: Vec<Range<usize>>,
     /// All other panels.
@@ -32,7 +32,7 @@ pub struct Subtrees {
 impl Subtrees {
     /// Cuts the tree.
     #[must_use]
-    pub fn new(panels: &Panels, tree: &Tree) -> Self {
+    pub(super) fn new(panels: &Panels, tree: &Tree) -> Self {
         let count = panels.count();
         let mut entries = vec![0; count];
         for s in 0..count {
@@ -60,7 +60,13 @@ impl Subtrees {
     }
 
     /// Solves `L Lᵀ x = right` in place; `values` belong to `L`, rows are in the order of the factor.
-    pub fn solve<const K: usize>(&self, panels: &Panels, values: Values<'_>, x: &mut [[f64; K]], space: &mut Vec<f64>) {
+    pub(super) fn solve<const K: usize>(
+        &self,
+        panels: &Panels,
+        values: Values<'_>,
+        x: &mut [[f64; K]],
+        space: &mut Vec<f64>,
+    ) {
         let whole = || self.rest.iter().map(|&s| panels.panel(s as usize, values));
         let mut locals: Vec<Vec<[f64; K]>> = self
             .list

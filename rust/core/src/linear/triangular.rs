@@ -14,11 +14,11 @@ const ACCUMULATORS: usize = 12;
 
 /// The most numbers in a vector register. Columns are read in whole registers, past their end: what stands there meets only
 /// padding.
-pub const LANES: usize = 8;
+pub(super) const LANES: usize = 8;
 
 /// The structure of a factor `L` by supernodes: columns with the same pattern, stored as one dense panel each.
 #[derive(Debug, Clone, Default)]
-pub struct Panels {
+pub(super) struct Panels {
     /// The first column of each panel, and the number of columns at the end.
     pub begin: Vec<usize>,
     /// Where the values of each panel start: column by column, the rows of the triangle first.
@@ -31,7 +31,7 @@ pub struct Panels {
 
 /// The numbers of a factor.
 #[derive(Debug, Clone, Copy)]
-pub struct Values<'v> {
+pub(super) struct Values<'v> {
     /// The panels, one after the other, and [`LANES`] zeros.
     pub panels: &'v [f64],
     /// The reciprocal of each diagonal entry: divisions would be half the time.
@@ -40,7 +40,7 @@ pub struct Values<'v> {
 
 /// One panel with its values.
 #[derive(Debug, Clone, Copy)]
-pub struct Panel<'p> {
+pub(super) struct Panel<'p> {
     begin: usize,
     n_columns: usize,
     below: &'p [u32],
@@ -52,7 +52,7 @@ impl Panels {
     /// Panel `s` with its values.
     #[inline(always)]
     #[must_use]
-    pub fn panel<'p>(&'p self, s: usize, values: Values<'p>) -> Panel<'p> {
+    pub(super) fn panel<'p>(&'p self, s: usize, values: Values<'p>) -> Panel<'p> {
         let (begin, end) = (self.begin[s], self.begin[s + 1]);
         Panel {
             begin,
@@ -65,19 +65,19 @@ impl Panels {
 
     /// The most rows that a panel has.
     #[must_use]
-    pub fn longest(&self) -> usize {
+    pub(super) fn longest(&self) -> usize {
         (0..self.count()).map(|s| self.n_rows(s)).max().unwrap_or(0)
     }
 
     /// Rows of a panel.
     #[inline(always)]
     #[must_use]
-    pub fn n_rows(&self, s: usize) -> usize {
+    pub(super) fn n_rows(&self, s: usize) -> usize {
         self.begin[s + 1] - self.begin[s] + self.below[s + 1] - self.below[s]
     }
 
     /// The reciprocals of the diagonal of the factor with these values.
-    pub fn reciprocals(&self, values: &[f64], out: &mut Vec<f64>) {
+    pub(super) fn reciprocals(&self, values: &[f64], out: &mut Vec<f64>) {
         out.clear();
         for s in 0..self.count() {
             let n_columns = self.begin[s + 1] - self.begin[s];
@@ -88,20 +88,20 @@ impl Panels {
 
     /// Number of panels.
     #[must_use]
-    pub fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.begin.len().saturating_sub(1)
     }
 
     /// The rows below the triangle of a panel.
     #[inline(always)]
     #[must_use]
-    pub fn below(&self, s: usize) -> &[u32] {
+    pub(super) fn below(&self, s: usize) -> &[u32] {
         &self.rows[self.below[s]..self.below[s + 1]]
     }
 
     /// Multiplications that eliminating the columns of a panel takes.
     #[must_use]
-    pub fn multiplications(&self, s: usize) -> f64 {
+    pub(super) fn multiplications(&self, s: usize) -> f64 {
         let (k, below) = (self.begin[s + 1] - self.begin[s], self.below(s).len());
         (0..k).map(|j| ((k - j + below) as f64).powi(2)).sum::<f64>() / 2.0
     }
@@ -111,7 +111,7 @@ impl<'p> Panel<'p> {
     /// The same panel in other numbers of rows.
     #[inline(always)]
     #[must_use]
-    pub fn renumbered(self, begin: usize, below: &'p [u32]) -> Self {
+    pub(super) fn renumbered(self, begin: usize, below: &'p [u32]) -> Self {
         Self { begin, below, ..self }
     }
 }
@@ -159,7 +159,7 @@ impl Panel<'_> {
 
     /// `x ← L⁻¹x` for the columns of this panel, and what that does to the rows below.
     #[inline(always)]
-    pub fn forward<S: Simd, const K: usize>(&self, simd: S, x: &mut [[f64; K]], space: &mut [f64]) {
+    pub(super) fn forward<S: Simd, const K: usize>(&self, simd: S, x: &mut [[f64; K]], space: &mut [f64]) {
         let (stride, s) = (self.stride(), self.n_columns);
         self.load(x, space);
         for c in 0..K {
@@ -206,7 +206,7 @@ impl Panel<'_> {
 
     /// `x ← L⁻ᵀx` for the columns of this panel, from the rows below.
     #[inline(always)]
-    pub fn backward<S: Simd, const K: usize>(&self, simd: S, x: &mut [[f64; K]], space: &mut [f64]) {
+    pub(super) fn backward<S: Simd, const K: usize>(&self, simd: S, x: &mut [[f64; K]], space: &mut [f64]) {
         let (stride, s) = (self.stride(), self.n_columns);
         self.load(x, space);
         for (i, &row) in self.below.iter().enumerate() {

@@ -4,7 +4,7 @@ use std::fs::read_to_string;
 use std::path::{Path, PathBuf};
 
 /// Bytes left under the tightest limit; `None` where there is none.
-pub fn left() -> Option<u64> {
+pub(super) fn left() -> Option<u64> {
     left_in(&read_to_string("/proc/self/cgroup").ok()?, Path::new("/sys/fs/cgroup"))
 }
 

@@ -27,7 +27,7 @@ const ROWS: usize = 64;
 ///
 /// # Errors
 /// [`Error::Memory`].
-pub fn settle(what: &'static str) -> Result<()> {
+pub(super) fn settle(what: &'static str) -> Result<()> {
     if super::free::resources().is_none() {
         return Ok(());
     }

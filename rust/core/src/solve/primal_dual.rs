@@ -52,7 +52,7 @@ impl Stiffness {
 
 /// The equations of the central path, linear around a point, for problems in one column.
 #[derive(Debug)]
-pub struct Model<const K: usize> {
+pub(super) struct Model<const K: usize> {
     /// `μ`.
     barrier: f64,
     /// `H u + c`.
@@ -66,7 +66,7 @@ pub struct Model<const K: usize> {
 impl<const K: usize> Model<K> {
     /// The model at `u` and `z`, whose blocks are not longer than the weights, for the parameter `μ`.
     #[must_use]
-    pub fn new(reduced: &Reduced<'_, K>, u: &[[f64; K]], z: &[Block<K>], barrier: f64) -> Self {
+    pub(super) fn new(reduced: &Reduced<'_, K>, u: &[[f64; K]], z: &[Block<K>], barrier: f64) -> Self {
         let mut model = Self { barrier, h: Vec::new(), slope: Vec::new(), stiffness: Vec::new() };
         reduced.apply(u, &mut model.h);
         for ((h, z), &w) in model.h.iter().zip(z).zip(reduced.weights.iter()) {
@@ -85,24 +85,24 @@ impl<const K: usize> Model<K> {
 
     /// The dual point at which the equations begin, `s`.
     #[must_use]
-    pub fn slope(&self) -> &[Block<K>] {
+    pub(super) fn slope(&self) -> &[Block<K>] {
         &self.slope
     }
 
     /// The stiffness `V` of every block.
     #[must_use]
-    pub fn stiffness(&self) -> &[Stiffness] {
+    pub(super) fn stiffness(&self) -> &[Stiffness] {
         &self.stiffness
     }
 
     /// The stiffness `V` of every block.
     #[must_use]
-    pub fn into_stiffness(self) -> Vec<Stiffness> {
+    pub(super) fn into_stiffness(self) -> Vec<Stiffness> {
         self.stiffness
     }
 
     /// `out = (HᵀVH + 2a) x`: the matrix of the linear equations, never formed.
-    pub fn times(&self, reduced: &Reduced<'_, K>, x: &[[f64; K]], out: &mut Vec<[f64; K]>) {
+    pub(super) fn times(&self, reduced: &Reduced<'_, K>, x: &[[f64; K]], out: &mut Vec<[f64; K]>) {
         reduced.apply_transposed(|b| self.stiffness[b].times_block(&reduced.block_times(b, x)), out);
         for ((row, x), a) in out.iter_mut().zip(x).zip(&reduced.fidelity) {
             row.iter_mut().zip(x).for_each(|(row, x)| *row += 2.0 * a * x);
@@ -112,7 +112,7 @@ impl<const K: usize> Model<K> {
     /// The farthest of the points all the way, halfway, a quarter of the way, … along a `step` from `u` at which the barrier
     /// function is not larger than before, and the objective there; `change` is `H` times the step.
     #[must_use]
-    pub fn descend(
+    pub(super) fn descend(
         &self,
         reduced: &Reduced<'_, K>,
         u: &[[f64; K]],
@@ -154,7 +154,7 @@ fn cone(m: f64, length: f64) -> (f64, f64) {
 }
 
 /// Shortens the blocks that are longer than their weights.
-pub fn clip<const K: usize>(reduced: &Reduced<'_, K>, z: &mut [Block<K>]) {
+pub(super) fn clip<const K: usize>(reduced: &Reduced<'_, K>, z: &mut [Block<K>]) {
     for (z, &w) in z.iter_mut().zip(reduced.weights.iter()) {
         let length = norm(z);
         if length > w {
@@ -165,7 +165,7 @@ pub fn clip<const K: usize>(reduced: &Reduced<'_, K>, z: &mut [Block<K>]) {
 
 /// What a bound needs to know of the dual point `z`.
 #[must_use]
-pub fn dual_point<const K: usize>(reduced: &Reduced<'_, K>, z: &[Block<K>]) -> DualPoint {
+pub(super) fn dual_point<const K: usize>(reduced: &Reduced<'_, K>, z: &[Block<K>]) -> DualPoint {
     let mut point = DualPoint::default();
     for (b, z) in z.iter().enumerate() {
         point.add(z, reduced.weights[b], &reduced.constant(b));
@@ -174,7 +174,7 @@ pub fn dual_point<const K: usize>(reduced: &Reduced<'_, K>, z: &[Block<K>]) -> D
 }
 
 /// Takes the dual point `z` along with a change of `H u`, by the stiffness times it.
-pub fn follow<const K: usize>(stiffness: &[Stiffness], change: &[Block<K>], z: &mut [Block<K>]) {
+pub(super) fn follow<const K: usize>(stiffness: &[Stiffness], change: &[Block<K>], z: &mut [Block<K>]) {
     for ((z, stiffness), change) in z.iter_mut().zip(stiffness).zip(change) {
         *z = combine(1.0, z, 1.0, &stiffness.times_block(change));
     }

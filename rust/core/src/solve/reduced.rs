@@ -11,7 +11,7 @@ use crate::solve::problem::Problem;
 use rayon::prelude::*;
 
 /// Blocks or rows that one thread takes at least: below that the hand-over costs more than the work.
-pub const GRAIN: usize = 4096;
+pub(super) const GRAIN: usize = 4096;
 
 /// A transposed product has at most this many partial sums, each as long as the result.
 const MOST_PARTS: usize = 4;
@@ -19,7 +19,7 @@ const MOST_PARTS: usize = 4;
 /// How the blocks are cut into parts that threads take, each with sums of its own: by the number of blocks alone, so that
 /// results do not depend on the number of threads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Parts {
+pub(super) struct Parts {
     /// Blocks in each part but the last.
     pub size: usize,
     /// Number of parts, at least one.
@@ -29,7 +29,7 @@ pub struct Parts {
 impl Parts {
     /// The parts of `m` blocks.
     #[must_use]
-    pub fn of(m: usize) -> Self {
+    pub(super) fn of(m: usize) -> Self {
         let size = m.div_ceil(MOST_PARTS).max(GRAIN);
         Self { size, count: m.div_ceil(size).max(1) }
     }
@@ -221,7 +221,7 @@ impl<'a, const K: usize> Reduced<'a, K> {
 }
 
 /// Adds all partial sums of `n` rows to the first, in their order; without blocks it is zero.
-pub fn gather<const K: usize>(parts: &mut [Vec<[f64; K]>], n: usize) {
+pub(super) fn gather<const K: usize>(parts: &mut [Vec<[f64; K]>], n: usize) {
     let Some((whole, rest)) = parts.split_first_mut() else {
         return;
     };
@@ -235,7 +235,7 @@ pub fn gather<const K: usize>(parts: &mut [Vec<[f64; K]>], n: usize) {
 
 /// `sum += value ⊗ x`.
 #[inline(always)]
-pub fn add_outer<const K: usize>(sum: &mut Block<K>, value: &[f64; BLOCK], x: &[f64; K]) {
+pub(super) fn add_outer<const K: usize>(sum: &mut Block<K>, value: &[f64; BLOCK], x: &[f64; K]) {
     for r in 0..BLOCK {
         for c in 0..K {
             sum[r][c] += value[r] * x[c];
@@ -245,7 +245,7 @@ pub fn add_outer<const K: usize>(sum: &mut Block<K>, value: &[f64; BLOCK], x: &[
 
 /// `sum += valueᵀ x`.
 #[inline(always)]
-pub fn add_outer_transposed<const K: usize>(sum: &mut [f64; K], value: &[f64; BLOCK], x: &Block<K>) {
+pub(super) fn add_outer_transposed<const K: usize>(sum: &mut [f64; K], value: &[f64; BLOCK], x: &Block<K>) {
     for r in 0..BLOCK {
         for c in 0..K {
             sum[c] += value[r] * x[r][c];

@@ -16,26 +16,26 @@ pub(super) struct Frame {
 
 impl Frame {
     /// The plane through `origin` with the unit `normal`.
-    pub fn new(origin: Point, normal: Point, scale: f64) -> Self {
+    pub(super) fn new(origin: Point, normal: Point, scale: f64) -> Self {
         Self { origin, axes: axes_along(normal), scale }
     }
 
     /// What the coefficients multiply at `p`, and its height.
-    pub fn terms(&self, p: Point) -> ([f64; TERMS], f64) {
+    pub(super) fn terms(&self, p: Point) -> ([f64; TERMS], f64) {
         let d = sub(p, self.origin);
         let [s, t, height] = self.axes.map(|axis| dot(axis, d) / self.scale);
         ([1.0, s, t, s * s, s * t, t * t], height)
     }
 
     /// The signed distance of `p` from the surface with the height `c`, to first order.
-    pub fn distance(&self, c: &[f64; TERMS], p: Point) -> f64 {
+    pub(super) fn distance(&self, c: &[f64; TERMS], p: Point) -> f64 {
         let (terms, height) = self.terms(p);
         let [s, t] = slope(c, &terms);
         self.scale * (height - value(c, &terms)) / (1.0 + s * s + t * t).sqrt()
     }
 
     /// The unit normal of that surface at `p`.
-    pub fn normal(&self, c: &[f64; TERMS], p: Point) -> Point {
+    pub(super) fn normal(&self, c: &[f64; TERMS], p: Point) -> Point {
         let [s, t] = slope(c, &self.terms(p).0);
         let [first, second, up] = self.axes;
         unit(sub(up, add(scale(first, s), scale(second, t))))
@@ -60,12 +60,12 @@ pub(super) struct LeastSquares {
 
 impl LeastSquares {
     /// No points yet, and so many functions.
-    pub fn new(n_functions: usize) -> Self {
+    pub(super) fn new(n_functions: usize) -> Self {
         Self { matrix: [[0.0; TERMS]; TERMS], right: vec![[0.0; TERMS]; n_functions] }
     }
 
     /// Adds a point by its terms and what the functions are there.
-    pub fn add(&mut self, weight: f64, terms: &[f64; TERMS], value: impl Fn(usize) -> f64) {
+    pub(super) fn add(&mut self, weight: f64, terms: &[f64; TERMS], value: impl Fn(usize) -> f64) {
         for i in 0..TERMS {
             (0..TERMS).for_each(|j| self.matrix[i][j] += weight * terms[i] * terms[j]);
             for (c, row) in self.right.iter_mut().enumerate() {
@@ -76,7 +76,7 @@ impl LeastSquares {
 
     /// The coefficients of each function, with pulls to zero: `slight` on the constant and the slopes, which need it only where
     /// the points lie on a line, and `stiffness` on the quadratic terms.
-    pub fn solve(mut self, slight: f64, stiffness: f64) -> Vec<[f64; TERMS]> {
+    pub(super) fn solve(mut self, slight: f64, stiffness: f64) -> Vec<[f64; TERMS]> {
         for (i, row) in self.matrix.iter_mut().enumerate() {
             row[i] += if i < 3 { slight } else { stiffness };
         }

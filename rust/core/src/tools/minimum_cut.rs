@@ -20,7 +20,7 @@ pub(super) struct Graph {
 
 impl Graph {
     /// `n` nodes, and the edges with their capacities.
-    pub fn new(n: usize, edges: &[([u32; 2], f64)]) -> Self {
+    pub(super) fn new(n: usize, edges: &[([u32; 2], f64)]) -> Self {
         let mut arcs_of = vec![Vec::new(); n];
         let (mut heads, mut residual) = (Vec::with_capacity(2 * edges.len()), Vec::with_capacity(2 * edges.len()));
         for &([a, b], capacity) in edges {
@@ -33,7 +33,7 @@ impl Graph {
     }
 
     /// Whether each node is on the side of node `source` of the least cut that parts it from node `sink`.
-    pub fn cut(mut self, source: u32, sink: u32) -> Vec<bool> {
+    pub(super) fn cut(mut self, source: u32, sink: u32) -> Vec<bool> {
         let least = FLOW_ROUNDING * self.residual.iter().fold(0.0_f64, |most, x| most.max(*x));
         loop {
             let levels = self.levels(source, least);

@@ -15,7 +15,7 @@ const FLOOR: f64 = 0.1;
 
 /// The norms `‖(H u)_b‖` of every block, joint over the columns or summed over them.
 #[must_use]
-pub fn block_norms(operator: &BlockRows, u: &Columns, coupling: Coupling) -> Vec<f64> {
+pub(super) fn block_norms(operator: &BlockRows, u: &Columns, coupling: Coupling) -> Vec<f64> {
     (0..operator.n_blocks())
         .into_par_iter()
         .with_min_len(2048)

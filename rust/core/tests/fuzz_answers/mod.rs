@@ -15,7 +15,7 @@ use ridgeform_core::{Progress, Result};
 
 /// A tool to call.
 #[derive(Debug, Clone, Copy)]
-pub enum Tool {
+pub(crate) enum Tool {
     Denoise,
     Interpolate,
     Modes,
@@ -27,7 +27,7 @@ pub enum Tool {
 }
 
 /// All of them.
-pub const TOOLS: [(&str, Tool); 8] = [
+pub(crate) const TOOLS: [(&str, Tool); 8] = [
     ("denoise", Tool::Denoise),
     ("interpolate", Tool::Interpolate),
     ("modes", Tool::Modes),
@@ -106,7 +106,7 @@ fn assert_sound(solution: &Solution, options: &ScalarOptions) {
 ///
 /// # Errors
 /// Those of the tool.
-pub fn check(tool: Tool, mesh: &Mesh, random: &mut Random) -> Result<()> {
+pub(crate) fn check(tool: Tool, mesh: &Mesh, random: &mut Random) -> Result<()> {
     let progress = Progress::new();
     let n = mesh.connectivity().n_vertices();
     match random.bits() % 20 {

@@ -9,7 +9,7 @@ use ridgeform_core::mesh::{invariants, report, Connectivity, Mesh, MeshReport};
 use ridgeform_core::shapes::{Random, Shape};
 
 /// The mesh with its patches; the connectivity is sound, and nothing is non-manifold, degenerate or double that was not.
-pub fn patched(mesh: &Mesh, patches: &[Patch]) -> Result<Mesh, String> {
+pub(crate) fn patched(mesh: &Mesh, patches: &[Patch]) -> Result<Mesh, String> {
     let mut vertices = mesh.positions().unwrap().to_vec();
     let mut faces = mesh.connectivity().faces().to_vec();
     for patch in patches {
@@ -33,7 +33,7 @@ pub fn patched(mesh: &Mesh, patches: &[Patch]) -> Result<Mesh, String> {
 
 /// How good the faces of patches are.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shapeliness {
+pub(crate) struct Shapeliness {
     /// The least quality of a face.
     pub quality: f64,
     /// The least cosine between the normals of neighbors inside the patches and across their rims.
@@ -43,7 +43,7 @@ pub struct Shapeliness {
 }
 
 /// The shape of the faces that `filled` has beyond the first `n_old`.
-pub fn shapeliness(filled: &Mesh, n_old: usize) -> Shapeliness {
+pub(crate) fn shapeliness(filled: &Mesh, n_old: usize) -> Shapeliness {
     let (positions, connectivity) = (filled.positions().unwrap(), filled.connectivity());
     let corners = |f: usize| connectivity.faces()[f].map(|v| positions[v as usize]);
     let normal = |f: usize| unit(area_vector(corners(f)));
@@ -60,7 +60,7 @@ pub fn shapeliness(filled: &Mesh, n_old: usize) -> Shapeliness {
 }
 
 /// A connected set of up to `size` faces around `seed`: a round one where `ragged` is 0, a branching one where it is 1.
-pub fn region(
+pub(crate) fn region(
     connectivity: &Connectivity,
     seed: usize,
     size: usize,
@@ -84,7 +84,7 @@ pub fn region(
 }
 
 /// The shape without up to `n_holes` random regions, of up to a tenth of its faces each.
-pub fn with_random_holes(shape: &Shape, n_holes: usize, random: &mut Random) -> Shape {
+pub(crate) fn with_random_holes(shape: &Shape, n_holes: usize, random: &mut Random) -> Shape {
     let mesh = shape.mesh().unwrap();
     let n_faces = shape.faces.len();
     let mut removed = HashSet::new();
@@ -100,6 +100,6 @@ pub fn with_random_holes(shape: &Shape, n_holes: usize, random: &mut Random) -> 
 }
 
 /// The positions of a patch's corners.
-pub fn patch_corners<'a>(filled: &'a Mesh, patch: &'a Patch) -> impl Iterator<Item = [Point; 3]> + 'a {
+pub(crate) fn patch_corners<'a>(filled: &'a Mesh, patch: &'a Patch) -> impl Iterator<Item = [Point; 3]> + 'a {
     patch.faces.iter().map(|face| face.map(|v| filled.positions().unwrap()[v as usize]))
 }

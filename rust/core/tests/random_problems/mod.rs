@@ -15,7 +15,7 @@ use surfaces::{parts, surface};
 
 /// What kind of problem it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Class {
+pub(crate) enum Class {
     /// Ten to a thousand known values.
     SparsePoints,
     /// Everything known but a patch.
@@ -34,7 +34,7 @@ pub enum Class {
 
 impl Class {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub(crate) const ALL: [Self; 7] = [
         Self::SparsePoints,
         Self::Hole,
         Self::Denoising,
@@ -47,7 +47,7 @@ impl Class {
 
 /// A problem that owns its operator.
 #[derive(Debug, Clone)]
-pub struct Case {
+pub(crate) struct Case {
     /// Seed, class, surface and what else was drawn.
     pub name: String,
     operator: BlockRows,
@@ -61,7 +61,7 @@ pub struct Case {
 
 impl Case {
     /// The problem of a seed, on a surface of roughly `n` vertices.
-    pub fn new(seed: u64, n: usize) -> Self {
+    pub(crate) fn new(seed: u64, n: usize) -> Self {
         let random = &mut Random::new(seed);
         let class = Class::ALL[(seed % Class::ALL.len() as u64) as usize];
         let (kind, shape) = surface(random, n);
@@ -115,7 +115,7 @@ impl Case {
     }
 
     /// As the solvers take it.
-    pub fn problem(&self) -> Problem<'_> {
+    pub(crate) fn problem(&self) -> Problem<'_> {
         Problem {
             operator: &self.operator,
             weights: self.weights.clone(),
@@ -128,7 +128,7 @@ impl Case {
     }
 
     /// A neighbor of the problem, as the next step of a flow or the next frame would be: a hundredth more noise.
-    pub fn neighbor(&self, seed: u64) -> Problem<'_> {
+    pub(crate) fn neighbor(&self, seed: u64) -> Problem<'_> {
         let mut problem = self.problem();
         let size = problem.target.data.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
         let mut random = Random::new(seed);

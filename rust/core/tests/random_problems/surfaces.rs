@@ -3,7 +3,7 @@
 use ridgeform_core::shapes::{self, Random, Shape};
 
 /// A surface with roughly `n` vertices, and what it is.
-pub fn surface(random: &mut Random, n: usize) -> (&'static str, Shape) {
+pub(super) fn surface(random: &mut Random, n: usize) -> (&'static str, Shape) {
     let side = ((n as f64).sqrt() as usize).max(2);
     let cube = ((n as f64 / 6.0).sqrt() as usize).max(1);
     let level = if n < 30 { 0 } else { ((n as f64 / 10.0).ln() / 4f64.ln()) as usize };
@@ -45,7 +45,7 @@ fn hills(flat: Shape) -> Shape {
 }
 
 /// A number for each vertex, the same for all vertices of a connected part.
-pub fn parts(faces: &[[u32; 3]], n: usize) -> Vec<usize> {
+pub(super) fn parts(faces: &[[u32; 3]], n: usize) -> Vec<usize> {
     let mut part: Vec<usize> = (0..n).collect();
     loop {
         let mut changed = false;

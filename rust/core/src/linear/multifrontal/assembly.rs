@@ -4,7 +4,7 @@ use super::dense::Padded;
 
 /// Adds the columns that belong to the panel: `relative` are the places of the rows of `from` in the front, whose first
 /// `n_columns` are the panel's.
-pub fn add_to_panel(relative: &[u32], from: &[f64], n_columns: usize, panel: &mut Padded) {
+pub(super) fn add_to_panel(relative: &[u32], from: &[f64], n_columns: usize, panel: &mut Padded) {
     let stride = Padded::stride_of(relative.len());
     let run = run(relative);
     for (j, &column) in relative.iter().enumerate() {
@@ -18,7 +18,7 @@ pub fn add_to_panel(relative: &[u32], from: &[f64], n_columns: usize, panel: &mu
 }
 
 /// Adds the other columns to what will be left of the parent.
-pub fn add_to_update(relative: &[u32], from: &[f64], n_columns: usize, update: &mut [f64], stride: usize) {
+pub(super) fn add_to_update(relative: &[u32], from: &[f64], n_columns: usize, update: &mut [f64], stride: usize) {
     let own = Padded::stride_of(relative.len());
     let run = run(relative);
     let first = relative.partition_point(|&row| (row as usize) < n_columns);

@@ -7,7 +7,7 @@ use super::dense::Padded;
 
 /// What one thread needs for the fronts of a subtree.
 #[derive(Debug, Default)]
-pub struct Work {
+pub(crate) struct Work {
     /// What is left of fronts until their parents take it: a front writes to one stack and reads from the other.
     pub stacks: [Stack; 2],
     /// The columns that are eliminated.
@@ -16,21 +16,21 @@ pub struct Work {
 
 impl Work {
     /// Drops what is left on the stacks.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.stacks.iter_mut().for_each(|stack| stack.top = 0);
     }
 }
 
 /// A stack of numbers.
 #[derive(Debug, Default)]
-pub struct Stack {
+pub(crate) struct Stack {
     values: Vec<f64>,
     top: usize,
 }
 
 impl Stack {
     /// `len` more numbers, of any value.
-    pub fn push(&mut self, len: usize) -> &mut [f64] {
+    pub(crate) fn push(&mut self, len: usize) -> &mut [f64] {
         let begin = self.top;
         self.top += len;
         if self.values.len() < self.top {
@@ -40,36 +40,36 @@ impl Stack {
     }
 
     /// The last `len` numbers.
-    pub fn last(&self, len: usize) -> &[f64] {
+    pub(crate) fn last(&self, len: usize) -> &[f64] {
         &self.values[self.top - len..self.top]
     }
 
     /// Takes the last `len` numbers off.
-    pub fn pop(&mut self, len: usize) {
+    pub(crate) fn pop(&mut self, len: usize) {
         self.top -= len;
     }
 }
 
 /// Buffers that are free at the moment.
 #[derive(Debug, Default)]
-pub struct Workspace {
+pub(crate) struct Workspace {
     works: Mutex<Vec<Work>>,
     spare: Mutex<Vec<Vec<f64>>>,
 }
 
 impl Workspace {
     /// What one thread needs.
-    pub fn work(&self) -> Work {
+    pub(crate) fn work(&self) -> Work {
         self.works.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default()
     }
 
     /// Gives it back.
-    pub fn back(&self, work: Work) {
+    pub(crate) fn back(&self, work: Work) {
         self.works.lock().unwrap_or_else(PoisonError::into_inner).push(work);
     }
 
     /// Makes `buffer` hold `len` numbers of any value: the smallest free buffer that does, or a new one for the largest.
-    pub fn take(&self, len: usize, buffer: &mut Vec<f64>) {
+    pub(crate) fn take(&self, len: usize, buffer: &mut Vec<f64>) {
         if len == 0 {
             // Roots leave nothing, and a mesh can have as many as vertices.
             return buffer.clear();
@@ -86,7 +86,7 @@ impl Workspace {
     }
 
     /// Gives a buffer back.
-    pub fn give(&self, buffer: Vec<f64>) {
+    pub(crate) fn give(&self, buffer: Vec<f64>) {
         if buffer.is_empty() {
             return;
         }

@@ -29,7 +29,7 @@ const SHARED: usize = 512;
 
 /// A dense matrix stored column by column, rows and columns padded so that whole registers and groups of columns fit.
 #[derive(Debug, Default)]
-pub struct Padded {
+pub(crate) struct Padded {
     /// The numbers; those in the padding mean nothing.
     pub values: Vec<f64>,
     /// From one column to the next.
@@ -39,7 +39,7 @@ pub struct Padded {
 impl Padded {
     /// The stride of a matrix with so many rows.
     #[must_use]
-    pub fn stride_of(n_rows: usize) -> usize {
+    pub(crate) fn stride_of(n_rows: usize) -> usize {
         let groups = n_rows.div_ceil(ALIGNMENT);
         // Even multiples put the same row of many columns in few sets of the cache: up to a fifth slower products.
         ALIGNMENT * if groups > LONG { groups | 1 } else { groups }
@@ -47,13 +47,13 @@ impl Padded {
 
     /// Numbers in a matrix of so many rows and columns.
     #[must_use]
-    pub fn len_of(n_rows: usize, n_columns: usize) -> usize {
+    pub(crate) fn len_of(n_rows: usize, n_columns: usize) -> usize {
         // Registers that start inside the last column may end behind it.
         Self::stride_of(n_rows) * n_columns.next_multiple_of(COLUMNS) + ALIGNMENT
     }
 
     /// Becomes a matrix whose lower triangle is zero. What was above the diagonal may stay: nothing reads it.
-    pub fn clear(&mut self, n_rows: usize, n_columns: usize) {
+    pub(crate) fn clear(&mut self, n_rows: usize, n_columns: usize) {
         self.stride = Self::stride_of(n_rows);
         let len = Self::len_of(n_rows, n_columns);
         if self.values.len() < len {
@@ -68,7 +68,7 @@ impl Padded {
 
 /// Numbers in what is left of a front with `n` rows below its panel, stored like [`Padded`].
 #[must_use]
-pub fn update_len(n: usize) -> usize {
+pub(super) fn update_len(n: usize) -> usize {
     if n == 0 {
         return 0;
     }
@@ -77,7 +77,7 @@ pub fn update_len(n: usize) -> usize {
 
 /// One front: `panel` holds its first `n_columns` columns of `n_rows`, `update` the columns and rows after these.
 #[derive(Debug)]
-pub struct Front<'f> {
+pub(super) struct Front<'f> {
     /// Columns to be eliminated, lower triangle.
     pub panel: &'f mut Padded,
     /// What is left for the parent, lower triangle with the stride of [`Padded`]; what stood there is forgotten.
@@ -92,7 +92,7 @@ impl Front<'_> {
     /// Turns the panel into columns of the factor and takes their product off the update; `false` when a pivot is not
     /// positive.
     #[must_use]
-    pub fn eliminate(&mut self) -> bool {
+    pub(super) fn eliminate(&mut self) -> bool {
         let mut begin = 0;
         while begin < self.n_columns {
             let end = self.n_columns.min(begin + BLOCK_COLUMNS);

@@ -11,17 +11,17 @@ mod dense;
 mod tree;
 
 use buffers::Work;
-pub use buffers::Workspace;
+pub(super) use buffers::Workspace;
 use dense::Front;
 use rayon::prelude::*;
-pub use tree::Tree;
+pub(super) use tree::Tree;
 
 use crate::linear::triangular::Panels;
 
 /// Factors the matrix with these values (one per entry of the pattern) into `factor`, panel by panel as in `panels`; `None` when
 /// it is not positive definite.
 #[must_use]
-pub fn factorize(
+pub(super) fn factorize(
     tree: &Tree,
     panels: &Panels,
     values: &[f64],

@@ -7,7 +7,7 @@ use crate::linear::pattern::LowerPattern;
 use crate::linear::triangular::Panels;
 
 /// No panel.
-pub const NONE: u32 = u32::MAX;
+pub(super) const NONE: u32 = u32::MAX;
 
 /// Multiplications from which on a factorization is shared between threads: below it takes 15 ms.
 const SHARED: f64 = 2e8;
@@ -21,7 +21,7 @@ const DEEPEST: u32 = 100;
 
 /// Who updates whom. Panels are the columns that a front eliminates, and come in postorder.
 #[derive(Debug, Clone, Default)]
-pub struct Tree {
+pub(crate) struct Tree {
     /// The children of every panel; those of no parent come last.
     children: Buckets<u32>,
     /// The first panel of each subtree.
@@ -45,7 +45,7 @@ impl Tree {
     ///
     /// # Errors
     /// [`SolveError::Factorization`] when the panels are in no postorder.
-    pub fn new(pattern: &LowerPattern, order: &[u32], panels: &Panels) -> Result<Self, SolveError> {
+    pub(crate) fn new(pattern: &LowerPattern, order: &[u32], panels: &Panels) -> Result<Self, SolveError> {
         let count = panels.count();
         let mut panel_of = vec![0u32; pattern.n];
         for s in 0..count {
@@ -78,7 +78,7 @@ impl Tree {
 
     /// The children of a panel in rising order; those of the number of panels are the roots.
     #[must_use]
-    pub fn children(&self, s: usize) -> &[u32] {
+    pub(crate) fn children(&self, s: usize) -> &[u32] {
         self.children.of(s)
     }
 
@@ -117,7 +117,7 @@ impl Tree {
 
     /// The most numbers that wait for their parents at once when the panels follow each other, with the panel at work.
     #[must_use]
-    pub fn most_waiting(&self, panels: &Panels) -> usize {
+    pub(crate) fn most_waiting(&self, panels: &Panels) -> usize {
         let (mut waiting, mut most) = (0, 0);
         for s in 0..panels.count() {
             let (k, below) = (panels.begin[s + 1] - panels.begin[s], panels.below(s).len());

@@ -6,7 +6,7 @@ use crate::random::Random;
 
 /// An undirected graph with weights on vertices and edges; every edge stands at both of its ends.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Graph {
+pub(super) struct Graph {
     /// Vertex `v` owns the neighbors `starts[v]..starts[v + 1]`.
     pub starts: Vec<u32>,
     /// The other end of each edge.
@@ -23,7 +23,7 @@ const NONE: u32 = u32::MAX;
 impl Graph {
     /// The graph of a symmetric matrix; all weights are one.
     #[must_use]
-    pub fn new(pattern: &LowerPattern) -> Self {
+    pub(super) fn new(pattern: &LowerPattern) -> Self {
         let (starts, neighbors) = Buckets::new(pattern.n, |visit| {
             for j in 0..pattern.n {
                 for &i in pattern.rows[pattern.starts[j]..pattern.starts[j + 1]].iter().filter(|&&i| i != j) {
@@ -40,20 +40,20 @@ impl Graph {
 
     /// Number of vertices.
     #[must_use]
-    pub fn n(&self) -> usize {
+    pub(super) fn n(&self) -> usize {
         self.weights.len()
     }
 
     /// The neighbors of `v`.
     #[must_use]
-    pub fn around(&self, v: usize) -> &[u32] {
+    pub(super) fn around(&self, v: usize) -> &[u32] {
         &self.neighbors[self.starts[v] as usize..self.starts[v + 1] as usize]
     }
 
     /// Merges vertices with the neighbor that most edges lead to, as long as the two weigh at most `heaviest`; also says
     /// which coarse vertex each vertex went into (heavy edge matching, Karypis and Kumar 1998).
     #[must_use]
-    pub fn coarsened(&self, heaviest: u32, random: &mut Random) -> (Self, Vec<u32>) {
+    pub(super) fn coarsened(&self, heaviest: u32, random: &mut Random) -> (Self, Vec<u32>) {
         let n = self.n();
         let mut mate = vec![NONE; n];
         for v in random.permutation(n).into_iter().map(|v| v as u32) {
@@ -116,7 +116,7 @@ impl Graph {
 
     /// The graph on the vertices `v` with `side[v] == which`, and which they are.
     #[must_use]
-    pub fn part(&self, side: &[u8], which: u8) -> (Self, Vec<u32>) {
+    pub(super) fn part(&self, side: &[u8], which: u8) -> (Self, Vec<u32>) {
         let members: Vec<u32> = (0..self.n() as u32).filter(|&v| side[v as usize] == which).collect();
         let mut place = vec![NONE; self.n()];
         for (k, &v) in members.iter().enumerate() {

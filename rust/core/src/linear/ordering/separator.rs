@@ -7,7 +7,7 @@ use crate::linear::ordering::graph::Graph;
 use crate::random::Random;
 
 /// The side that stands for the separator; the others are 0 and 1.
-pub const SEPARATOR: u8 = 2;
+pub(super) const SEPARATOR: u8 = 2;
 
 /// Graphs are coarsened to so many vertices.
 const COARSEST: usize = 40;
@@ -27,7 +27,7 @@ const PASSES: usize = 8;
 
 /// The side of each vertex: 0, 1 or [`SEPARATOR`]; no edge joins 0 and 1.
 #[must_use]
-pub fn separator(graph: &Graph, random: &mut Random) -> Vec<u8> {
+pub(super) fn separator(graph: &Graph, random: &mut Random) -> Vec<u8> {
     let total: u64 = graph.weights.iter().map(|&w| u64::from(w)).sum();
     let heaviest = (1.5 * total as f64 / COARSEST as f64).max(2.0) as u32;
     let (mut levels, mut maps): (Vec<Graph>, Vec<Vec<u32>>) = (Vec::new(), Vec::new());

@@ -20,7 +20,7 @@ pub(super) struct Borders<'a> {
 
 impl Borders<'_> {
     /// The curves with the colors of `values` on their sides, one row a copy; a side without a face gets those of the other.
-    pub fn colored(&self, values: &Columns) -> ColoredCurves {
+    pub(super) fn colored(&self, values: &Columns) -> ColoredCurves {
         let k = values.n_columns;
         let mut curves = ColoredCurves { n_channels: k, ..ColoredCurves::default() };
         for edge in self.edges {
@@ -40,7 +40,7 @@ impl Borders<'_> {
     }
 
     /// Thins the colors of every curve, [`thin`]; returns the number of knots of each.
-    pub fn thin(&self, curves: &mut ColoredCurves, lengths: &[[f64; 3]], tolerance: f64) -> Vec<usize> {
+    pub(super) fn thin(&self, curves: &mut ColoredCurves, lengths: &[[f64; 3]], tolerance: f64) -> Vec<usize> {
         let k = curves.n_channels;
         let length = |e: usize| {
             let [start, end] = curves.edges[e];
@@ -70,7 +70,7 @@ impl Borders<'_> {
     }
 
     /// How many numbers the curves are; `knots` counts them where colors were thinned.
-    pub fn n_numbers(&self, curves: &ColoredCurves, knots: Option<&[usize]>) -> usize {
+    pub(super) fn n_numbers(&self, curves: &ColoredCurves, knots: Option<&[usize]>) -> usize {
         let k = curves.n_channels;
         let mut count = curves.points.len() * (1 + k);
         for (i, bounds) in self.starts.windows(2).enumerate() {
@@ -85,7 +85,7 @@ impl Borders<'_> {
     }
 
     /// A face for each vertex that has the copy which the vertex takes its color from.
-    pub fn sides(&self, fit: &Fit) -> Vec<Option<u32>> {
+    pub(super) fn sides(&self, fit: &Fit) -> Vec<Option<u32>> {
         let mut sides = vec![None; fit.owners.len()];
         for (f, face) in (0..).zip(&self.cut.faces) {
             for &copy in face {

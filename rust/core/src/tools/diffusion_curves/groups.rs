@@ -17,7 +17,7 @@ pub(super) struct Groups {
 
 impl Groups {
     /// Groups by number; each face by itself where there are none.
-    pub fn new(numbers: Option<&[u32]>, n_faces: usize) -> Result<Self> {
+    pub(super) fn new(numbers: Option<&[u32]>, n_faces: usize) -> Result<Self> {
         let mut order: Vec<u32> = (0..n_faces as u32).collect();
         let members: Vec<Vec<u32>> = match numbers {
             None => order.iter().map(|&f| vec![f]).collect(),
@@ -38,7 +38,7 @@ impl Groups {
     }
 
     /// Gives every group the label of most of its faces.
-    pub fn unify(&self, labels: &mut [i32]) {
+    pub(super) fn unify(&self, labels: &mut [i32]) {
         for group in self.members.iter().filter(|group| group.len() > 1) {
             let label = majority(group.iter().map(|&f| labels[f as usize]).collect());
             self.set(labels, group[0] as usize, label);
@@ -46,7 +46,7 @@ impl Groups {
     }
 
     /// Gives the group of a face a label.
-    pub fn set(&self, labels: &mut [i32], face: usize, label: i32) {
+    pub(super) fn set(&self, labels: &mut [i32], face: usize, label: i32) {
         self.members[self.of[face] as usize].iter().for_each(|&f| labels[f as usize] = label);
     }
 
@@ -60,7 +60,7 @@ impl Groups {
     }
 
     /// Makes a region of its own of each part of a region that no edge joins to the rest.
-    pub fn split(&self, connectivity: &Connectivity, labels: &mut [i32]) {
+    pub(super) fn split(&self, connectivity: &Connectivity, labels: &mut [i32]) {
         let mut pieces = self.pieces(connectivity, labels);
         for (label, group) in labels.iter_mut().zip(&self.of) {
             *label = pieces.root(*group) as i32;
@@ -68,7 +68,7 @@ impl Groups {
     }
 
     /// Gives islands of fewer than [`LEAST_ISLAND`] groups, cut off from the rest of their region, to the region around them.
-    pub fn absorb_islands(&self, connectivity: &Connectivity, labels: &mut [i32]) {
+    pub(super) fn absorb_islands(&self, connectivity: &Connectivity, labels: &mut [i32]) {
         let mut pieces = self.pieces(connectivity, labels);
         let label_of = |piece: u32| labels[self.members[piece as usize][0] as usize];
         let mut sizes = vec![0; self.members.len()];

@@ -26,7 +26,7 @@ pub(super) struct Membrane {
 impl Membrane {
     /// The cotangent Laplacian on the intrinsic Delaunay triangulation of every piece of `cut` (Bobenko and Springborn 2007),
     /// weights under [`LEAST_WEIGHT`] raised to it.
-    pub fn new(cut: &CutMesh, lengths: &[[f64; 3]]) -> Result<Self> {
+    pub(super) fn new(cut: &CutMesh, lengths: &[[f64; 3]]) -> Result<Self> {
         let n = cut.n_copies();
         let connectivity = Connectivity::new(cut.faces.clone(), n)?;
         let mass = voronoi_mass(&connectivity, lengths);
@@ -82,7 +82,7 @@ impl Membrane {
 
     /// `argmin uᵀ L u + Σ_i a_i (u_i − t_i)²`, column by column (Rowe et al. 2024, eq. (27)); every piece of the surface needs
     /// a positive weight `a`.
-    pub fn screened(&self, weights: &[f64], target: &Columns, progress: &Progress) -> Result<Columns> {
+    pub(super) fn screened(&self, weights: &[f64], target: &Columns, progress: &Progress) -> Result<Columns> {
         let all: Vec<u32> = (0..weights.len() as u32).collect();
         let mut cholesky = self.factorize(&all, &all, |v| weights[v])?;
         let mut values = target.clone();
@@ -106,7 +106,7 @@ pub(super) struct Harmonic<'a> {
 
 impl<'a> Harmonic<'a> {
     /// Factors the Laplacian of the copies that are not `fixed`; every piece needs a fixed copy.
-    pub fn new(membrane: &'a Membrane, fixed: &[bool]) -> Result<Self> {
+    pub(super) fn new(membrane: &'a Membrane, fixed: &[bool]) -> Result<Self> {
         let free: Vec<u32> = (0..fixed.len()).filter(|&v| !fixed[v]).map(|v| v as u32).collect();
         let mut index = vec![FIXED; fixed.len()];
         (0..).zip(&free).for_each(|(i, &v)| index[v as usize] = i);
@@ -115,7 +115,7 @@ impl<'a> Harmonic<'a> {
     }
 
     /// Replaces the values of the free copies by the harmonic function through the others (Rowe et al. 2024, eq. (26)).
-    pub fn extend(&mut self, values: &mut Columns, progress: &Progress) -> Result<()> {
+    pub(super) fn extend(&mut self, values: &mut Columns, progress: &Progress) -> Result<()> {
         let Some(cholesky) = &mut self.cholesky else { return Ok(()) };
         for c in 0..values.n_columns {
             self.free.iter().for_each(|&v| values.column_mut(c)[v as usize] = 0.0);
@@ -137,7 +137,7 @@ impl<'a> Harmonic<'a> {
     }
 
     /// The transpose of [`Harmonic::extend`]: what a change of each fixed value does to `Σ_i r_i u_i`, 0 at the free copies.
-    pub fn transposed(&mut self, residual: &mut Columns, progress: &Progress) -> Result<()> {
+    pub(super) fn transposed(&mut self, residual: &mut Columns, progress: &Progress) -> Result<()> {
         let Some(cholesky) = &mut self.cholesky else { return Ok(()) };
         let mut inner = Columns::zeros(self.free.len(), residual.n_columns);
         for c in 0..residual.n_columns {

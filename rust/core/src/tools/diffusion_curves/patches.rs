@@ -14,7 +14,7 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    pub fn new(paint: &Paint<'_>) -> Self {
+    pub(super) fn new(paint: &Paint<'_>) -> Self {
         let connectivity = paint.mesh.connectivity();
         let jump = |h: usize| paint.distance(connectivity.tail(h) as usize, connectivity.head(h) as usize);
         let jumps: Vec<f64> = (0..connectivity.n_halfedges()).map(jump).collect();

@@ -161,7 +161,7 @@ pub(super) struct Conditions {
 
 impl Conditions {
     /// Gives each copy the mean of the colors that curves give it, and those of points to the copies that no curve reaches.
-    pub fn new(connectivity: &Connectivity, table: &EdgeTable, cut: &CutMesh, curves: &ColoredCurves) -> Self {
+    pub(super) fn new(connectivity: &Connectivity, table: &EdgeTable, cut: &CutMesh, curves: &ColoredCurves) -> Self {
         let (n, k) = (cut.n_copies(), curves.n_channels);
         let mut counts = vec![0_u32; n];
         let mut values = Columns::zeros(n, k);
@@ -204,7 +204,7 @@ impl Conditions {
     }
 
     /// Solves for the other copies and gives vertices and corners their colors.
-    pub fn solve(
+    pub(super) fn solve(
         &self,
         connectivity: &Connectivity,
         cut: &CutMesh,

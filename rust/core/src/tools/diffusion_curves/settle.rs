@@ -18,7 +18,7 @@ pub(super) struct Faces<'a> {
 }
 
 impl<'a> Faces<'a> {
-    pub fn new(mesh: &'a Mesh, groups: &'a Groups, regions: &'a [Option<i32>], labels: &'a mut [i32]) -> Self {
+    pub(super) fn new(mesh: &'a Mesh, groups: &'a Groups, regions: &'a [Option<i32>], labels: &'a mut [i32]) -> Self {
         let connectivity = mesh.connectivity();
         let mut covers = vec![0; regions.len()];
         let mut around = vec![Vec::new(); regions.len()];
@@ -31,7 +31,7 @@ impl<'a> Faces<'a> {
 
     /// Gives every group of faces without a vertex of its region to the region of most of its vertices; returns whether any
     /// changed.
-    pub fn follow(&mut self) -> bool {
+    pub(super) fn follow(&mut self) -> bool {
         let mut changed = false;
         for group in 0..self.groups.members.len() {
             let found: Vec<i32> = self.corners(group).filter_map(|v| self.regions[v as usize]).collect();
@@ -45,7 +45,7 @@ impl<'a> Faces<'a> {
 
     /// Gives every vertex that is `sure` of its region, and has no face of it, one of those around it, which no other vertex needs; of several the one
     /// that makes the borders shortest. Returns whether any changed.
-    pub fn cover(&mut self, sure: impl Fn(usize) -> bool) -> bool {
+    pub(super) fn cover(&mut self, sure: impl Fn(usize) -> bool) -> bool {
         let mut changed = false;
         for v in 0..self.regions.len() {
             let Some(region) = self.regions[v].filter(|_| self.covers[v] == 0 && sure(v)) else { continue };
@@ -63,7 +63,7 @@ impl<'a> Faces<'a> {
 
     /// Shortens the borders by giving groups of faces to other regions that their vertices belong to. An edge of a border more than
     /// two at a vertex counts as much as all edges around the group, so that regions are not pinched off where it can be helped.
-    pub fn shorten(&mut self) {
+    pub(super) fn shorten(&mut self) {
         for _ in 0..SETTLE_SWEEPS {
             let mut changed = false;
             for group in 0..self.groups.members.len() {

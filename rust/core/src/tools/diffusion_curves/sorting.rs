@@ -30,7 +30,7 @@ pub(super) struct Sorted {
 
 impl Paint<'_> {
     /// The largest range of a channel.
-    pub fn scale(&self) -> f64 {
+    pub(super) fn scale(&self) -> f64 {
         let range = |c: usize| {
             let column = self.colors.column(c).iter();
             column.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], &x| [least.min(x), most.max(x)])
@@ -39,7 +39,7 @@ impl Paint<'_> {
     }
 
     /// How far the colors of two vertices are from each other.
-    pub fn distance(&self, a: usize, b: usize) -> f64 {
+    pub(super) fn distance(&self, a: usize, b: usize) -> f64 {
         let column = |c: usize| self.colors.column(c);
         (0..self.colors.n_columns).map(|c| (column(c)[a] - column(c)[b]).powi(2)).sum::<f64>().sqrt()
     }
@@ -47,7 +47,7 @@ impl Paint<'_> {
     /// Compares every vertex on a border, or beside one, with the fits (27) of the regions there.
     ///
     /// A region that does not reach a vertex is compared by the mean of its colors at the vertices around it.
-    pub fn sort(&self, labels: &[i32]) -> Result<Sorted> {
+    pub(super) fn sort(&self, labels: &[i32]) -> Result<Sorted> {
         let connectivity = self.mesh.connectivity();
         let area: f64 = self.mesh.edge_lengths().iter().map(|&l| triangle::area(l)).sum();
         let table = EdgeTable::new(connectivity);

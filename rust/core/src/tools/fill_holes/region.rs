@@ -151,7 +151,7 @@ pub(super) mod tests {
     use crate::Progress;
 
     /// The region of the hole that is left where the faces of a closed shape within `radius` of `place` are taken away.
-    pub fn around_hole(shape: &Shape, place: Point, radius: f64) -> Region {
+    pub(crate) fn around_hole(shape: &Shape, place: Point, radius: f64) -> Region {
         let away = |f: usize| distance(centroid(shape.faces[f].map(|v| shape.vertices[v as usize])), place);
         let mesh = shape.clone().without_faces(|f| away(f) < radius).mesh().unwrap();
         let hole = find_holes(&mesh).unwrap().remove(0).vertices;

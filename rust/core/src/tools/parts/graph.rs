@@ -37,7 +37,7 @@ pub(super) struct Graph {
 }
 
 impl Graph {
-    pub fn new(areas: Vec<f64>, centers: Vec<Point>, mut edges: Vec<Edge>) -> Self {
+    pub(super) fn new(areas: Vec<f64>, centers: Vec<Point>, mut edges: Vec<Edge>) -> Self {
         for edge in &mut edges {
             edge.cost = edge.cost.max(ROUNDING);
             edge.distance = edge.distance.max(ROUNDING);
@@ -62,36 +62,36 @@ impl Graph {
     }
 
     /// The same with the logarithm of the thickness under each node.
-    pub fn with_thickness(self, thickness: Vec<f64>) -> Self {
+    pub(super) fn with_thickness(self, thickness: Vec<f64>) -> Self {
         Self { thickness, ..self }
     }
 
     /// The logarithm of the thickness under node `i`.
-    pub fn thickness(&self, i: usize) -> f64 {
+    pub(super) fn thickness(&self, i: usize) -> f64 {
         self.thickness.get(i).copied().unwrap_or(0.0)
     }
 
     /// The same nodes with other edges.
-    pub fn with_edges(&self, edges: Vec<Edge>) -> Self {
+    pub(super) fn with_edges(&self, edges: Vec<Edge>) -> Self {
         Self::new(self.areas.clone(), self.centers.clone(), edges).with_thickness(self.thickness.clone())
     }
 
-    pub fn n_nodes(&self) -> usize {
+    pub(super) fn n_nodes(&self) -> usize {
         self.areas.len()
     }
 
-    pub fn area(&self) -> f64 {
+    pub(super) fn area(&self) -> f64 {
         self.areas.iter().sum()
     }
 
     /// The nodes next to `i`, each with the edge that leads there.
-    pub fn around(&self, i: u32) -> &[[u32; 2]] {
+    pub(super) fn around(&self, i: u32) -> &[[u32; 2]] {
         &self.arcs[self.starts[i as usize] as usize..self.starts[i as usize + 1] as usize]
     }
 
     /// The graph of some nodes, renumbered in their order; `place` has a row for every node, all [`NONE`],
     /// and is left so.
-    pub fn subgraph(&self, nodes: &[u32], place: &mut [u32]) -> Self {
+    pub(super) fn subgraph(&self, nodes: &[u32], place: &mut [u32]) -> Self {
         (0..).zip(nodes).for_each(|(i, &node)| place[node as usize] = i);
         let mut edges = Vec::new();
         for (i, &node) in (0_u32..).zip(nodes) {
@@ -110,7 +110,7 @@ impl Graph {
     }
 
     /// The graph of `n` clusters, given the one of each node: costs add up.
-    pub fn quotient(&self, labels: &[u32], n: usize) -> Self {
+    pub(super) fn quotient(&self, labels: &[u32], n: usize) -> Self {
         let mut areas = vec![0.0; n];
         let mut centers = vec![[0.0; 3]; n];
         let mut thickness = vec![0.0; n];
@@ -139,7 +139,7 @@ impl Graph {
 
     /// The connected pieces over the edges that `keep` takes, numbered in the order of their first nodes,
     /// and how many there are.
-    pub fn pieces(&self, keep: impl Fn(&Edge) -> bool) -> (Vec<u32>, usize) {
+    pub(super) fn pieces(&self, keep: impl Fn(&Edge) -> bool) -> (Vec<u32>, usize) {
         let mut partition = Partition::new(self.n_nodes());
         self.edges.iter().filter(|e| keep(e)).for_each(|e| partition.unite(e.ends[0], e.ends[1]));
         let mut names = vec![NONE; self.n_nodes()];
@@ -160,7 +160,7 @@ impl Graph {
 
     /// For each node the distance to the nearest of `seeds` along edges as long as `length` says, and
     /// which seed that is: up to `limit`, beyond it infinity and [`NONE`] (Dijkstra 1959).
-    pub fn nearest(&self, seeds: &[u32], limit: f64, length: impl Fn(&Edge) -> f64) -> (Vec<f64>, Vec<u32>) {
+    pub(super) fn nearest(&self, seeds: &[u32], limit: f64, length: impl Fn(&Edge) -> f64) -> (Vec<f64>, Vec<u32>) {
         let mut distances = vec![f64::INFINITY; self.n_nodes()];
         let mut nearest = vec![NONE; self.n_nodes()];
         let mut heap = BinaryHeap::new();

@@ -38,7 +38,7 @@ impl Surface {
     ///
     /// # Errors
     /// [`MeshError::NoPositions`], and [`MeshError::NoFaces`] where no face has area.
-    pub fn new(mesh: &Mesh, faces: &[u32], weight: impl Fn(usize) -> f64) -> Result<Self> {
+    pub(super) fn new(mesh: &Mesh, faces: &[u32], weight: impl Fn(usize) -> f64) -> Result<Self> {
         let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
         let corners: Vec<[u32; 3]> = faces.iter().map(|&f| mesh.connectivity().faces()[f as usize]).collect();
         let welded = Connectivity::new(welded(&corners, positions), positions.len())?;
@@ -81,7 +81,7 @@ impl Surface {
         Ok(Self { triangles, areas, centers, normals, joints, open })
     }
 
-    pub fn n_faces(&self) -> usize {
+    pub(super) fn n_faces(&self) -> usize {
         self.areas.len()
     }
 }

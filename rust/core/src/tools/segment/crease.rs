@@ -20,7 +20,7 @@ pub(super) struct Border {
 
 impl Slopes {
     /// The borders between the segments, sorted by their labels.
-    pub fn borders(&self, surface: &Surface<'_>, labels: &[u32]) -> Vec<Border> {
+    pub(super) fn borders(&self, surface: &Surface<'_>, labels: &[u32]) -> Vec<Border> {
         let edges: Vec<usize> = surface
             .connectivity
             .edges()

@@ -46,7 +46,7 @@ impl Divide<'_> {
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
-    pub fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
+    pub(super) fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
         for _ in 0..DIVIDE_ROUNDS {
             self.progress.check()?;
             let members = members(labels);

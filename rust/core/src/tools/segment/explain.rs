@@ -38,7 +38,7 @@ impl Explain<'_> {
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
-    pub fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
+    pub(super) fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
         loop {
             self.progress.check()?;
             let segments = self.measured(labels);

@@ -50,7 +50,7 @@ impl Functional<'_> {
     ///
     /// # Errors
     /// A failed factorization, or [`crate::Error::Cancelled`].
-    pub fn minimize(&self, progress: &Progress) -> Result<Minimizer> {
+    pub(super) fn minimize(&self, progress: &Progress) -> Result<Minimizer> {
         let surface = self.surface;
         let operator = self.operator()?;
         let mass = voronoi_mass(surface.connectivity, &surface.lengths);
@@ -93,7 +93,7 @@ impl Functional<'_> {
     ///
     /// # Errors
     /// A failed factorization, or [`crate::Error::Cancelled`].
-    pub fn indicate(&self, progress: &Progress) -> Result<Minimizer> {
+    pub(super) fn indicate(&self, progress: &Progress) -> Result<Minimizer> {
         progress.check()?;
         let surface = self.surface;
         let operator = self.operator()?;

@@ -23,7 +23,7 @@ impl IndicatorStep {
     ///
     /// # Errors
     /// Too little memory for the factor.
-    pub fn new(surface: &Surface<'_>, length_weight: f64, face_costs: &[f64]) -> Result<Self> {
+    pub(super) fn new(surface: &Surface<'_>, length_weight: f64, face_costs: &[f64]) -> Result<Self> {
         let m = surface.n_faces();
         let weights = face_laplacian_weights(surface.connectivity, &surface.lengths, &surface.centroids);
         let (mut starts, mut rows, mut laplacian) = (vec![0], Vec::new(), Vec::new());
@@ -58,7 +58,7 @@ impl IndicatorStep {
     }
 
     /// Sets `ε`.
-    pub fn prepare(&mut self, epsilon: f64) {
+    pub(super) fn prepare(&mut self, epsilon: f64) {
         self.epsilon = epsilon;
     }
 
@@ -66,7 +66,7 @@ impl IndicatorStep {
     ///
     /// # Errors
     /// A matrix that is not positive definite.
-    pub fn minimize(&mut self, norms: &[f64]) -> Result<Vec<f64>> {
+    pub(super) fn minimize(&mut self, norms: &[f64]) -> Result<Vec<f64>> {
         let largest = self.weighted_areas.iter().fold(0.0_f64, |a, b| a.max(*b)).max(f64::MIN_POSITIVE);
         for (value, entry) in self.values.iter_mut().zip(&self.laplacian) {
             *value = self.epsilon * entry;

@@ -34,7 +34,7 @@ impl Merging<'_> {
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
-    pub fn below(&self, labels: &mut [u32], threshold: f64) -> Result<Vec<Merge>> {
+    pub(super) fn below(&self, labels: &mut [u32], threshold: f64) -> Result<Vec<Merge>> {
         let mut merges = Vec::new();
         for share in MERGE_SHARES {
             merges.extend(self.round(labels, share * threshold)?);
@@ -46,7 +46,7 @@ impl Merging<'_> {
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
-    pub fn all(&self, labels: &mut [u32]) -> Result<Vec<Merge>> {
+    pub(super) fn all(&self, labels: &mut [u32]) -> Result<Vec<Merge>> {
         let mut merges: Vec<Merge> = Vec::new();
         loop {
             let borders = self.borders(labels)?;
@@ -85,7 +85,7 @@ impl Merging<'_> {
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
-    pub fn absorb_small(&self, labels: &mut [u32], least: usize) -> Result<Vec<Merge>> {
+    pub(super) fn absorb_small(&self, labels: &mut [u32], least: usize) -> Result<Vec<Merge>> {
         let mut merges = Vec::new();
         loop {
             let mut sizes: BTreeMap<u32, usize> = BTreeMap::new();

@@ -10,7 +10,7 @@ pub(super) struct Normalized {
 }
 
 impl Normalized {
-    pub fn of(values: &Columns) -> Self {
+    pub(super) fn of(values: &Columns) -> Self {
         let ends = |c: usize| {
             let column = values.column(c).iter();
             column.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &x| [low.min(x), high.max(x)])
@@ -26,7 +26,7 @@ impl Normalized {
         Self { values: normalized, low, range }
     }
 
-    pub fn restored(&self, columns: &Columns) -> Columns {
+    pub(super) fn restored(&self, columns: &Columns) -> Columns {
         let mut restored = columns.clone();
         for (c, low) in self.low.iter().enumerate() {
             restored.column_mut(c).iter_mut().for_each(|x| *x = *x * self.range + low);

@@ -36,7 +36,7 @@ pub(super) struct Passes<'a> {
 
 impl<'a> Passes<'a> {
     /// What bends across borders.
-    pub fn slopes(&self) -> Slopes {
+    pub(super) fn slopes(&self) -> Slopes {
         match self.planes {
             Some(planes) => Slopes::of_planes(self.surface, &planes.normals),
             None if self.is_shape => Slopes::of_shape(self.surface, self.noise),
@@ -45,7 +45,7 @@ impl<'a> Passes<'a> {
     }
 
     /// What merges across borders that bend little.
-    pub fn merging(&self, slopes: &'a Slopes) -> Merging<'a> {
+    pub(super) fn merging(&self, slopes: &'a Slopes) -> Merging<'a> {
         Merging { surface: self.surface, slopes, groups: None, progress: self.progress }
     }
 
@@ -53,7 +53,7 @@ impl<'a> Passes<'a> {
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
-    pub fn leaves(&self) -> Result<Vec<u32>> {
+    pub(super) fn leaves(&self) -> Result<Vec<u32>> {
         self.report(0.9, "segments");
         if let Some(planes) = self.planes {
             return Ok(planes.labels.clone());
@@ -75,7 +75,7 @@ impl<'a> Passes<'a> {
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
-    pub fn joined(&self, merging: &Merging<'_>, leaves: &[u32]) -> Result<Vec<u32>> {
+    pub(super) fn joined(&self, merging: &Merging<'_>, leaves: &[u32]) -> Result<Vec<u32>> {
         let mut labels = leaves.to_vec();
         if self.planes.is_some() {
             merging.below(&mut labels, BEND * self.options.length_weight)?;
@@ -175,7 +175,7 @@ impl<'a> Passes<'a> {
 
     /// The finest segments are the pieces of `leaves` inside the segments `labels`; they merge to those, and those to one for each
     /// connected part.
-    pub fn hierarchy(&self, merging: &Merging<'_>, leaves: &[u32], labels: &[u32]) -> Result<Hierarchy> {
+    pub(super) fn hierarchy(&self, merging: &Merging<'_>, leaves: &[u32], labels: &[u32]) -> Result<Hierarchy> {
         self.report(0.98, "hierarchy");
         let (finest, n_leaves) = self.nested_leaves(leaves, labels);
         let mut current = finest.clone();

@@ -23,7 +23,7 @@ pub(super) struct Plane {
 
 impl Plane {
     /// The plane of least squared distance, weighted by area, of `faces`; nothing where they have no area.
-    pub fn through(surface: &Surface<'_>, faces: &[u32]) -> Option<Self> {
+    pub(super) fn through(surface: &Surface<'_>, faces: &[u32]) -> Option<Self> {
         let mut area = 0.0;
         let mut center = [0.0; 3];
         for &f in faces {
@@ -52,12 +52,12 @@ impl Plane {
     }
 
     /// The unit normal, to the side that the faces show.
-    pub fn normal(&self) -> Point {
+    pub(super) fn normal(&self) -> Point {
         self.normal
     }
 
     /// The distance of `p`.
-    pub fn distance(&self, p: [f64; 3]) -> f64 {
+    pub(super) fn distance(&self, p: [f64; 3]) -> f64 {
         dot(self.normal, sub(p, self.center)).abs()
     }
 }
@@ -71,7 +71,7 @@ pub(super) struct Patch {
 
 impl Patch {
     /// The fit to the corners of `faces`; without `signal` of their height, else of the signal. `None` where there is no area.
-    pub fn fit(surface: &Surface<'_>, faces: &[u32], signal: Option<&Columns>) -> Option<Self> {
+    pub(super) fn fit(surface: &Surface<'_>, faces: &[u32], signal: Option<&Columns>) -> Option<Self> {
         let mut normal = [0.0; 3];
         let mut origin = [0.0; 3];
         let mut area = 0.0;
@@ -99,7 +99,7 @@ impl Patch {
     }
 
     /// How far vertex `v` lies off the continued patch: a distance, or the norm over the columns of the signal.
-    pub fn misfit(&self, surface: &Surface<'_>, v: usize, signal: Option<&Columns>) -> f64 {
+    pub(super) fn misfit(&self, surface: &Surface<'_>, v: usize, signal: Option<&Columns>) -> f64 {
         match signal {
             None => self.frame.distance(&self.coefficients[0], surface.positions[v]).abs(),
             Some(signal) => {
@@ -111,13 +111,13 @@ impl Patch {
     }
 
     /// The sum of the squared distances of all corners of `faces` from a patch of a shape.
-    pub fn squares(&self, surface: &Surface<'_>, faces: &[u32]) -> f64 {
+    pub(super) fn squares(&self, surface: &Surface<'_>, faces: &[u32]) -> f64 {
         let corners = faces.iter().flat_map(|&f| surface.connectivity.faces()[f as usize]);
         corners.map(|v| self.misfit(surface, v as usize, None).powi(2)).sum()
     }
 
     /// The unit directions in which a patch of a shape curves, that in which it curves most first.
-    pub fn curvature_directions(&self) -> [Point; 2] {
+    pub(super) fn curvature_directions(&self) -> [Point; 2] {
         let c = &self.coefficients[0];
         let (values, vectors) = symmetric_eigen(vec![vec![2.0 * c[3], c[4]], vec![c[4], 2.0 * c[5]]]);
         let most = usize::from(values[1].abs() > values[0].abs());
@@ -126,7 +126,7 @@ impl Patch {
     }
 
     /// The unit normal of the continued patch of a shape at `p`.
-    pub fn normal(&self, p: Point) -> Point {
+    pub(super) fn normal(&self, p: Point) -> Point {
         self.frame.normal(&self.coefficients[0], p)
     }
 }

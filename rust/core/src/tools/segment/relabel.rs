@@ -48,7 +48,7 @@ impl Relabel<'_> {
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
-    pub fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
+    pub(super) fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
         for _ in 0..RELABEL_ROUNDS {
             self.progress.check()?;
             let before = labels.clone();
@@ -100,7 +100,7 @@ impl Relabel<'_> {
 
     /// Gives every small piece of a segment but its largest to the neighbor with which it has the longest border; other pieces
     /// become segments of their own.
-    pub fn rejoin(&self, labels: &mut [u32]) {
+    pub(super) fn rejoin(&self, labels: &mut [u32]) {
         loop {
             let (piece, count) = pieces(self.surface, labels);
             let (mut area, mut size, mut owner) = (vec![0.0; count], vec![0; count], vec![0; count]);

@@ -31,7 +31,7 @@ pub(super) struct Slopes {
 
 impl Slopes {
     /// The shape itself, with `noise` of that standard deviation along the normals.
-    pub fn of_shape(surface: &Surface<'_>, noise: f64) -> Self {
+    pub(super) fn of_shape(surface: &Surface<'_>, noise: f64) -> Self {
         let gradients = (0..surface.n_faces()).flat_map(|f| {
             let [x, y, z] = surface.vector_area(f).map(|x| x / surface.areas[f].max(f64::MIN_POSITIVE));
             [[x, y], [z, 0.0]]
@@ -50,13 +50,13 @@ impl Slopes {
     }
 
     /// An exact shape whose faces have the normals of their planes: one edge tells the angle between two of them.
-    pub fn of_planes(surface: &Surface<'_>, normals: &[Point]) -> Self {
+    pub(super) fn of_planes(surface: &Surface<'_>, normals: &[Point]) -> Self {
         let gradients = normals.iter().flat_map(|&[x, y, z]| [[x, y], [z, 0.0]]).collect();
         Self { gradients, reach: 0.0, least_contact: 0.0, ..Self::of_shape(surface, 0.0) }
     }
 
     /// `values` on the surface, with `noise` of that standard deviation.
-    pub fn of_values(surface: &Surface<'_>, values: &Columns, noise: f64) -> Self {
+    pub(super) fn of_values(surface: &Surface<'_>, values: &Columns, noise: f64) -> Self {
         let k = values.n_columns;
         let m = surface.n_faces();
         let layouts = layouts(surface);

@@ -25,7 +25,7 @@ pub(super) struct Straighten<'a> {
 
 impl<'a> Straighten<'a> {
     /// Measures all edges. Normals are those of a face and its neighbors together, so that noise does not count as creases.
-    pub fn new(surface: &'a Surface<'a>, flat: f64, progress: &'a Progress) -> Self {
+    pub(super) fn new(surface: &'a Surface<'a>, flat: f64, progress: &'a Progress) -> Self {
         let normals: Vec<Point> = (0..surface.n_faces())
             .map(|f| {
                 unit(surface.around(f).fold(surface.vector_area(f), |sum, (_, g)| add(sum, surface.vector_area(g))))
@@ -57,7 +57,7 @@ impl<'a> Straighten<'a> {
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
-    pub fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
+    pub(super) fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
         let is_curved =
             |faces: &Vec<u32>| Plane::through(self.surface, faces).is_none_or(|plane| plane.spread > self.flat);
         let curved: Vec<bool> = members(labels).iter().map(is_curved).collect();

@@ -28,7 +28,7 @@ pub(super) struct Surface<'a> {
 
 impl<'a> Surface<'a> {
     /// The surface with all lengths divided by `unit`.
-    pub fn new(connectivity: &'a Connectivity, positions: &[[f64; 3]], unit: f64, costs: Vec<[f64; 3]>) -> Self {
+    pub(super) fn new(connectivity: &'a Connectivity, positions: &[[f64; 3]], unit: f64, costs: Vec<[f64; 3]>) -> Self {
         let positions: Vec<[f64; 3]> = positions.iter().map(|p| p.map(|x| x / unit)).collect();
         let mut lengths = edge_lengths(connectivity.faces(), &positions);
         mollify(connectivity, &mut lengths);
@@ -54,22 +54,22 @@ impl<'a> Surface<'a> {
     }
 
     /// Number of faces.
-    pub fn n_faces(&self) -> usize {
+    pub(super) fn n_faces(&self) -> usize {
         self.areas.len()
     }
 
     /// The faces next to `f`, each with the halfedge of `f` that leads there.
-    pub fn around(&self, f: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+    pub(super) fn around(&self, f: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.neighbors[f].iter().enumerate().filter(|(_, g)| **g != NONE).map(move |(i, g)| (3 * f + i, *g as usize))
     }
 
     /// Whether a neighbor of `f` has another label.
-    pub fn is_at_border(&self, labels: &[u32], f: usize) -> bool {
+    pub(super) fn is_at_border(&self, labels: &[u32], f: usize) -> bool {
         self.around(f).any(|(_, g)| labels[g] != labels[f])
     }
 
     /// The vector area of face `f`: its normal times its area.
-    pub fn vector_area(&self, f: usize) -> [f64; 3] {
+    pub(super) fn vector_area(&self, f: usize) -> [f64; 3] {
         area_vector(self.connectivity.faces()[f].map(|v| self.positions[v as usize]))
     }
 }

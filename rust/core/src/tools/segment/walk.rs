@@ -41,7 +41,7 @@ pub(super) struct Marks {
 
 impl Marks {
     /// None of `n` faces seen.
-    pub fn new(n: usize) -> Self {
+    pub(super) fn new(n: usize) -> Self {
         Self { stamps: vec![0; n], stamp: 0, queue: Vec::new() }
     }
 }
@@ -87,7 +87,7 @@ pub(super) struct Walk<'a> {
 
 impl Walk<'_> {
     /// The bend across the edge of halfedge `h`.
-    pub fn bend(&self, h: usize, marks: &mut Marks) -> Bend {
+    pub(super) fn bend(&self, h: usize, marks: &mut Marks) -> Bend {
         let (f, surface) = (h / 3, self.surface);
         let g = surface.neighbors[f][h % 3] as usize;
         let p = self.slopes.layouts[f];

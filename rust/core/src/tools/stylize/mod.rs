@@ -174,21 +174,21 @@ impl<'a> Flow<'a> {
         for done in 0..n_steps {
             progress.check()?;
             if progress.is_finishing() {
-                self.result.status = FlowStatus::Stopped;
+                self.result.status = Stopped;
                 break;
             }
             let solution = self.solve(&step, settings, progress)?;
             if progress.is_finishing() && solution.status == Status::Stopped {
-                self.result.status = FlowStatus::Stopped;
+                self.result.status = Stopped;
                 break;
             }
             let moved = solution.values.to_points()?;
             if !self.is_near(&moved) || !solution.gap.is_finite() {
-                self.result.status = FlowStatus::Diverged;
+                self.result.status = Diverged;
                 break;
             }
             if self.has_collapsed(&moved) {
-                self.result.status = FlowStatus::Collapsed;
+                self.result.status = Collapsed;
                 break;
             }
             let movement = root_mean_square(&self.points, &moved);
