@@ -172,7 +172,11 @@ class ModalRun:
         return {"RUNNING_MODAL"}
 
     def _stopped(self, context: bpy.types.Context, run: Run, error: Exception) -> set[str]:
-        """End a run that cannot go on: thread, timer and preview go, the meshes stay, and why is said."""
+        """End a run that cannot go on: thread, timer and preview go, and why is said.
+
+        The meshes are what they were. If it was a fault of the program while results were written, what was
+        written stays, with an undo step that takes it back.
+        """
         self._close(context)
         left = abort(run)
         if isinstance(error, ChangedError):
@@ -180,6 +184,9 @@ class ModalRun:
         else:
             traceback.print_exception(error)
             reason = f"{type(error).__name__}: {error}"
+        if run.is_writing:
+            self.report({"ERROR"}, f"Stopped while writing the result, undo takes it back: {reason}")
+            return {"FINISHED"}
         sentences = [reason, *(sentence for sentence in left if sentence != reason)]
         self.report({"ERROR"}, f"Stopped: {'; '.join(sentences)}")
         return {"CANCELLED"}

@@ -73,6 +73,8 @@ class Run(ABC):
             part.state = MeshState(part.object)
         self.job = Job([part.task for part in self.parts])
         self.summary: list[dict[str, object]] = []
+        self.is_writing = False
+        """Whether writing the results has begun: from then on only undo takes them back."""
 
     def _prepare_all(self, objects: Sequence[bpy.types.Object]) -> None:
         for obj in objects:
@@ -136,8 +138,13 @@ class Run(ABC):
         return self.show()
 
     def restore(self) -> list[str]:
-        """Put everything back as it was; a sentence for each mesh that was changed meanwhile and stays so."""
+        """Put everything back as it was; a sentence for each mesh that was changed meanwhile and stays so.
+
+        Once results are being written nothing is put back: the meshes are no longer what was read.
+        """
         self.clear()
+        if self.is_writing:
+            return []
         left = []
         for part in self.parts:
             try:
@@ -174,6 +181,7 @@ class Run(ABC):
                 self.restore()
                 raise part.task.error
         self._check()
+        self.is_writing = True
         self.write(self.done)
         self.summary = [self._summary_of(part) for part in self.parts]
         store_summary(self.summary)

@@ -1,6 +1,7 @@
 """The modal run without a window, and a mesh that every tool has something to do on."""
 
 import time
+from functools import partial
 from types import SimpleNamespace
 
 import addon_kit as kit
@@ -113,11 +114,23 @@ def poll_to_the_end(operator, context):
 class Session:
     """A modal run of a tool."""
 
-    def __init__(self, name, objects, **settings):
-        """Begin it; `RefusedError` as the tool says."""
+    def __init__(self, name, objects, held=False, **settings):
+        """Begin it; `RefusedError` as the tool says. A held run does not end until it is told to."""
         tool, kind, given = TOOLS[name]
         self.run = tool(objects, defaults_of(kind, **(given | settings)))
+        if held:
+            for task in self.run.job.tasks:
+                task.call = partial(self._then_wait, task.call)
         self.operator, self.context = begin(self.run)
+
+    def _then_wait(self, call, progress):
+        result = call(progress)
+        self.run.job._stop.wait(PATIENCE)
+        return result
+
+    def release(self):
+        """Let a held run end."""
+        self.run.job._stop.set()
 
     def send(self, kind):
         """Hand over an event."""

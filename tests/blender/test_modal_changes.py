@@ -43,9 +43,11 @@ def test_a_changed_mesh_stays_as_it_is(tool, change):
 def test_after_a_preview_too(change, key):
     obj, other = open_box(), open_box("Other")
     start = state(other)
-    session = Session("stylize", [obj, other], steps=500)
+    session = Session("stylize", [obj, other], held=True)
     wait_for_preview(session, obj)
     change(obj)
+    if key == "TIMER":
+        session.release()
     before = state(obj) if obj.mode == "OBJECT" else None
     outcome = session.finish() if key == "TIMER" else session.send(key)
     assert outcome == {"CANCELLED"}
@@ -122,15 +124,28 @@ def test_undo_and_another_file_end_the_run(tool, what):
 def test_a_fault_of_the_program_ends_the_run_and_gives_the_mesh_back(capfd):
     obj = open_box()
     before = state(obj)
-    session = Session("stylize", [obj], steps=500)
+    session = Session("stylize", [obj], held=True)
     wait_for_preview(session, obj)
-    session.run.headline = None
     session.run.show = lambda: 1 / 0
-    assert session.finish() == {"CANCELLED"}
+    assert session.send("TIMER") == {"CANCELLED"}
     session.check_ended()
     assert session.operator.reports[-1] == ("ERROR", "Stopped: ZeroDivisionError: division by zero")
     assert "Traceback" in capfd.readouterr().err
     assert state(obj) == before
+
+
+@pytest.mark.parametrize("fault", ["write", "headline"])
+def test_a_fault_while_the_result_is_written_leaves_an_undo_step(fault, capfd):
+    session = Session("stylize", [open_box()])
+    setattr(session.run, fault, lambda *_: 1 / 0)
+    # Blender makes an undo step of what has finished only.
+    assert session.finish() == {"FINISHED"}
+    session.check_ended()
+    assert session.operator.reports[-1] == (
+        "ERROR",
+        "Stopped while writing the result, undo takes it back: ZeroDivisionError: division by zero",
+    )
+    assert "Traceback" in capfd.readouterr().err
 
 
 def test_a_run_that_cannot_even_start():
