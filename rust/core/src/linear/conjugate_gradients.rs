@@ -1,4 +1,70 @@
-//! Conjugate gradients with a factored matrix near the one of the system as preconditioner.
+//! Preconditioned conjugate gradients, for `K` columns that take the same steps.
+
+use crate::Result;
+
+/// A convex quadratic `½ xᵀ A x − bᵀ x` by its products, and where a run is on it.
+pub trait Quadratic<const K: usize> {
+    /// `out = A x`.
+    ///
+    /// # Errors
+    /// What ends the run.
+    fn times(&mut self, x: &[[f64; K]], out: &mut Vec<[f64; K]>) -> Result<()>;
+
+    /// The preconditioner times the residual, out of which what constraints hold may be taken.
+    fn precondition(&mut self, residual: &mut [[f64; K]]) -> Vec<[f64; K]>;
+
+    /// Goes `far` along `direction`, whose product with `A` is given, and brings the residual up to date; `false` if that leads
+    /// up, and is taken back.
+    fn go(&mut self, far: f64, direction: &[[f64; K]], product: &[[f64; K]], residual: &mut [[f64; K]]) -> bool;
+}
+
+/// How a run ended.
+#[derive(Debug)]
+pub struct Descent {
+    /// The squared norm of the last residual in the metric of the preconditioner: twice what a step with it would gain.
+    pub length: f64,
+    /// Iterations made.
+    pub iterations: usize,
+    /// The cosine between the last direction and its product with `A` where that was not positive.
+    pub flat: Option<f64>,
+}
+
+/// Goes down on `quadratic`, where the residual is `residual`, until its squared norm in the metric of the preconditioner is no
+/// more than `enough` gives for its first, or for `most` iterations (Hestenes and Stiefel 1952). A preconditioner that keeps to
+/// a linear subspace keeps the run there.
+///
+/// # Errors
+/// Those of [`Quadratic::times`].
+pub fn descend<const K: usize>(
+    quadratic: &mut impl Quadratic<K>,
+    mut residual: Vec<[f64; K]>,
+    enough: impl FnOnce(f64) -> f64,
+    most: usize,
+) -> Result<Descent> {
+    let mut direction = quadratic.precondition(&mut residual);
+    let mut run = Descent { length: dot(&residual, &direction), iterations: 0, flat: None };
+    let enough = enough(run.length);
+    let mut product = Vec::new();
+    while run.iterations < most && run.length > enough {
+        quadratic.times(&direction, &mut product)?;
+        let curvature = dot(&direction, &product);
+        let far = run.length / curvature;
+        if curvature <= 0.0 || !far.is_finite() {
+            run.flat = Some(curvature / (dot(&direction, &direction).sqrt() * dot(&product, &product).sqrt()));
+            break;
+        }
+        run.iterations += 1;
+        if !quadratic.go(far, &direction, &product, &mut residual) {
+            break;
+        }
+        let step = quadratic.precondition(&mut residual);
+        let before = std::mem::replace(&mut run.length, dot(&residual, &step));
+        for (d, s) in direction.iter_mut().flatten().zip(step.iter().flatten()) {
+            *d = s + run.length / before * *d;
+        }
+    }
+    Ok(run)
+}
 
 /// What a run found.
 #[derive(Debug)]
@@ -9,41 +75,50 @@ pub struct Approximation<const K: usize> {
     pub iterations: usize,
 }
 
-/// Solves `matrix · x = right` until the residual, in the norm of the preconditioner, is `goal` times what it was, or for
-/// `most` iterations (Hestenes and Stiefel 1952). A preconditioner that keeps to a linear subspace keeps the solution there.
+/// Solves `matrix · x = right` from zero until the residual, in the norm of the preconditioner, is `goal` times what it was, or
+/// for `most` iterations: [`descend`] where nothing is to be looked after.
 pub fn conjugate_gradients<const K: usize>(
-    mut matrix: impl FnMut(&[[f64; K]], &mut Vec<[f64; K]>),
-    mut precondition: impl FnMut(&mut [[f64; K]]),
+    matrix: impl FnMut(&[[f64; K]], &mut Vec<[f64; K]>),
+    precondition: impl FnMut(&mut [[f64; K]]),
     right: Vec<[f64; K]>,
     goal: f64,
     most: usize,
 ) -> Approximation<K> {
-    let mut residual = right;
-    let mut solution = vec![[0.0; K]; residual.len()];
-    let mut step = residual.clone();
-    precondition(&mut step);
-    let mut direction = step.clone();
-    let mut length = dot(&residual, &step);
-    let enough = goal * goal * length;
-    let mut product = Vec::new();
-    let mut iterations = 0;
-    while iterations < most && length > enough {
-        matrix(&direction, &mut product);
-        let far = length / dot(&direction, &product);
-        if !far.is_finite() {
-            break;
-        }
-        iterations += 1;
-        add(far, &direction, &mut solution);
-        add(-far, &product, &mut residual);
-        step.clone_from(&residual);
-        precondition(&mut step);
-        let before = std::mem::replace(&mut length, dot(&residual, &step));
-        for (d, s) in direction.iter_mut().flatten().zip(step.iter().flatten()) {
-            *d = s + length / before * *d;
-        }
+    let mut system = System { matrix, precondition, solution: vec![[0.0; K]; right.len()] };
+    // Its products do not fail.
+    let iterations =
+        descend(&mut system, right, |length| goal * goal * length, most).map_or(0, |descent| descent.iterations);
+    Approximation { solution: system.solution, iterations }
+}
+
+/// A linear system and what is solved of it.
+struct System<A, P, const K: usize> {
+    matrix: A,
+    precondition: P,
+    solution: Vec<[f64; K]>,
+}
+
+impl<A, P, const K: usize> Quadratic<K> for System<A, P, K>
+where
+    A: FnMut(&[[f64; K]], &mut Vec<[f64; K]>),
+    P: FnMut(&mut [[f64; K]]),
+{
+    fn times(&mut self, x: &[[f64; K]], out: &mut Vec<[f64; K]>) -> Result<()> {
+        (self.matrix)(x, out);
+        Ok(())
     }
-    Approximation { solution, iterations }
+
+    fn precondition(&mut self, residual: &mut [[f64; K]]) -> Vec<[f64; K]> {
+        let mut step = residual.to_vec();
+        (self.precondition)(&mut step);
+        step
+    }
+
+    fn go(&mut self, far: f64, direction: &[[f64; K]], product: &[[f64; K]], residual: &mut [[f64; K]]) -> bool {
+        add(far, direction, &mut self.solution);
+        add(-far, product, residual);
+        true
+    }
 }
 
 /// The inner product of all columns.
@@ -59,6 +134,7 @@ pub fn add<const K: usize>(a: f64, x: &[[f64; K]], y: &mut [[f64; K]]) {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     /// `2 x_i − x_{i−1} − x_{i+1} + x_i / 2`: definite, with many eigenvalues.
@@ -84,6 +160,17 @@ mod tests {
         let precondition = |x: &mut [[f64; 1]]| x.iter_mut().for_each(|x| x[0] /= 7.0);
         let found = conjugate_gradients(scale, precondition, vec![[14.0], [-7.0]], 1e-12, 20);
         assert_eq!((found.solution, found.iterations), (vec![[2.0], [-1.0]], 1));
+    }
+
+    #[test]
+    fn where_the_matrix_is_not_definite_the_run_ends_and_says_so() {
+        let mut saddle = System {
+            matrix: |x: &[[f64; 1]], out: &mut Vec<[f64; 1]>| *out = vec![x[0], [-x[1][0]]],
+            precondition: |_: &mut [[f64; 1]]| {},
+            solution: vec![[0.0]; 2],
+        };
+        let run = descend(&mut saddle, vec![[0.0], [1.0]], |_| 0.0, 9).unwrap();
+        assert_eq!((run.flat, run.iterations, saddle.solution), (Some(-1.0), 0, vec![[0.0]; 2]));
     }
 
     #[test]

@@ -7,6 +7,7 @@
 use crate::block_rows::BlockRows;
 use crate::error::SolveError;
 use crate::linear::cholesky::Cholesky;
+use crate::linear::conjugate_gradients::{descend, Quadratic};
 use crate::progress::Progress;
 use crate::solve::constraints::LinearConstraints;
 use crate::solve::free_operator::FreeOperator;
@@ -35,8 +36,8 @@ const ROUNDING: f64 = 1e-18;
 /// Times that the multipliers of the constraints are taken out of a gradient: the second leaves rounding.
 const PROJECTIONS: usize = 2;
 
-/// Steps at most; well posed problems take one or two, those with a large shift some ten.
-const MOST_STEPS: usize = 300;
+/// Steps at most after the first; well posed problems take one or two, those with a large shift some ten.
+const MOST_STEPS: usize = 299;
 
 /// Minimizes the quadratic reading of `problem`, column by column (its coupling does not matter).
 ///
@@ -138,7 +139,7 @@ impl<'a> Newton<'a> {
             constraints.prepare(&mut self.cholesky)?;
         }
         // One step from the target, corrected to satisfy the constraints.
-        let mut gradient = self.gradient(u, target);
+        let gradient = self.gradient(u, target);
         let mut point: Vec<[f64; 1]> = gradient.iter().map(|g| [-g]).collect();
         self.cholesky.solve(&mut point);
         point.iter_mut().zip(&self.free.free).for_each(|(x, &i)| x[0] += u[i as usize]);
@@ -149,41 +150,15 @@ impl<'a> Newton<'a> {
         point.iter().zip(&self.free.free).for_each(|(x, &i)| u[i as usize] = x[0]);
         total.steps += 1;
 
-        gradient = self.gradient(u, target);
-        let mut z = self.preconditioned(&mut gradient, constraints.as_ref());
-        let mut slope = dot(&gradient, &z);
-        let mut direction: Vec<f64> = z.iter().map(|z| -z).collect();
-        let mut steps = 1;
-        while 0.5 * slope > ENOUGH * ENOUGH.sqrt() * scale && steps < MOST_STEPS {
-            progress.check()?;
-            let along = self.hessian_times(&direction, u.len());
-            let curvature = dot(&direction, &along);
-            if curvature <= 0.0 {
-                // In the kernel up to rounding there is nothing to gain; clearly below it, everything.
-                let size = dot(&direction, &direction).sqrt() * dot(&along, &along).sqrt();
-                if curvature < -1e-6 * size {
-                    return Err(not_convex());
-                }
-                break;
-            }
-            let length = slope / curvature;
-            let before = self.objective(u, target);
-            let old: Vec<f64> = self.free.free.iter().map(|&i| u[i as usize]).collect();
-            direction.iter().zip(&self.free.free).for_each(|(d, &i)| u[i as usize] += length * d);
-            steps += 1;
-            if self.objective(u, target) > before {
-                // Rounding has the last word.
-                old.iter().zip(&self.free.free).for_each(|(x, &i)| u[i as usize] = *x);
-                break;
-            }
-            gradient = self.gradient(u, target);
-            z = self.preconditioned(&mut gradient, constraints.as_ref());
-            let next = dot(&gradient, &z);
-            direction.iter_mut().zip(&z).for_each(|(d, z)| *d = next / slope * *d - z);
-            slope = next;
+        let residual: Vec<[f64; 1]> = self.gradient(u, target).into_iter().map(|g| [-g]).collect();
+        let mut descending = Descending { newton: self, u, target, constraints, progress };
+        let run = descend(&mut descending, residual, |_| 2.0 * ENOUGH * ENOUGH.sqrt() * scale, MOST_STEPS)?;
+        // In the kernel up to rounding there is nothing to gain; clearly below it, everything.
+        if run.flat.is_some_and(|cosine| cosine < -1e-6) {
+            return Err(not_convex());
         }
-        total.steps += steps - 1;
-        total.decrease += 0.5 * slope.max(0.0);
+        total.steps += run.iterations;
+        total.decrease += 0.5 * run.length.max(0.0);
         total.objective += self.objective(u, target);
         Ok(())
     }
@@ -194,27 +169,6 @@ impl<'a> Newton<'a> {
         Ok(Some(LinearConstraints::new(matrix, right, self.free, &[c], &|i| [target[i]])?))
     }
 
-    /// The factored matrix's inverse times `gradient`, projected on the kernel of the constraints, whose right side is zero.
-    ///
-    /// What the constraints hold is taken out of `gradient` first: left in, its rounding would outgrow the rest (Gould, Hribar
-    /// and Nocedal 2001, section 6).
-    fn preconditioned(&mut self, gradient: &mut [f64], constraints: Option<&LinearConstraints<1>>) -> Vec<f64> {
-        let mut z: Vec<[f64; 1]> = gradient.iter().map(|&g| [g]).collect();
-        self.cholesky.solve(&mut z);
-        if let Some(constraints) = constraints {
-            for _ in 0..PROJECTIONS {
-                let held: Vec<[f64; 1]> = constraints.correct(&mut z).into_iter().map(|y| [-y[0]]).collect();
-                let mut rest: Vec<[f64; 1]> = gradient.iter().map(|&g| [g]).collect();
-                constraints.add_transposed(&held, &mut rest);
-                gradient.copy_from_slice(rest.as_flattened());
-                z = rest;
-                self.cholesky.solve(&mut z);
-            }
-            constraints.correct(&mut z);
-        }
-        z.into_flattened()
-    }
-
     /// The gradient on the free rows.
     fn gradient(&self, u: &[f64], target: &[f64]) -> Vec<f64> {
         let mut all = self.problem.operator.normal_times(&self.problem.weights, u);
@@ -222,15 +176,6 @@ impl<'a> Newton<'a> {
             *g += 2.0 * self.problem.fidelity[i] * (u[i] - target[i]);
         }
         self.free.free.iter().map(|&i| all[i as usize]).collect()
-    }
-
-    /// The second derivative times a direction, both on the free rows.
-    fn hessian_times(&self, direction: &[f64], n: usize) -> Vec<f64> {
-        let mut whole = vec![0.0; n];
-        direction.iter().zip(&self.free.free).for_each(|(d, &i)| whole[i as usize] = *d);
-        let product = self.problem.operator.normal_times(&self.problem.weights, &whole);
-        let entry = |&i: &u32| product[i as usize] + 2.0 * self.problem.fidelity[i as usize] * whole[i as usize];
-        self.free.free.iter().map(entry).collect()
     }
 
     fn objective(&self, u: &[f64], target: &[f64]) -> f64 {
@@ -252,12 +197,64 @@ impl<'a> Newton<'a> {
     }
 }
 
-fn squared(x: [f64; 3]) -> f64 {
-    x[0] * x[0] + x[1] * x[1] + x[2] * x[2]
+/// Where conjugate gradients are on one column.
+struct Descending<'a, 'b> {
+    newton: &'a mut Newton<'b>,
+    u: &'a mut [f64],
+    target: &'a [f64],
+    constraints: Option<LinearConstraints<1>>,
+    progress: &'a Progress,
 }
 
-fn dot(x: &[f64], y: &[f64]) -> f64 {
-    x.iter().zip(y).map(|(a, b)| a * b).sum()
+impl Quadratic<1> for Descending<'_, '_> {
+    /// The second derivative times a direction, both on the free rows.
+    fn times(&mut self, direction: &[[f64; 1]], out: &mut Vec<[f64; 1]>) -> Result<()> {
+        self.progress.check()?;
+        let (problem, free) = (self.newton.problem, &self.newton.free.free);
+        let mut whole = vec![0.0; self.u.len()];
+        direction.iter().zip(free).for_each(|(d, &i)| whole[i as usize] = d[0]);
+        let product = problem.operator.normal_times(&problem.weights, &whole);
+        out.clear();
+        out.extend(free.iter().map(|&i| i as usize).map(|i| [product[i] + 2.0 * problem.fidelity[i] * whole[i]]));
+        Ok(())
+    }
+
+    /// The factored matrix's inverse times the residual, projected on the kernel of the constraints, whose right side is zero.
+    ///
+    /// What the constraints hold is taken out of the residual first: left in, its rounding would outgrow the rest (Gould, Hribar
+    /// and Nocedal 2001, section 6).
+    fn precondition(&mut self, residual: &mut [[f64; 1]]) -> Vec<[f64; 1]> {
+        let mut z = residual.to_vec();
+        self.newton.cholesky.solve(&mut z);
+        if let Some(constraints) = &self.constraints {
+            for _ in 0..PROJECTIONS {
+                let held: Vec<[f64; 1]> = constraints.correct(&mut z).into_iter().map(|y| [-y[0]]).collect();
+                constraints.add_transposed(&held, residual);
+                z.copy_from_slice(residual);
+                self.newton.cholesky.solve(&mut z);
+            }
+            constraints.correct(&mut z);
+        }
+        z
+    }
+
+    /// The residual is computed anew: that is iterative refinement. A step up is rounding, which has the last word.
+    fn go(&mut self, far: f64, direction: &[[f64; 1]], _: &[[f64; 1]], residual: &mut [[f64; 1]]) -> bool {
+        let free = &self.newton.free.free;
+        let before = self.newton.objective(self.u, self.target);
+        let old: Vec<f64> = free.iter().map(|&i| self.u[i as usize]).collect();
+        direction.iter().zip(free).for_each(|(d, &i)| self.u[i as usize] += far * d[0]);
+        if self.newton.objective(self.u, self.target) > before {
+            old.iter().zip(free).for_each(|(x, &i)| self.u[i as usize] = *x);
+            return false;
+        }
+        residual.iter_mut().zip(self.newton.gradient(self.u, self.target)).for_each(|(r, g)| r[0] = -g);
+        true
+    }
+}
+
+fn squared(x: [f64; 3]) -> f64 {
+    x[0] * x[0] + x[1] * x[1] + x[2] * x[2]
 }
 
 fn not_convex() -> Error {
