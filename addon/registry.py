@@ -5,7 +5,7 @@ from importlib import import_module
 
 import bpy
 
-from .framework import batch, menus, modal, presets, sidebar, tool_operator
+from .framework import batch, former, menus, modal, presets, sidebar, tool_operator
 
 NAMES = (
     "stylize",
@@ -41,6 +41,7 @@ def register() -> None:
     """Add the operators, the panels, the menu entries and the command to Blender."""
     modal.register()
     presets.offer(TOOLS)
+    former.register(TOOLS)
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     for name, group in GROUPS.items():
@@ -55,6 +56,7 @@ def register() -> None:
 def unregister() -> None:
     """Take everything out of Blender again; a job that runs is cancelled first."""
     modal.unregister()
+    former.unregister()
     batch.unregister()
     menus.unregister()
     for feature in reversed(FEATURES):

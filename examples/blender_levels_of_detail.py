@@ -20,7 +20,7 @@ for level, ratio in enumerate((0.5, 0.25, 0.1), 1):
     bpy.ops.object.select_all(action="DESELECT")
     copy.select_set(True)
     bpy.context.view_layer.objects.active = copy
-    bpy.ops.ridgeform.stylize(steps=10, strength=0.5, reduce=True, reduce_ratio=ratio)
+    bpy.ops.ridgeform.stylize(steps=10, strength=0.5, finish="LOW_POLY", reduce_ratio=ratio)
     print(f"{copy.name}: {len(copy.data.polygons)} triangles")
 
 bpy.ops.wm.save_as_mainfile(filepath=target, copy=True)

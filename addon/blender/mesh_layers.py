@@ -62,6 +62,19 @@ class Layers:
     groups: list[Group] = field(default_factory=list)
     active: dict[str, str | int] = field(default_factory=dict)
 
+    def same_as(self, other: "Layers") -> bool:
+        """Whether attributes and vertex groups are the same, and their values too."""
+        named = [
+            [(layer.name, layer.domain, layer.data_type, layer.values) for layer in layers.attributes]
+            + [(group.name, "", "", group.weights) for group in layers.groups]
+            for layers in (self, other)
+        ]
+        return len(named[0]) == len(named[1]) and all(
+            # Bytes, not numbers: NaN is the same as itself.
+            one[:3] == two[:3] and one[3].tobytes() == two[3].tobytes()
+            for one, two in zip(*named, strict=True)
+        )
+
     def uv_layers(self) -> list[np.ndarray]:
         """The UV maps (c, 2)."""
         return [
@@ -112,7 +125,7 @@ def _read_groups(obj: bpy.types.Object) -> list[Group]:
     groups = [
         Group(group.name, group.lock_weight, np.full(n, np.nan, np.float32)) for group in obj.vertex_groups
     ]
-    for vertex in obj.data.vertices:
+    for vertex in obj.data.vertices if groups else ():
         for element in vertex.groups:
             groups[element.group].weights[vertex.index] = element.weight
     return groups

@@ -28,6 +28,8 @@ class Task:
     started: bool = False
     cancelled: bool = False
     """Whether the result is no longer wanted: for calls that do more than one call of the wheel."""
+    stage: str = ""
+    """What it is doing beside calls of the wheel."""
 
     def run(self) -> None:
         """Call, and keep the result or the error."""
@@ -38,6 +40,11 @@ class Task:
         except Exception as error:
             self.error = error
         self.seconds = time.perf_counter() - begin
+
+    def check(self) -> None:
+        """`Cancelled` if the result is no longer wanted."""
+        if self.cancelled:
+            raise ridgeform.Cancelled(self.name)
 
 
 class Job:

@@ -126,6 +126,9 @@ class Run(ABC):
         """Show how far the job is; whether there was something new."""
         return False
 
+    def check(self, part: Part) -> None:  # noqa: B027
+        """`ChangedError` if a mesh is no longer what was read in what else the result was made of."""
+
     def put_back(self, part: Part) -> None:  # noqa: B027
         """Put a mesh back as it was; nothing to do for a tool that writes at the end only."""
 
@@ -181,6 +184,8 @@ class Run(ABC):
                 self.restore()
                 raise part.task.error
         self._check()
+        for part in self.parts:
+            self.check(part)
         self.is_writing = True
         self.write(self.done)
         self.summary = [self._summary_of(part) for part in self.parts]

@@ -128,11 +128,13 @@ class Settings:
 
     declared: Mapping[str, Setting] = {}
     """All settings by name: those of the bases first, in their order."""
+    former: Mapping[str, Mapping[bool, Mapping[str, object]]] = {}
+    """Check boxes of versions before, and what each of their values sets now."""
 
     def __init_subclass__(cls, **arguments: object) -> None:
         """Collect what is declared."""
         super().__init_subclass__(**arguments)
-        own = inspect.get_annotations(cls)
+        own = {name: made for name, made in inspect.get_annotations(cls).items() if isinstance(made, Setting)}
         inherited: dict[str, Setting] = {}
         for base in cls.__bases__:
             inherited |= getattr(base, "declared", {})
@@ -152,6 +154,12 @@ def properties_of(settings: type[Settings]) -> dict[str, object]:
 def setting_names(settings: type[Settings]) -> tuple[str, ...]:
     """The names of all settings of a class of settings."""
     return tuple(settings.declared)
+
+
+def values_of(settings: type[Settings], owner: object) -> SimpleNamespace:
+    """The settings of a class as a plain object with the values that an operator or a panel has."""
+    values = {name: getattr(owner, name) for name in settings.declared}
+    return SimpleNamespace(**{name: set(v) if isinstance(v, set) else v for name, v in values.items()})
 
 
 def defaults_of(settings: type[Settings], **changes: object) -> SimpleNamespace:

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import bpy
 
-from . import job, rows
+from . import former, job, rows
 from .run import NO_RESULT
 from .settings import properties_of
 from .tool import Tool
@@ -62,7 +62,7 @@ def group_class(tool: Tool) -> type:
         f"Ridgeform{words}Settings",
         (bpy.types.PropertyGroup,),
         "Settings of a panel, saved with the scene",
-        __annotations__=properties_of(tool.settings),
+        __annotations__=properties_of(tool.settings) | former.properties_of(tool.settings),
     )
 
 

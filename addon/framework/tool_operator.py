@@ -11,7 +11,7 @@ from ..blender.refusals import RefusedError
 from . import rows
 from .modal import ModalRun
 from .run import Run
-from .settings import properties_of, setting_names
+from .settings import properties_of, setting_names, values_of
 from .tool import Tool
 
 
@@ -69,7 +69,8 @@ class ToolOperator(ModalRun):
             self.from_panel = False
         chosen = selection.usable(selection.mesh_objects(context), self.tool.run.needs)
         try:
-            return self.tool.run(chosen.objects, self, chosen.skipped)
+            # A plain object: a job reads it in a thread of its own, where Blender's must not be touched.
+            return self.tool.run(chosen.objects, values_of(self.tool.settings, self), chosen.skipped)
         except RefusedError as refusal:
             self.report({"ERROR"}, str(refusal))
             return None

@@ -2,6 +2,7 @@
 """The settings of stylize, and how a modeler's sliders become the paper's numbers."""
 
 from types import SimpleNamespace
+from typing import ClassVar
 
 import numpy as np
 
@@ -51,6 +52,35 @@ def first_fidelity_of(strength: float) -> float:
 class StylizeSettings(Settings):
     """The settings of stylize."""
 
+    former: ClassVar = {
+        "reduce": {True: {"finish": "LOW_POLY", "reduce_ratio": 0.25}, False: {"finish": "KEEP"}}
+    }
+    finish: choice(
+        "Finish",
+        "What the result is made of",
+        (
+            ("KEEP", "Keep Mesh", "Keep vertices and faces, and move the vertices only"),
+            (
+                "LOW_POLY",
+                "Low Poly",
+                "Simplify the result: flat facets need few triangles. Quads and n-gons become triangles. "
+                "For meshes without shape keys, in Object Mode",
+            ),
+        ),
+        default="KEEP",
+        expand=True,
+    )
+    reduce_ratio: factor(
+        "Ratio",
+        "Ratio of triangles to keep",
+        default=0.12,
+        min=0.001,
+        soft_min=0.02,
+        shown=lambda settings: settings.finish == "LOW_POLY",
+        flag="--reduce",
+        metavar="RATIO",
+        implies={"finish": "LOW_POLY"},
+    )
     steps: integer(
         "Steps",
         "Maximum number of flattening steps. Fewer are done when the facets have settled, or when Strength "
@@ -112,24 +142,6 @@ class StylizeSettings(Settings):
         section=LAST_STEPS,
         active=lambda settings: bool(settings.marks) and settings.use_mark_angle,
         implies={"use_mark_angle": True},
-    )
-    reduce: boolean(
-        "Reduce Triangles",
-        "Simplify the result: flat facets need few triangles. Quads and n-gons become triangles",
-        section=LAST_STEPS,
-        flag=None,
-    )
-    reduce_ratio: factor(
-        "Ratio",
-        "Ratio of triangles to keep",
-        default=0.25,
-        min=0.001,
-        soft_min=0.02,
-        section=LAST_STEPS,
-        active=lambda settings: settings.reduce,
-        flag="--reduce",
-        metavar="RATIO",
-        implies={"reduce": True},
     )
     use_fidelity: shared.USE_FIDELITY
     fidelity: shared.fidelity(

@@ -78,7 +78,7 @@ TOOLS = {
 }
 PRESETS = {tool.name: list(tool.presets or ()) for tool in addon.registry.TOOLS}
 MENUS = ("VIEW3D_MT_object", "VIEW3D_MT_edit_mesh", "TOPBAR_MT_file_export")
-HANDLERS = ("load_pre", "undo_pre", "redo_pre")
+HANDLERS = ("load_pre", "load_post", "undo_pre", "redo_pre")
 
 
 def trace():

@@ -183,7 +183,9 @@ def test_reduce_carries_everything_over():
         bone.add([vertex], 0.75, "REPLACE")
     obj.vertex_groups.new(name="none")
     n_triangles = len(mesh_io.triangles(mesh))
-    assert bpy.ops.ridgeform.stylize(steps=2, strength=0.0, reduce=True, reduce_ratio=0.2) == {"FINISHED"}
+    assert bpy.ops.ridgeform.stylize(steps=2, strength=0.0, finish="LOW_POLY", reduce_ratio=0.2) == {
+        "FINISHED"
+    }
 
     assert len(mesh.polygons) == pytest.approx(0.2 * n_triangles, rel=0.02)
     assert all(len(face.vertices) == 3 for face in mesh.polygons)
@@ -221,7 +223,7 @@ def test_reduce_keeps_uv_charts_apart():
         rows = chart == axis
         uv[rows] = 10 * axis + np.delete(positions[rows], axis // 2, axis=1)
     mesh.uv_layers["UVMap"].data.foreach_set("uv", uv.ravel())
-    bpy.ops.ridgeform.stylize(steps=1, strength=0.0, reduce=True, reduce_ratio=0.3)
+    bpy.ops.ridgeform.stylize(steps=1, strength=0.0, finish="LOW_POLY", reduce_ratio=0.3)
     values = np.empty(2 * len(mesh.loops), np.float32)
     mesh.uv_layers["UVMap"].data.foreach_get("uv", values)
     faces = values.reshape(-1, 3, 2)
@@ -236,7 +238,7 @@ def test_reduce_keeps_seams():
     outer = np.abs(points) > 0.95
     seam = (outer[ends[:, 0]] & outer[ends[:, 1]]).sum(axis=1) >= 2
     mesh.edges.foreach_set("use_seam", seam)
-    bpy.ops.ridgeform.stylize(steps=1, strength=0.0, reduce=True, reduce_ratio=0.3)
+    bpy.ops.ridgeform.stylize(steps=1, strength=0.0, finish="LOW_POLY", reduce_ratio=0.3)
     kept = np.empty(len(mesh.edges), bool)
     mesh.edges.foreach_get("use_seam", kept)
     middles = kit.coordinates(obj)[mesh_io.edges(mesh)].mean(axis=1)
@@ -251,22 +253,22 @@ def test_reduce_does_not_open_split_seams():
     corners = mesh_io.face_corners(whole.data)[1]
     obj = kit.add_object("Split", points[corners], np.arange(len(corners)).reshape(-1, 4))
     whole.select_set(False)
-    bpy.ops.ridgeform.stylize(steps=1, strength=0.0, reduce=True, reduce_ratio=0.5)
+    bpy.ops.ridgeform.stylize(steps=1, strength=0.0, finish="LOW_POLY", reduce_ratio=0.5)
     assert is_closed(mesh_io.triangles(obj.data), len(obj.data.vertices))
 
 
 def test_reduce_is_left_with_a_reason():
     few = kit.add_object("Cube", CUBE, CUBE_FACES)
-    bpy.ops.ridgeform.stylize(steps=1, strength=0.0, reduce=True, reduce_ratio=1.0)
+    bpy.ops.ridgeform.stylize(steps=1, strength=0.0, finish="LOW_POLY", reduce_ratio=1.0)
     assert "its 12 triangles were not reduced, because there are few enough" in notes()
     few.select_set(False)
     obj = kit.bumpy_box()
     faces = len(obj.data.polygons)
     kit.select_only(obj, np.ones(len(obj.data.vertices), bool))
-    bpy.ops.ridgeform.stylize(steps=1, reduce=True)
+    bpy.ops.ridgeform.stylize(steps=1, finish="LOW_POLY")
     bpy.ops.object.mode_set(mode="OBJECT")
     assert any("only in Object Mode" in note for note in notes())
     obj.shape_key_add(name="Basis")
-    bpy.ops.ridgeform.stylize(steps=1, reduce=True)
+    bpy.ops.ridgeform.stylize(steps=1, finish="LOW_POLY")
     assert any("has shape keys" in note for note in notes())
     assert len(obj.data.polygons) == faces

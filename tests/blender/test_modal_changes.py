@@ -148,6 +148,17 @@ def test_a_fault_while_the_result_is_written_leaves_an_undo_step(fault, capfd):
     assert "Traceback" in capfd.readouterr().err
 
 
+def test_values_that_change_while_a_mesh_is_reduced_are_not_lost():
+    obj = open_box()
+    session = Session("stylize", [obj], held=True, finish="LOW_POLY", reduce_ratio=0.5)
+    obj.data.attributes["heat"].data[3].value = 7.0
+    before = state(obj)
+    session.release()
+    assert session.finish() == {"CANCELLED"}
+    assert "its attributes are others" in session.operator.reports[-1][1]
+    assert state(obj) == before
+
+
 def test_a_run_that_cannot_even_start():
     obj = open_box()
     before = state(obj)

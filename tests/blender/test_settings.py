@@ -90,7 +90,6 @@ def test_every_value_of_a_setting_can_be_given_on_the_command_line(tool):
         "use_fidelity",
         "use_count",
         "use_mark_angle",
-        "reduce",
         "source",
         "display",
         "output",
@@ -108,13 +107,23 @@ def test_every_value_of_a_setting_can_be_given_on_the_command_line(tool):
                 assert got[other] == implied
 
 
+def renamed(values):
+    """Settings of the version before by the names that they have now."""
+    now = dict(values)
+    if "reduce" in now:
+        # The default of the ratio was another one.
+        now |= {"finish": "LOW_POLY" if now["reduce"] else "KEEP"} | {"reduce_ratio": 0.25} | now
+        del now["reduce"]
+    return now
+
+
 def test_flags_of_the_version_before_mean_what_they_meant():
     cases = json.loads((BEFORE / "flags.json").read_text(encoding="utf-8"))
     assert len(cases) > 100
     for case in cases:
         arguments = case["arguments"]
         expected = {name: made.default for name, made in BY_COMMAND[arguments[0]].settings.declared.items()}
-        expected |= case["settings"]
+        expected |= renamed(case["settings"])
         got = settings_of(*arguments)
         if "--mark-angle" in arguments:
             # The angle came to be found from the shape unless one is given.
@@ -167,8 +176,21 @@ def test_a_scene_of_the_version_before_keeps_its_settings():
     del saved["modes"]["coupling"]
     for key, values in saved.items():
         panel = panel_of(by_scene[key])
-        for name, value in values.items():
+        for name, value in renamed(values).items():
             assert plain(getattr(panel, name)) == value, (key, name)
+
+
+def test_a_scene_of_the_version_before_keeps_the_ratio_that_it_left_alone(tmp_path):
+    panel = bpy.context.scene.ridgeform_stylize
+    panel.reduce = True
+    for name in ("finish", "reduce_ratio"):
+        panel.property_unset(name)
+    path = str(tmp_path / "scene.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    panel = bpy.context.scene.ridgeform_stylize
+    assert (panel.finish, panel.reduce_ratio) == ("LOW_POLY", 0.25)
+    assert not panel.is_property_set("reduce")
 
 
 @pytest.fixture
@@ -189,9 +211,11 @@ def test_presets_of_the_version_before_load(tool, user_presets):
     assert bpy.ops.script.execute_preset(filepath=str(path), menu_idname=menu) == {"FINISHED"}
     panel = panel_of(tool)
     stored = dict(re.findall(r"^settings\.(\w+) = (.+)$", text, re.MULTILINE))
-    assert set(stored) <= set(presets.stored_names(tool))
+    assert set(stored) <= set(presets.stored_names(tool)) | set(tool.settings.former)
     for name, value in stored.items():
         assert repr(getattr(panel, name)) == value or getattr(panel, name) == eval(value)
+    if tool.key == "stylize":
+        assert panel.finish == "LOW_POLY"
 
 
 @pytest.mark.parametrize("tool", WITH_PRESETS, ids=[tool.key for tool in WITH_PRESETS])

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is made of a flow's result: coordinates, volume, fewer triangles, marks.
+
+`finished` computes, without touching Blender's data; `write` writes.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import bpy
+import numpy as np
+import ridgeform
+
+from ..blender import mesh_io
+from ..blender.welding import Weld
+from . import reduction
+from .ridges import dividing_angle, edge_angles
+from .volume import keep_volume
+
+KEY_NAME = "Stylized"
+FEW_FLAT = 0.1
+"""With less than this part of its area in flat faces a shape has hardly any facets: regular spheres and tori
+end at 0.00 to 0.09, a head of 500 vertices at 0.07, everything else that was tried at 0.16 and above."""
+
+
+@dataclass
+class Source:
+    """A mesh as it was read."""
+
+    coordinates: mesh_io.Coordinates
+    weld: Weld
+    free: np.ndarray
+    """Which vertices (n,) bool may move."""
+    reducible: reduction.Reducible | None = None
+    """What its triangles are reduced from, if they are to be."""
+    refusal: str | None = None
+    """Why they will not be, although they are to be."""
+
+    def merged(self, vertices: np.ndarray) -> np.ndarray:
+        """Coordinates (n, 3) float32 from welded vertices, with the old bits where none may move."""
+        new = np.asarray(vertices, np.float32)[self.weld.vertex]
+        return np.where(self.free[:, None], new, self.coordinates.original)
+
+    def moved(self, vertices: np.ndarray) -> float:
+        """How far the farthest of the welded vertices has gone, as a part of the bounding box's diagonal."""
+        before = self.coordinates.original[self.weld.first].astype(np.float64)
+        diagonal = float(np.linalg.norm(np.ptp(before, axis=0)))
+        farthest = float(np.linalg.norm(np.asarray(vertices) - before, axis=1).max(initial=0.0))
+        return farthest / diagonal if diagonal > 0.0 else 0.0
+
+
+@dataclass
+class Finished:
+    """The result of a flow, and what is to be written of it."""
+
+    flow: ridgeform.Stylized
+    coordinates: np.ndarray
+    """The coordinates (n, 3) float32."""
+    notes: list[str] = field(default_factory=list)
+    reduced: reduction.Reduced | None = None
+
+
+def finished(
+    source: Source, flow: ridgeform.Stylized, settings: object, check: Callable[[], None] = lambda: None
+) -> Finished:
+    """What is to be written of a flow's result; `check` may raise to stop."""
+    note = _note(flow, settings)
+    made = Finished(flow, source.merged(flow.vertices), [] if note is None else [note])
+    if settings.keep_volume:
+        reason = _keep_volume(source, made)
+        if reason is not None:
+            made.notes.append(reason)
+    if source.refusal is not None:
+        made.notes.append(source.refusal)
+    elif source.reducible is not None:
+        reduced = reduction.reduce(source.reducible, made.coordinates, settings.reduce_ratio, check)
+        made.notes.append(reduced if isinstance(reduced, str) else reduced.note)
+        made.reduced = None if isinstance(reduced, str) else reduced
+    return made
+
+
+def write(obj: bpy.types.Object, source: Source, made: Finished, settings: object) -> None:
+    """Write a result to the mesh of an object, which may show a preview."""
+    if settings.output == "SHAPE_KEY":
+        mesh_io.add_shape_key(obj, made.coordinates, KEY_NAME)
+    else:
+        source.coordinates.write(made.coordinates)
+    if made.reduced is not None:
+        reduction.write(obj, made.reduced)
+    if settings.marks:
+        _mark_ridges(obj, source.free, settings)
+
+
+def _keep_volume(source: Source, made: Finished) -> str | None:
+    if not source.free.all():
+        return "the volume was not kept, because only a part of the mesh was free to move"
+    first = source.weld.first
+    scaled, reason = keep_volume(
+        source.coordinates.original[first], made.coordinates[first], source.weld.triangles
+    )
+    made.coordinates = source.merged(scaled)
+    return reason
+
+
+def _note(result: ridgeform.Stylized, settings: object) -> str | None:
+    """What a modeler should know about how a flow ended, and do about it."""
+    steps = result.iterations
+    if result.status == "settled" and steps == 0:
+        return "its planes already meet in ridges, so nothing was moved"
+    notes = {
+        "collapsed": f"the shape collapsed, step {steps} is kept: use less strength or fewer steps",
+        "diverged": f"a step led far away from the shape, step {steps} is kept: its triangles are too "
+        "uneven; merge vertices by distance or remesh first",
+        "converged": f"nothing moved after step {steps}",
+        "inaccurate": "not every step reached its tolerance "
+        f"(largest gap {result.gap.max(initial=0.0):.1g}): raise Iterations",
+    }
+    if not settings.use_fidelity:
+        notes["finished"] = f"all {steps} steps were done before its facets had settled: raise Steps"
+    few = "hardly anything became flat: subdivide a coarse mesh, or raise Strength on a regular one"
+    return notes.get(result.status, few if result.flat_share[-1] < FEW_FLAT else None)
+
+
+def _mark_ridges(obj: bpy.types.Object, free: np.ndarray, settings: object) -> None:
+    mesh_io.flush_edit_mode(obj)
+    ends = mesh_io.edges(obj.data)
+    coordinates = mesh_io.open_coordinates(obj).original
+    angles = edge_angles(coordinates, mesh_io.face_corners(obj.data), len(ends))
+    least = settings.mark_angle
+    if not settings.use_mark_angle:
+        lengths = np.linalg.norm(coordinates[ends[:, 0]] - coordinates[ends[:, 1]], axis=1)
+        least = dividing_angle(angles, lengths.astype(np.float64))
+    ridges = (angles >= 0) & (angles >= least)
+    if len(coordinates) == len(free):
+        ridges &= free[ends].all(axis=1)
+    mesh_io.mark_edges(obj.data, ridges, settings.marks)
