@@ -82,7 +82,7 @@ class AttributeRun(Run):
             reason = attribute_io.reason_locked(obj, source)
             if reason is not None:
                 raise RefusedError(reason)
-        surface = surface_of(obj)
+        surface = surface_of(obj, whole=True)
         triangles = mesh_io.triangles(obj.data)
         surface.face_weights = painted_ridges(obj, self.settings, triangles, surface.weld)
         part = self.pose(obj, source, surface)

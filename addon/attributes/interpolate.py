@@ -62,7 +62,7 @@ class Interpolation(AttributeRun):
             columns=columns,
             constants=source.values[np.argmax(known)],
         )
-        n_idle = len(np.unique(part[idle & np.isin(np.arange(len(part)), weld.triangles)]))
+        n_idle = len(np.unique(part[idle & np.isin(np.arange(len(part)), weld.triangles[: weld.n_own])]))
         if n_idle:
             made.warnings.append(f"{n_idle} connected parts without a known value stay as they are")
         return made

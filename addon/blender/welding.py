@@ -1,41 +1,82 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Treating the two sides of a split seam as one surface while computing.
+"""The surface that is computed on: split seams as one, and what a Mirror modifier adds to the mesh.
 
 Formats that store a vertex once per normal or UV (glTF, PLY), and the Edge Split modifier, leave open
 borders whose vertices lie in the same place, up to rounding. Computed as they are, the surface would tear
-open along them. What is one place, and which faces are turned over, the wheel says.
+open along them. What is one place, and which faces are turned over, the wheel says. The images that a Mirror
+modifier makes come after the mesh's own vertices and triangles (`mirroring`).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 import ridgeform
 
+from .mirroring import Images, Mirror, images_of
+
 
 @dataclass
 class Weld:
-    """The welded mesh of a mesh: which of its vertices each vertex is, and what is left of its triangles."""
+    """The welded mesh of a mesh: which of its vertices each vertex is, and what is left of its triangles.
+
+    The first vertices and triangles are the mesh's own; images follow where there are any.
+    """
 
     vertex: np.ndarray
     """The welded vertex (n,) of each vertex."""
     first: np.ndarray
-    """A vertex (k,) of the mesh for each welded vertex."""
+    """A vertex (k,) of the mesh for each welded vertex, or the one that it is the image of."""
     triangles: np.ndarray
     """The welded triangles (l, 3), those that kept three different vertices."""
-    kept: np.ndarray
-    """Which triangles (m,) bool of the mesh these are."""
+    rows: np.ndarray
+    """The triangle (l,) of the mesh that each of these is, or is the image of."""
+    images: Images | None = None
+    """What is added by mirrors."""
     notes: list[str] = field(default_factory=list)
     """What a modeler should know of it."""
 
+    @property
+    def n_own(self) -> int:
+        """How many of the welded triangles are no images."""
+        return len(self.triangles) if self.images is None else self.images.n_triangles
+
+    def places(self, coordinates: np.ndarray) -> np.ndarray:
+        """Coordinates (k, 3) float64 of the welded vertices, from those (n, 3) of the mesh."""
+        places = coordinates[self.first].astype(np.float64)
+        return places if self.images is None else self.images.places(places)
+
+    def moved(self, places: np.ndarray, coordinates: np.ndarray) -> np.ndarray:
+        """Coordinates (n, 3) float32 of the mesh, once the welded vertices are at `places` (k, 3).
+
+        `coordinates` (n, 3) are those before: on a mirror's plane a vertex keeps what it has of them across.
+        """
+        moved = np.asarray(places, np.float32)[self.vertex]
+        if self.images is not None:
+            before = self.places(coordinates)
+            offset = self.images.held(np.asarray(places) - before)[self.vertex]
+            pinned = self.images.is_pinned[self.vertex]
+            # Where nothing is added the bits stay, those of -0 too.
+            moved[pinned] = np.where(offset == 0.0, coordinates, coordinates + offset)[pinned]
+        return moved
+
+    def of_corners(self, values: np.ndarray) -> np.ndarray:
+        """Values (l, 3) of the welded triangles' corners, from those of the mesh's own triangles."""
+        if self.images is None:
+            return values
+        full = values[self.images.triangle_source]
+        return np.where(self.images.is_turned[:, None], full[:, ::-1], full)
+
     def of(self, vertices: np.ndarray) -> np.ndarray:
         """The welded vertices of an array of vertices; the array itself if none were welded."""
-        return vertices if len(self.first) == len(self.vertex) else self.vertex[vertices]
+        none = self.images is None and len(self.first) == len(self.vertex)
+        return vertices if none else self.vertex[vertices]
 
     def all_of(self, mask: np.ndarray) -> np.ndarray:
         """Whether a mask (n,) holds for all the vertices of each welded vertex (k,)."""
         result = np.ones(len(self.first), bool)
         np.logical_and.at(result, self.vertex, mask)
-        return result
+        return self._with_images(result)
 
     def mean_of(self, values: np.ndarray) -> np.ndarray:
         """The mean of values (n,) over the vertices of each welded vertex (k,)."""
@@ -43,7 +84,11 @@ class Weld:
 
     def sum_of(self, values: np.ndarray) -> np.ndarray:
         """The sum of values (n,) over the vertices of each welded vertex (k,)."""
-        return np.bincount(self.vertex, weights=values, minlength=len(self.first))
+        return self._with_images(np.bincount(self.vertex, weights=values, minlength=len(self.first)))
+
+    def _with_images(self, values: np.ndarray) -> np.ndarray:
+        """Values (k,) in which images have those of what they are images of."""
+        return values if self.images is None else values[self.images.source]
 
 
 def weld_seams(coordinates: np.ndarray, triangles: np.ndarray) -> Weld:
@@ -56,12 +101,22 @@ def weld_seams(coordinates: np.ndarray, triangles: np.ndarray) -> Weld:
     # Column by column: NumPy takes ten times as long along an axis of three.
     a, b, c = welded.T
     kept = (a != b) & (b != c) & (c != a)
-    return Weld(vertex, first, welded if kept.all() else welded[kept], kept)
+    return Weld(vertex, first, welded if kept.all() else welded[kept], np.flatnonzero(kept))
+
+
+def mirrored(weld: Weld, coordinates: np.ndarray, mirrors: Sequence[Mirror]) -> Weld:
+    """The welded mesh with the images that mirrors make of it, where its border lies on their planes."""
+    places = coordinates[weld.first].astype(np.float64)
+    images = images_of(places, weld.triangles, mirrors)
+    if images is None:
+        return weld
+    rows = weld.rows[images.triangle_source]
+    return Weld(weld.vertex, weld.first[images.source], images.triangles, rows, images, weld.notes)
 
 
 def seam_note(coordinates: np.ndarray, weld: Weld) -> str | None:
     """What a modeler should know of sides of seams that are not quite equal, if there are any."""
-    apart = (coordinates != coordinates[weld.first][weld.vertex]).any(axis=1)
+    apart = (coordinates != coordinates[weld.first[weld.vertex]]).any(axis=1)
     if not apart.any():
         return None
     count = int(apart.sum())

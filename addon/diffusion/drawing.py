@@ -33,7 +33,7 @@ def write_corners(obj: bpy.types.Object, weld: Weld, corners: np.ndarray, source
     mesh = obj.data
     name = attribute_names.result_name(source, SUFFIX)
     mesh.calc_loop_triangles()
-    places = mesh_io.triangle_corners(mesh)[weld.kept].ravel()
+    places = mesh_io.triangle_corners(mesh)[weld.rows].ravel()
     colors = np.zeros((len(mesh.loops), 4), np.float32)
     colors[:, 3] = alpha
     colors[places, : corners.shape[2]] = corners.reshape(len(places), -1)

@@ -65,7 +65,7 @@ class DiffusionCurves(Run):
 
     def _call(self, obj: bpy.types.Object, surface: Surface, values: np.ndarray) -> partial:
         settings = self.settings
-        faces = mesh_io.triangle_faces(obj.data)[surface.weld.kept]
+        faces = mesh_io.triangle_faces(obj.data)[surface.weld.rows]
         if settings.regions == "COLORS":
             regions = {
                 "n_regions": settings.count or None,

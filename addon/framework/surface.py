@@ -7,9 +7,9 @@ import bpy
 import numpy as np
 import ridgeform
 
-from ..blender import mesh_io
+from ..blender import mesh_io, modifiers
 from ..blender.refusals import RefusedError
-from ..blender.welding import Weld, flip_note, seam_note, weld_seams
+from ..blender.welding import Weld, flip_note, mirrored, seam_note, weld_seams
 from .shared_settings import ridge_weights_of
 
 
@@ -22,24 +22,27 @@ class Surface:
     face_weights: np.ndarray | None = None
 
 
-def surface_of(obj: bpy.types.Object) -> Surface:
-    """The surface of an object in Object Mode; `RefusedError` if the wheel cannot use it."""
+def surface_of(obj: bpy.types.Object, whole: bool = False) -> Surface:
+    """The surface of an object in Object Mode; `RefusedError` if the wheel cannot use it.
+
+    `whole`: with the images that Mirror modifiers make of it.
+    """
     coordinates = mesh_io.open_coordinates(obj).original
-    weld, _ = welded(obj, coordinates)
+    weld, _ = welded(obj, coordinates, whole)
     try:
-        return Surface(weld, ridgeform.Mesh(coordinates[weld.first].astype(np.float64), weld.triangles))
+        return Surface(weld, ridgeform.Mesh(weld.places(coordinates), weld.triangles))
     except ridgeform.RidgeformError as error:
         raise RefusedError(f'"{obj.name}": {error}') from error
 
 
-def welded(
-    obj: bpy.types.Object, coordinates: np.ndarray, triangles: np.ndarray | None = None
-) -> tuple[Weld, np.ndarray]:
-    """The mesh of an object with its seams welded, and all its loop triangles (m, 3) int32, if not given.
+def welded(obj: bpy.types.Object, coordinates: np.ndarray, whole: bool = False) -> tuple[Weld, np.ndarray]:
+    """The mesh of an object with its seams welded, and all its loop triangles (m, 3) int32.
+
+    `whole`: with the images that Mirror modifiers make of it.
 
     `RefusedError` for a mesh without faces, or with a coordinate (n, 3) that is not a finite number.
     """
-    triangles = mesh_io.triangles(obj.data) if triangles is None else triangles
+    triangles = mesh_io.triangles(obj.data)
     if len(triangles) == 0:
         raise RefusedError(f'"{obj.name}" has no faces')
     if not np.isfinite(coordinates).all():
@@ -49,8 +52,11 @@ def welded(
             f"({len(broken)} in all): delete or move it"
         )
     weld = weld_seams(coordinates, triangles)
-    notes = (seam_note(coordinates, weld), flip_note(weld, mesh_io.triangle_faces(obj.data)[weld.kept]))
+    notes = (seam_note(coordinates, weld), flip_note(weld, mesh_io.triangle_faces(obj.data)[weld.rows]))
     weld.notes = [note for note in notes if note is not None]
+    if whole:
+        weld.notes += modifiers.mirror_notes(obj, coordinates)
+        weld = mirrored(weld, coordinates, modifiers.mirrors(obj, coordinates))
     return weld, triangles
 
 
@@ -71,4 +77,4 @@ def painted_ridges(
     if not settings.ridge_group:
         return None
     painted = group_weights(obj, settings.ridge_group)
-    return ridge_weights_of(painted, triangles[weld.kept], settings.avoid_ridges)
+    return ridge_weights_of(painted, triangles[weld.rows], settings.avoid_ridges)

@@ -20,7 +20,7 @@ def read_source(
 
     Of vertex groups only what lies around `rims` (r,) is read, welded vertices.
     """
-    ring = np.flatnonzero(ring_triangles(weld.of(triangles), rims) & weld.kept)
+    ring = np.intersect1d(np.flatnonzero(ring_triangles(weld.of(triangles), rims)), weld.rows)
     near = np.unique(triangles[ring])
     return Source(
         coordinates,

@@ -13,6 +13,7 @@ import ridgeform
 from ..blender import mesh_io
 from ..blender.overlay import Overlay
 from ..blender.refusals import RefusedError
+from ..blender.welding import Weld
 from ..framework.job import Task
 from ..framework.run import Part, Run, counted, meshes_phrase
 from ..framework.surface import welded
@@ -69,14 +70,19 @@ class HoleFilling(Run):
     def prepare(self, obj: bpy.types.Object) -> HolePart:
         """Read one mesh, and choose which of its holes are filled."""
         coordinates = reference_coordinates(obj.data)
-        weld, triangles = welded(obj, coordinates)
+        weld, triangles = welded(obj, coordinates, whole=True)
         try:
-            mesh = ridgeform.Mesh(coordinates[weld.first].astype(np.float64), weld.triangles)
-            holes = ridgeform.find_holes(mesh)
+            mesh = ridgeform.Mesh(weld.places(coordinates), weld.triangles)
+            holes, across = own_holes(ridgeform.find_holes(mesh), weld)
         except ridgeform.RidgeformError as error:
             raise RefusedError(f'"{obj.name}": {error}') from error
+        if across:
+            weld.notes.append(
+                f"{counted(across, 'hole')} skipped (across the plane of the Mirror modifier: apply it first)"
+            )
         if not holes:
-            raise RefusedError(f'"{obj.name}" has no holes')
+            why = f": {weld.notes[-1]}" if across else ""
+            raise RefusedError(f'"{obj.name}" has no holes{why}')
         if self._in_edit_mode:
             holes = _picked(holes, weld.vertex[picked_edges(obj.data)], len(weld.first))
             if not holes:
@@ -160,6 +166,21 @@ class HoleFilling(Run):
             f"Filled {counted(holes, 'hole')} of {meshes_phrase(done)}: {counted(faces, 'face')} added"
             f"{ridge_phrase}, {seconds:.1f} s"
         )
+
+
+def own_holes(holes: Sequence[ridgeform.Hole], weld: Weld) -> tuple[list[ridgeform.Hole], int]:
+    """Those of the holes that lie on the mesh itself, and how many there are partly on its images."""
+    if weld.images is None:
+        return list(holes), 0
+    n_own, is_pinned = weld.images.n_vertices, weld.images.is_pinned
+    own, across = [], 0
+    for hole in holes:
+        is_own = hole.vertices < n_own
+        if is_own.all():
+            own.append(hole)
+        elif (is_own & ~is_pinned[hole.vertices]).any():
+            across += 1
+    return own, across
 
 
 def _same_hole(vertices: np.ndarray, others: np.ndarray) -> bool:

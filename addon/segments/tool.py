@@ -41,9 +41,9 @@ class SegmentPart(Part):
 
     weld: Weld
     faces: np.ndarray
-    """The face (l,) of each welded triangle."""
+    """The face (l,) of each welded triangle of the mesh itself."""
     areas: np.ndarray
-    """The area (l,) of each welded triangle."""
+    """The area (l,) of each of them."""
     taking: np.ndarray
     """Which faces (f,) bool take part."""
     source: PointValues | None
@@ -54,6 +54,7 @@ class SegmentPart(Part):
 
     def face_labels(self, labels: np.ndarray) -> np.ndarray:
         """The segment (f,) of each face, from 0: that of most of its area, given the triangles', or -1."""
+        labels = labels[: len(self.faces)]
         chosen = labels >= 0
         if not chosen.any():
             return np.full(len(self.taking), -1, np.int32)
@@ -70,8 +71,28 @@ class SegmentPart(Part):
         found, compact = np.unique(result, return_inverse=True)
         return (compact.reshape(-1) - int(found[0] == -1)).astype(np.int32)
 
+    def labels_at(self, count: int) -> np.ndarray:
+        """The segments (f,) of the faces when the mesh itself has `count`, or as near as that goes."""
+        found = self.task.result
+        labels = self.face_labels(found.labels_at(count))
+        if self.weld.images is not None:
+            # Some of those on mesh and images together lie on images alone.
+            for more in range(count + 1, found.range[1] + 1):
+                if labels.max() + 1 >= count:
+                    break
+                labels = self.face_labels(found.labels_at(more))
+        return labels
+
+    def possible(self) -> list[int]:
+        """From how few to how many segments there might be on the mesh itself."""
+        found = self.task.result
+        if self.weld.images is None:
+            return list(map(int, found.range))
+        return [int(self.face_labels(found.labels_at(count)).max()) + 1 for count in found.range]
+
     def face_means(self, values: np.ndarray) -> np.ndarray:
         """The mean (f,) over the area of values (l,) of triangles."""
+        values = values[: len(self.faces)]
         n = len(self.taking)
         weights = self.areas + np.finfo(float).tiny
         total = np.bincount(self.faces, weights=weights, minlength=n)
@@ -93,14 +114,14 @@ class Segmenting(Run):
         )
         if not taking.any():
             raise RefusedError(f'No face of "{obj.name}" is selected: select the faces to segment')
-        surface = surface_of(obj)
+        surface = surface_of(obj, whole=True)
         weld = surface.weld
-        faces = mesh_io.triangle_faces(obj.data)[weld.kept]
+        faces = mesh_io.triangle_faces(obj.data)[weld.rows]
         parts = of_parts(self.settings)
         options = parts_options(self.settings) if parts else segment_options(self.settings)
         source, columns = None, None
         if parts:
-            weights = border_weights(obj.data, self.settings.existing, weld.kept)
+            weights = border_weights(obj.data, self.settings.existing, weld)
             if weights is not None:
                 options["edge_weights"] = weights
         elif self.settings.source == "ATTRIBUTE":
@@ -118,8 +139,8 @@ class Segmenting(Run):
             task,
             len(obj.data.vertices),
             weld=weld,
-            faces=faces,
-            areas=_areas(surface.mesh),
+            faces=faces[: weld.n_own],
+            areas=_areas(surface.mesh)[: weld.n_own],
             taking=taking,
             source=source,
             columns=columns,
@@ -137,10 +158,9 @@ class Segmenting(Run):
 
     def _write_one(self, part: SegmentPart) -> None:
         mesh, found, outputs = part.object.data, part.task.result, self.settings.outputs
-        labels = found.labels
-        if self.settings.use_count:
-            labels = found.labels_at(self.settings.count)
-        labels = part.face_labels(labels)
+        labels = (
+            part.labels_at(self.settings.count) if self.settings.use_count else part.face_labels(found.labels)
+        )
         part.n_segments = int(labels.max()) + 1
         part.warnings += self._notes(part)
         taking = part.taking & (labels >= 0)
@@ -167,7 +187,7 @@ class Segmenting(Run):
     def _notes(self, part: SegmentPart) -> list[str]:
         notes = []
         if self.settings.use_count and part.n_segments != self.settings.count:
-            fewest, most = part.task.result.range
+            fewest, most = part.possible()
             notes.append(f"{self.settings.count} segments were asked for, {fewest} to {most} are possible")
         if part.task.result.status == "inaccurate":
             notes.append("the tolerance was not reached")
@@ -187,7 +207,7 @@ class Segmenting(Run):
         return {
             "attribute": part.source.name if part.source is not None else None,
             "segments": part.n_segments,
-            "possible": list(map(int, found.range)),
+            "possible": part.possible(),
             **({} if of_parts(self.settings) else _course(found)),
             "status": str(found.status),
         }
@@ -269,7 +289,8 @@ def _areas(mesh: ridgeform.Mesh) -> np.ndarray:
 def _write_sharpened(part: SegmentPart) -> None:
     values = part.task.result.values
     if part.source is None:
-        mesh_io.add_shape_key(part.object, values[part.weld.vertex].astype(np.float32), KEY_NAME)
+        coordinates = mesh_io.open_coordinates(part.object).original
+        mesh_io.add_shape_key(part.object, part.weld.moved(values, coordinates), KEY_NAME)
         return
     full = part.source.values.astype(np.float64)
     full[:, part.columns] = values.reshape(len(values), -1)[part.weld.vertex]

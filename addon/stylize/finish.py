@@ -38,12 +38,12 @@ class Source:
 
     def merged(self, vertices: np.ndarray) -> np.ndarray:
         """Coordinates (n, 3) float32 from welded vertices, with the old bits where none may move."""
-        new = np.asarray(vertices, np.float32)[self.weld.vertex]
-        return np.where(self.free[:, None], new, self.coordinates.original)
+        original = self.coordinates.original
+        return np.where(self.free[:, None], self.weld.moved(vertices, original), original)
 
     def moved(self, vertices: np.ndarray) -> float:
         """How far the farthest of the welded vertices has gone, as a part of the bounding box's diagonal."""
-        before = self.coordinates.original[self.weld.first].astype(np.float64)
+        before = self.weld.places(self.coordinates.original)
         diagonal = float(np.linalg.norm(np.ptp(before, axis=0)))
         farthest = float(np.linalg.norm(np.asarray(vertices) - before, axis=1).max(initial=0.0))
         return farthest / diagonal if diagonal > 0.0 else 0.0
@@ -94,10 +94,9 @@ def write(obj: bpy.types.Object, source: Source, made: Finished, settings: objec
 def _keep_volume(source: Source, made: Finished) -> str | None:
     if not source.free.all():
         return "the volume was not kept, because only a part of the mesh was free to move"
-    first = source.weld.first
-    scaled, reason = keep_volume(
-        source.coordinates.original[first], made.coordinates[first], source.weld.triangles
-    )
+    weld = source.weld
+    before, after = weld.places(source.coordinates.original), weld.places(made.coordinates)
+    scaled, reason = keep_volume(before, after, weld.triangles)
     made.coordinates = source.merged(scaled)
     return reason
 

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 import ridgeform
 
-from ..blender import mesh_io
+from ..blender import mesh_io, modifiers
 from ..blender.refusals import RefusedError
 from ..framework.job import Task
 from ..framework.run import Part, Run, counted, meshes_phrase
@@ -133,7 +133,7 @@ def _prepare(obj: bpy.types.Object, settings: object) -> FlowPart:
     mesh_io.flush_edit_mode(obj)
     coordinates = mesh_io.open_coordinates(obj)
     vertices = coordinates.original
-    weld, triangles = welded(obj, vertices)
+    weld, triangles = welded(obj, vertices, whole=True)
     free = mesh_io.selected_vertices(mesh) if mesh.is_editmode else np.ones(len(vertices), bool)
     options = stylize_options(settings)
     if settings.strength_group:
@@ -156,6 +156,9 @@ def _prepare(obj: bpy.types.Object, settings: object) -> FlowPart:
     part = FlowPart(obj, Task(obj.name, lambda _: None), len(vertices), source=source)
     part.task.call = partial(_stylized, part.task, source, options, settings)
     part.warnings += weld.notes
+    part.warnings += modifiers.shape_notes(obj, "CREASE" in settings.marks)
+    if settings.output != "SHAPE_KEY":
+        part.warnings += modifiers.key_notes(obj)
     scales = np.abs(obj.matrix_world.to_scale())
     if scales.max() > UNEVEN_SCALE * scales.min():
         part.warnings.append(
@@ -169,7 +172,7 @@ def _stylized(
 ) -> finish.Finished:
     """The flow of a mesh, and what is made of its result: in the thread of the job."""
     weld = source.weld
-    mesh = ridgeform.Mesh(source.coordinates.original[weld.first].astype(np.float64), weld.triangles)
+    mesh = ridgeform.Mesh(weld.places(source.coordinates.original), weld.triangles)
     flow = ridgeform.stylize(mesh, **options, progress=progress)
     task.check()
     if source.reducible is not None:
