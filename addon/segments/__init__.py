@@ -6,6 +6,7 @@ all others keep what they have.
 """
 
 from ..framework.tool import Feature, Tool
+from .operator import RIDGEFORM_OT_restore_materials, draw_restore
 from .settings import PRESETS, SegmentSettings
 from .tool import Segmenting, forget
 
@@ -21,7 +22,9 @@ FEATURE = Feature(
             settings=SegmentSettings,
             key="segment",
             presets=PRESETS,
+            draw_more=draw_restore,
         ),
     ),
+    operators=(RIDGEFORM_OT_restore_materials,),
     unregister=forget,
 )

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..blender import mesh_io
 from ..blender.welding import Weld
-from . import layers
+from . import layers, slots
 
 FLAGS = {"SHARP": "use_edge_sharp", "SEAMS": "use_seam"}
 """Blender's names of the flags of edges."""
@@ -38,7 +38,5 @@ def _borders(mesh: bpy.types.Mesh, kinds: Iterable[str]) -> np.ndarray:
             mesh.edges.foreach_get(FLAGS[kind], marked)
             borders |= marked
         else:
-            index = np.zeros(len(mesh.polygons), np.int32)
-            mesh.polygons.foreach_get("material_index", index)
-            borders |= layers.border_edges(mesh, index)
+            borders |= layers.border_edges(mesh, slots.user_index(mesh))
     return borders

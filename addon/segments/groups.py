@@ -17,12 +17,17 @@ def write_groups(obj: bpy.types.Object, labels: np.ndarray, transition: float = 
     With a `transition` the weights change from 0 to 1 over a band of this width around the borders, measured
     along edges in the units of the object, and those of a vertex sum to 1.
     """
-    for group in [group for group in obj.vertex_groups if _is_own(group.name)]:
-        obj.vertex_groups.remove(group)
+    remove_groups(obj)
     for segment, weights in segment_weights(obj.data, labels, transition).items():
         group = obj.vertex_groups.new(name=f"{GROUP}{segment}")
         for weight in np.unique(weights[weights > 0]).tolist():
             group.add(np.flatnonzero(weights == weight).tolist(), weight, "REPLACE")
+
+
+def remove_groups(obj: bpy.types.Object) -> None:
+    """Take away the vertex groups of segments."""
+    for group in [group for group in obj.vertex_groups if _is_own(group.name)]:
+        obj.vertex_groups.remove(group)
 
 
 def _is_own(name: str) -> bool:

@@ -14,6 +14,8 @@ INDICATOR = "ridgeform_indicator"
 MARKED = "ridgeform_marked"
 """The edge attribute that says which marks are ours: a bit for each of `MARKS`."""
 FACE_SET = ".sculpt_face_set"
+KEPT_SET = "ridgeform_face_set"
+"""The face attribute with the face sets that faces had before segments took them."""
 MARKS = {"SEAMS": (1, "use_seam"), "SHARP": (2, "use_edge_sharp")}
 """Kinds of marks: their bit, and Blender's name of the flag."""
 _KINDS = {"INT": np.int32, "FLOAT": np.float32}
@@ -51,9 +53,23 @@ def merged_labels(mesh: bpy.types.Mesh, labels: np.ndarray, taking: np.ndarray) 
 def write_face_sets(mesh: bpy.types.Mesh, labels: np.ndarray, taking: np.ndarray) -> None:
     """Make each segment a face set, with numbers above those of faces that took no part."""
     sets = read_ints(mesh, FACE_SET, "FACE", 1)
+    if KEPT_SET not in mesh.attributes:
+        write(mesh, KEPT_SET, "INT", "FACE", sets)
     first = 1 + sets[~taking].max(initial=0)
     sets[taking] = labels[taking] + first
     write(mesh, FACE_SET, "INT", "FACE", sets)
+
+
+def give_back_face_sets(mesh: bpy.types.Mesh, faces: np.ndarray) -> None:
+    """Give faces (f,) bool the face sets back that they had before segments took them."""
+    if KEPT_SET not in mesh.attributes:
+        return
+    kept = read_ints(mesh, KEPT_SET, "FACE", 1)
+    write(mesh, FACE_SET, "INT", "FACE", np.where(faces, kept, read_ints(mesh, FACE_SET, "FACE", 1)))
+    if faces.all():
+        mesh.attributes.remove(mesh.attributes[KEPT_SET])
+        if (kept == 1).all():
+            mesh.attributes.remove(mesh.attributes[FACE_SET])
 
 
 def border_edges(mesh: bpy.types.Mesh, labels: np.ndarray) -> np.ndarray:
@@ -81,6 +97,8 @@ def mark_borders(mesh: bpy.types.Mesh, borders: np.ndarray, free: np.ndarray, ki
         ours[borders & ~marked] |= bit
         mesh.edges.foreach_set(flag, marked | borders)
     write(mesh, MARKED, "INT", "EDGE", ours)
+    if not ours.any():
+        mesh.attributes.remove(mesh.attributes[MARKED])
 
 
 def edges_within(mesh: bpy.types.Mesh, taking: np.ndarray) -> np.ndarray:

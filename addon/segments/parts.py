@@ -42,9 +42,7 @@ def separate(obj: bpy.types.Object, labels: np.ndarray, caps: bool = False) -> l
     for part in parts:
         if caps:
             _cap(part.data)
-        index = np.zeros(len(part.data.polygons), np.int32)
-        part.data.polygons.foreach_get("material_index", index)
-        slots.remove_unused(part.data, index)
+        slots.remove_unused(part.data, slots.index_of(part.data))
     return parts
 
 

@@ -24,7 +24,7 @@ from ..framework.sources import (
     varying_means,
 )
 from ..framework.surface import Surface, painted_ridges, surface_of
-from . import groups, layers, slots
+from . import earlier, groups, layers, slots
 from .existing import border_weights
 from .parts import separate
 from .settings import of_parts, parts_options, segment_options
@@ -165,6 +165,7 @@ class Segmenting(Run):
         part.warnings += self._notes(part)
         taking = part.taking & (labels >= 0)
         whole = layers.merged_labels(mesh, labels, part.taking)
+        earlier.clear(part.object, part.taking, outputs)
         if "FACE_SETS" in outputs:
             layers.write_face_sets(mesh, labels, taking)
         layers.write(mesh, layers.SEGMENT, "INT", "FACE", whole)
@@ -179,7 +180,9 @@ class Segmenting(Run):
         if "SHARPENED" in outputs and not of_parts(self.settings):
             _write_sharpened(part)
         if "MATERIALS" in outputs:
-            slots.assign(mesh, labels, taking)
+            had_others = slots.assign(mesh, labels, taking, part.object.name)
+            if had_others:
+                part.warnings.append("its materials are kept: Restore Materials brings them back")
         mesh.update()
         if "OBJECTS" in outputs and not self._in_edit_mode:
             _separate(part, labels, self.settings.use_caps)

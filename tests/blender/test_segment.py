@@ -169,9 +169,8 @@ def test_seams_and_sharp_edges_lie_between_segments_and_follow_the_next_run():
     assert np.array_equal(flags(obj, "use_edge_sharp"), borders)
     bpy.ops.ridgeform.segment(outputs={"SEAMS"}, use_count=True, count=1)
     assert np.array_equal(flags(obj, "use_seam"), mine)
-    assert np.array_equal(flags(obj, "use_edge_sharp"), borders)
-    bpy.ops.ridgeform.segment(outputs={"SHARP"}, use_count=True, count=1)
     assert not flags(obj, "use_edge_sharp").any()
+    assert layers.MARKED not in obj.data.attributes
 
 
 def test_face_sets_groups_and_indicator():

@@ -12,7 +12,7 @@ def test_a_mesh_without_seams_stays_as_it_is():
     assert np.array_equal(weld.first, [0, 1, 2, 3])
     assert np.array_equal(weld.vertex, [0, 1, 2, 3])
     assert np.array_equal(weld.triangles, triangles)
-    assert weld.kept.all()
+    assert weld.rows.tolist() == list(range(len(weld.triangles)))
 
 
 def test_the_sides_of_a_seam_become_one():
@@ -39,7 +39,7 @@ def test_closed_surfaces_that_touch_stay_apart():
 def test_a_triangle_that_closes_up_is_left_out():
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 0]], np.float32)
     weld = weld_seams(points, np.array([[0, 1, 2], [0, 3, 1]]))
-    assert np.array_equal(weld.kept, [True, False])
+    assert weld.rows.tolist() == [0]
     assert np.array_equal(weld.triangles, [[0, 1, 2]])
 
 
