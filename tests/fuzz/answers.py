@@ -1,5 +1,6 @@
 """What holds of every answer: numbers, near what went in, that claim no more than is so."""
 
+import collections
 from typing import Any
 
 import numpy as np
@@ -33,12 +34,42 @@ def crowded(faces: np.ndarray) -> tuple[int, int]:
     return int((counts[0] > 2).sum()), int((counts[1] > 1).sum())
 
 
+def is_plain(mesh: ridgeform.Mesh) -> bool:
+    """Whether tools compute on the mesh as it is: no face is turned and no seam is joined first."""
+    if mesh.vertices is None or ridgeform.orient(mesh.faces)[1].any():
+        return False
+    return len(ridgeform.weld(mesh.vertices, mesh.faces)[0]) == mesh.n_vertices
+
+
+def _holes(mesh: ridgeform.Mesh) -> None:
+    """Every edge of one face is on one rim; all rims of a manifold mesh are boundary loops."""
+    holes = ridgeform.find_holes(mesh)
+    # They are looked for after faces are oriented and seams joined.
+    if not is_plain(mesh):
+        return
+    faces = mesh.faces
+    faces = faces[(faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])]
+    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]))
+    edges, counts = np.unique(edges, axis=0, return_counts=True)
+    rims: collections.Counter[tuple[int, ...]] = collections.Counter()
+    for hole in holes:
+        # A rim that does not close is a walk from end to end.
+        is_open = "ends at non-manifold edges" in (hole.refusal or "")
+        ends = hole.vertices[1:] if is_open else np.roll(hole.vertices, -1)
+        pairs = np.sort(np.stack([hole.vertices[: len(ends)], ends], 1))
+        rims.update(map(tuple, pairs.tolist()))
+    assert all(rims[tuple(edge)] == 1 for edge in edges[counts == 1].tolist())
+    if crowded(mesh.faces) == (0, 0):
+        # An island that touches the ring around it makes one rim of two loops.
+        assert len(holes) <= len(ridgeform.boundary_loops(mesh))
+        assert len(rims) == (counts == 1).sum()
+
+
 def operators(mesh: ridgeform.Mesh, given: Given, sane: bool) -> None:
     """The operators, and the report."""
     report = mesh.report
-    # Holes are looked for after faces are oriented and seams joined, so they are not always as many.
     assert report.n_boundary_loops == len(ridgeform.boundary_loops(mesh))
-    ridgeform.find_holes(mesh)
+    _holes(mesh)
     finite(ridgeform.cotangent_laplacian(mesh).data, ridgeform.intrinsic_delaunay(mesh).edge_lengths)
     dual = given["dual"]
     finite(ridgeform.hessian(mesh, dual=dual).data)
@@ -75,15 +106,8 @@ def denoise(mesh: ridgeform.Mesh, given: Given, sane: bool) -> None:
         _objective(mesh, given, found)
 
 
-def _is_plain(mesh: ridgeform.Mesh) -> bool:
-    """Whether tools compute on the mesh as it is: no face is turned and no seam is joined first."""
-    if mesh.vertices is None or ridgeform.orient(mesh.faces)[1].any():
-        return False
-    return len(ridgeform.weld(mesh.vertices, mesh.faces)[0]) == mesh.n_vertices
-
-
 def _objective(mesh: ridgeform.Mesh, given: Given, found: ridgeform.Solution) -> None:
-    if not _is_plain(mesh):
+    if not is_plain(mesh):
         return
     if given.get("delaunay") or given.get("sharpness") or given.get("coupling") == "separate":
         return

@@ -1,7 +1,7 @@
 //! Structured fuzzing: every tool on meshes that nobody modeled, and what holds of every answer.
 //!
-//! A call follows from its seed alone. The kept seeds of `fuzz_seeds.txt` come first, then fixed ones, for
-//! `RIDGEFORM_FUZZ_SECONDS` (10) seconds; with the variable set, from a seed that no run had before.
+//! A call follows from its seed alone. The kept seeds of `fuzz_seeds.txt` come first, then fixed ones; with
+//! `RIDGEFORM_FUZZ_SECONDS` set, for so long ones that no run had before. `RIDGEFORM_FUZZ_SEED` repeats one.
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
 #[path = "fuzz_answers/mod.rs"]
@@ -97,9 +97,14 @@ const SUITE: usize = 600;
 
 #[test]
 fn every_answer_is_a_number_near_what_went_in() {
-    let seconds = std::env::var("RIDGEFORM_FUZZ_SECONDS").ok().and_then(|text| text.parse().ok());
+    let given = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
+    if let Some(seed) = given("RIDGEFORM_FUZZ_SEED") {
+        println!("core: seed {seed}: {:?}", call(seed));
+        return;
+    }
+    let seconds = given("RIDGEFORM_FUZZ_SECONDS");
     let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap().as_secs();
-    let first = seconds.map_or(0, |_: u64| since << 20);
+    let first = seconds.map_or(0, |_| since << 20);
     let kept = include_str!("fuzz_seeds.txt").split_whitespace().map(|line| line.parse().unwrap());
     let end = seconds.map(|seconds| Instant::now() + Duration::from_secs(seconds));
     let (mut counts, mut faults) = (BTreeMap::new(), Vec::new());
@@ -112,7 +117,10 @@ fn every_answer_is_a_number_near_what_went_in() {
         }
         match catch_unwind(AssertUnwindSafe(|| call(seed))) {
             Ok(ended) => *counts.entry(ended).or_insert(0_usize) += 1,
-            Err(_) => faults.push(seed),
+            Err(_) => {
+                eprintln!("seed {seed}");
+                faults.push(seed);
+            }
         }
     }
     println!("core: {} calls, {} faults: {counts:?}", counts.values().sum::<usize>(), faults.len());
