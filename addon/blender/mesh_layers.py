@@ -30,6 +30,8 @@ MIXED = {"FLOAT", "FLOAT2", "FLOAT_VECTOR", "FLOAT_COLOR", "BYTE_COLOR"}
 _TOPOLOGY = {"position", "custom_normal", ".edge_verts", ".corner_vert", ".corner_edge"}
 SEAMS = {".uv_seam", "uv_seam"}
 """The edge attribute of UV seams, in older and newer versions of Blender."""
+MARKS = SEAMS | {"sharp_edge", "crease_edge", "bevel_weight_edge", "freestyle_edge"}
+"""The attributes of edges that are marks: of those that stay, an edge has just what it had."""
 _HIDDEN = SEAMS | {".sculpt_face_set", ".sculpt_mask"}
 ON_MARK = 0.15
 """A new edge takes a mark if ends and middle lie this close to marked edges, in parts of its length."""
@@ -95,6 +97,18 @@ class Triangulation:
     coordinates: np.ndarray
 
 
+@dataclass
+class Anchors:
+    """What is known of new triangles (q, 3) and their edges beside where they lie."""
+
+    triangle: np.ndarray
+    """An old triangle (q,) on the chart that each is on."""
+    ends: np.ndarray
+    """The ends (c, 2) of edges that were edges of the mesh before, or are in the place of several."""
+    edge: np.ndarray
+    """Which of them (c,), -1 for none."""
+
+
 def read_layers(obj: bpy.types.Object) -> Layers:
     """Read all but coordinates and faces from the mesh of an object in Object Mode."""
     return Layers(
@@ -142,11 +156,20 @@ def _write_groups(obj: bpy.types.Object, groups: list[Group], active: int) -> No
 
 
 def carried(
-    source: Layers, old: Triangulation, surface: SurfaceMap, points: np.ndarray, faces: np.ndarray
+    source: Layers,
+    old: Triangulation,
+    surface: SurfaceMap,
+    points: np.ndarray,
+    faces: np.ndarray,
+    *,
+    anchors: Anchors,
 ) -> Layers:
-    """The layers of new points (p, 3) and triangles (q, 3), each value from the nearest old place."""
+    """The layers of new points (p, 3) and triangles (q, 3), each value from the nearest old place.
+
+    For faces and corners that is on the chart of the face, and marks are those of the anchors.
+    """
     middle = points[faces].mean(axis=1)
-    face_triangle, _ = surface.nearest(middle)
+    face_triangle, _ = surface.nearest_on_chart_of(anchors.triangle, middle)
     point_triangle, point_weights = surface.nearest(points)
     corner_triangle, corner_weights = surface.nearest_on_chart_of(
         np.repeat(face_triangle, 3), points[faces.ravel()]
@@ -160,6 +183,8 @@ def carried(
             values = _mixed(layer, old.triangles[point_triangle], point_weights)
         elif layer.domain == "CORNER":
             values = _mixed(layer, old.corners[corner_triangle], corner_weights)
+        elif layer.name in MARKS:
+            values = _anchored(layer, anchors, ends)
         else:
             values = _marks(layer, old, points, ends)
         attributes.append(Layer(layer.name, layer.data_type, layer.domain, values))
@@ -230,6 +255,17 @@ def _mixed_group(group: np.ndarray, elements: np.ndarray, weights: np.ndarray) -
     mixed = (np.nan_to_num(values) * weights).sum(axis=1)
     member = ~np.isnan(values[np.arange(len(elements)), weights.argmax(axis=1)])
     return np.where(member, mixed, np.nan)
+
+
+def _anchored(layer: Layer, anchors: Anchors, ends: np.ndarray) -> np.ndarray:
+    """The values of marks on edges `ends` (k, 2), which are sorted."""
+    values = np.zeros((len(ends), layer.values.shape[1]), layer.values.dtype)
+    known = anchors.edge >= 0
+    n = int(ends.max(initial=0)) + 1
+    keys = np.sort(anchors.ends[known], axis=1).astype(np.int64) @ [n, 1]
+    rows = np.searchsorted(ends.astype(np.int64) @ [n, 1], keys)
+    values[rows] = layer.values[anchors.edge[known]]
+    return values
 
 
 def _marks(layer: Layer, old: Triangulation, points: np.ndarray, ends: np.ndarray) -> np.ndarray:

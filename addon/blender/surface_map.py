@@ -5,35 +5,6 @@ import numpy as np
 from mathutils.bvhtree import BVHTree
 
 
-def charts(corners: np.ndarray, triangles: np.ndarray, uv_layers: list[np.ndarray]) -> np.ndarray:
-    """The UV chart (m,) of each triangle: connected without crossing a seam of any UV map.
-
-    `corners` (m, 3) are the corners of the mesh that the triangles use, `uv_layers` arrays (c, 2). Without
-    UV maps all is one chart.
-    """
-    if not uv_layers:
-        return np.zeros(len(triangles), np.int64)
-    rows = np.concatenate(
-        [triangles.reshape(-1, 1), *(layer[corners.ravel()] for layer in uv_layers)], axis=1
-    )
-    _, node = np.unique(rows, axis=0, return_inverse=True)
-    node = node.reshape(-1, 3)
-    label = np.arange(int(node.max()) + 1)
-    while True:
-        least = label[node].min(axis=1)
-        lowered = label.copy()
-        for corner in range(3):
-            np.minimum.at(lowered, node[:, corner], least)
-            # A label is itself a node: hooking the old root makes whole trees merge at once.
-            np.minimum.at(lowered, label[node[:, corner]], least)
-        lowered = lowered[lowered]
-        if np.array_equal(lowered, label):
-            break
-        label = lowered
-    _, chart = np.unique(label[node[:, 0]], return_inverse=True)
-    return chart
-
-
 class SurfaceMap:
     """Finds the nearest point of a triangulated surface, on the whole of it or on one chart."""
 

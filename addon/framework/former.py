@@ -2,7 +2,7 @@
 """Settings that scenes and presets of versions before have, and others have taken the place of.
 
 Panels keep such a property, hidden: a preset that sets it sets what took its place, and so does a scene that
-has it when it is opened.
+has it when it is opened. Operators keep it as well, for scripts that name it.
 """
 
 from collections.abc import Sequence
@@ -22,6 +22,21 @@ def properties_of(settings: type[Settings]) -> dict[str, object]:
         name: bpy.props.BoolProperty(name=name, options={"HIDDEN"}, update=_taker(name))
         for name in settings.former
     }
+
+
+def given_properties_of(settings: type[Settings]) -> dict[str, object]:
+    """The annotations of the hidden properties for an operator."""
+    return {
+        name: bpy.props.BoolProperty(name=name, options={"HIDDEN", "SKIP_SAVE"}) for name in settings.former
+    }
+
+
+def take_given(operator: bpy.types.Operator, settings: type[Settings]) -> None:
+    """Set what took the place of the properties that a call of an operator has named."""
+    for name in settings.former:
+        if operator.properties.is_property_set(name):
+            _take(operator.properties, settings, name, given=True)
+            operator.properties.property_unset(name)
 
 
 def _taker(name: str) -> object:

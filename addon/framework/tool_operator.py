@@ -8,7 +8,7 @@ from bpy.props import BoolProperty
 
 from ..blender import selection
 from ..blender.refusals import RefusedError
-from . import rows
+from . import former, rows
 from .modal import ModalRun
 from .run import Run
 from .settings import properties_of, setting_names, values_of
@@ -67,6 +67,7 @@ class ToolOperator(ModalRun):
                 setattr(self, name, getattr(panel, name))
             # From now on these are the operator's own, for the redo panel to change.
             self.from_panel = False
+        former.take_given(self, self.tool.settings)
         chosen = selection.usable(selection.mesh_objects(context), self.tool.run.needs)
         try:
             # A plain object: a job reads it in a thread of its own, where Blender's must not be touched.
@@ -84,7 +85,7 @@ def operator_class(tool: Tool) -> type:
         "bl_description": tool.description,
         "bl_options": {"REGISTER", "UNDO", "PRESET"},
         "tool": tool,
-        "__annotations__": properties_of(tool.settings),
+        "__annotations__": former.given_properties_of(tool.settings) | properties_of(tool.settings),
         "__module__": __name__,
         "__doc__": tool.description,
     }

@@ -73,7 +73,9 @@ def finished(
     if source.refusal is not None:
         made.notes.append(source.refusal)
     elif source.reducible is not None:
-        reduced = reduction.reduce(source.reducible, made.coordinates, settings.reduce_ratio, check)
+        reduced = reduction.reduce(
+            source.reducible, made.coordinates, settings.reduce_ratio, ~source.free, check
+        )
         made.notes.append(reduced if isinstance(reduced, str) else reduced.note)
         made.reduced = None if isinstance(reduced, str) else reduced
     return made

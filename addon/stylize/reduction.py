@@ -10,11 +10,15 @@ import numpy as np
 
 from ..blender import mesh_io, mesh_layers
 from ..blender.mesh_state import ChangedError
-from ..blender.surface_map import SurfaceMap, charts
+from ..blender.surface_map import SurfaceMap
 from ..blender.welding import weld_seams
+from .kept_edges import kept_edges, regions_of
+from .simplify import Simplified, simplify
 
 FEWEST = 4
 """The triangles of a tetrahedron, the least that enclose anything."""
+MORE = 1.1
+"""So many times as many triangles as were asked for are worth a word."""
 
 
 @dataclass
@@ -63,16 +67,19 @@ def read(obj: bpy.types.Object) -> Reducible:
 
 
 def reduce(
-    source: Reducible, coordinates: np.ndarray, ratio: float, check: Callable[[], None] = lambda: None
+    source: Reducible,
+    coordinates: np.ndarray,
+    ratio: float,
+    held: np.ndarray,
+    check: Callable[[], None] = lambda: None,
 ) -> Reduced | str:
     """Simplify a mesh that has moved to coordinates (n, 3) to `ratio` of its triangles; else why not.
 
-    UVs, colors and other corner attributes, materials, vertex groups and point attributes are taken from
-    the nearest point of the surface, edge marks from the nearest marked edge. No Blender data is touched;
+    Vertices `held` (n,) bool stay, and so do borders, marks, and the borders of materials and UV islands,
+    which only lose vertices. UVs, colors and other corner attributes, materials, vertex groups and point
+    attributes are taken from the nearest point of the surface between them. No Blender data is touched;
     `check` is called now and then, and may raise to stop.
     """
-    import fast_simplification  # noqa: PLC0415
-
     triangles = source.old.triangles
     coordinates = coordinates.astype(np.float64)
     # Split seams are joined: otherwise their two sides would be simplified apart, and gape.
@@ -80,19 +87,41 @@ def reduce(
     wanted = max(FEWEST, round(ratio * len(triangles)))
     if wanted >= len(weld.triangles):
         return f"its {len(triangles)} triangles were not reduced, because there are few enough"
-    points, faces = fast_simplification.simplify(coordinates[weld.first], weld.triangles, target_count=wanted)
-    points, faces = _sound(points, faces)
+    old = replace(source.old, coordinates=coordinates)
+    kept = kept_edges(old, source.layers, weld)
+    check()
+    share = wanted / len(weld.triangles)
+    made = simplify(
+        coordinates[weld.first], weld.triangles, kept, held=~weld.all_of(~held), ratio=share, check=check
+    )
+    points, faces, number = _sound(made)
     if len(faces) == 0:
         return "its triangles were not reduced, because nothing would be left"
+    if len(faces) >= len(weld.triangles):
+        return (
+            f"its {len(triangles)} triangles were not reduced, because all of their vertices must stay "
+            "(borders, marks, mask)"
+        )
     check()
-    old = replace(source.old, coordinates=coordinates)
-    chart = charts(old.corners, triangles, source.layers.uv_layers())
-    check()
+    # Triangles that closed up are on no chart that is asked for.
+    chart = np.full(len(triangles), len(weld.triangles))
+    chart[weld.rows] = kept.region
     surface = SurfaceMap(coordinates, triangles, chart)
     check()
-    layers = mesh_layers.carried(source.layers, old, surface, points, faces)
-    note = "; ".join([f"reduced from {len(triangles)} to {len(faces)} triangles", *source.losses])
-    return Reduced(points, faces, layers, note)
+    ends = number[made.ends]
+    region = regions_of(faces, ends, made.edge, made.forward, kept)
+    unknown = np.flatnonzero(region < 0)
+    if len(unknown):
+        region[unknown] = chart[surface.nearest(points[faces[unknown]].mean(axis=1))[0]]
+    first = np.empty(len(weld.triangles) + 1, np.int64)
+    first[chart] = np.arange(len(triangles))
+    anchors = mesh_layers.Anchors(first[region], ends, kept.of_mesh[made.edge])
+    check()
+    layers = mesh_layers.carried(source.layers, old, surface, points, faces, anchors=anchors)
+    said = [f"reduced from {len(triangles)} to {len(faces)} triangles"]
+    if len(faces) > MORE * wanted:
+        said.append(f"{wanted} were asked for, but borders, marks, and masks keep their vertices")
+    return Reduced(points, faces, layers, "; ".join([*said, *source.losses]))
 
 
 def check(obj: bpy.types.Object, source: Reducible) -> None:
@@ -118,9 +147,12 @@ def _losses(mesh: bpy.types.Mesh, triangles: np.ndarray) -> list[str]:
     return [sentence for applies, sentence in facts if applies]
 
 
-def _sound(points: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Drop faces that name a vertex twice or that exist already, and vertices without a face."""
-    faces = np.asarray(faces, np.int64)
+def _sound(made: Simplified) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Without faces that name a vertex twice or exist already, and vertices without a face.
+
+    Points (p, 3), triangles (q, 3), and the number of each point before among these, -1 for none.
+    """
+    faces = np.asarray(made.faces, np.int64)
     ordered = np.sort(faces, axis=1)
     proper = (ordered[:, 0] != ordered[:, 1]) & (ordered[:, 1] != ordered[:, 2])
     _, first = np.unique(ordered, axis=0, return_index=True)
@@ -128,4 +160,6 @@ def _sound(points: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarra
     once[first] = True
     faces = faces[proper & once]
     used, renumbered = np.unique(faces, return_inverse=True)
-    return np.asarray(points)[used], renumbered.reshape(-1, 3).astype(np.int32)
+    number = np.full(len(made.points), -1)
+    number[used] = np.arange(len(used))
+    return made.points[used], renumbered.reshape(-1, 3).astype(np.int32), number

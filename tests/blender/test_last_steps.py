@@ -210,6 +210,15 @@ def test_reduce_carries_everything_over():
     assert "quads and n-gons became triangles" in " ".join(notes())
 
 
+def test_scripts_may_still_say_reduce():
+    obj = kit.bumpy_box(cuts=8)
+    n_triangles = len(mesh_io.triangles(obj.data))
+    bpy.ops.ridgeform.stylize(steps=1, reduce=True, reduce_ratio=0.5)
+    assert len(obj.data.polygons) == n_triangles // 2
+    bpy.ops.ridgeform.stylize(steps=1, reduce=False)
+    assert len(obj.data.polygons) == n_triangles // 2
+
+
 def test_reduce_keeps_uv_charts_apart():
     obj = kit.bumpy_box(cuts=12)
     mesh = obj.data
