@@ -39,8 +39,8 @@ pub(super) const RESAMPLE_EVERY: usize = 4;
 pub(super) const RESAMPLE_ROUNDS: usize = 2;
 
 /// Edges of the patch bent by more than this part of the ridges around the hole are ridges; where those
-/// are unknown, by more than 0.6 radians.
-pub(super) const RIDGE: f64 = 0.6;
+/// are unknown, as if they were bent by 1 radian.
+pub(super) const RIDGE_SHARE: f64 = 0.6;
 
 /// Faces that a patch has at most, about, while its ridges form: where it would have more, its edges grow
 /// with their distance from the rim, and become as short as they may be at the end.

@@ -10,7 +10,7 @@ use super::guard::move_guarded;
 use super::meeting::{has_arrived, meeting_point, order};
 use super::parts::Parts;
 use super::region::Region;
-use super::resample::{resample, typical_edge, Kept};
+use super::resample::{resample, typical_edge, Kept, Target};
 use super::untangle::untangle;
 use crate::mesh::vector::{between, centroid, distance, Point};
 use crate::progress::Progress;
@@ -37,6 +37,7 @@ pub(super) fn extend(
 ) -> Result<Extended> {
     let edge = typical_edge(&region.mesh);
     let Some(parts) = Parts::around(region, ridge, edge) else { return Ok(Extended::NotMet) };
+    let target = Target { edge_length, max_faces: COARSE_FACES, rounds: RESAMPLE_ROUNDS };
     let mut labels = Vec::new();
     for round in 0..EXTEND_ROUNDS {
         progress.check()?;
@@ -44,7 +45,7 @@ pub(super) fn extend(
             let borders = borders(region, &parts, &labels);
             let kept =
                 Kept { borders: &borders, merges: &merges(region, &parts, &labels, edge), ridge: std::f64::consts::PI };
-            resample(region, edge_length, &kept, COARSE_FACES, RESAMPLE_ROUNDS, progress)?;
+            resample(region, &kept, &target, progress)?;
         }
         labels = assign(region, &parts, edge);
         for _ in 0..CUTS {

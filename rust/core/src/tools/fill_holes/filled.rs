@@ -30,6 +30,30 @@ impl HoleStatus {
     }
 }
 
+/// How one patch ended.
+pub(super) struct Restored {
+    pub shape: PatchShape,
+    pub sharpness: f64,
+    pub status: HoleStatus,
+    pub energy: [f64; 2],
+    pub gap: f64,
+    pub iterations: usize,
+}
+
+impl Restored {
+    /// The end of a patch that stays smooth.
+    pub(super) fn smooth() -> Self {
+        Self {
+            shape: PatchShape::Smooth,
+            sharpness: 0.0,
+            status: HoleStatus::Converged,
+            energy: [0.0; 2],
+            gap: 0.0,
+            iterations: 0,
+        }
+    }
+}
+
 /// One hole and how it was filled.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilledHole {
@@ -49,6 +73,18 @@ pub struct FilledHole {
     pub iterations: usize,
 }
 
+impl FilledHole {
+    /// What became of the hole within `boundary`.
+    pub(super) fn of(boundary: Vec<u32>, outcome: Result<Restored, Refusal>) -> Self {
+        let (shape, outcome) = match outcome {
+            Ok(restored) => (restored.shape, restored),
+            Err(reason) => (PatchShape::Auto, Restored { status: HoleStatus::Refused(reason), ..Restored::smooth() }),
+        };
+        let Restored { sharpness, status, energy, gap, iterations, .. } = outcome;
+        Self { boundary, status, shape, sharpness, energy, gap, iterations }
+    }
+}
+
 /// The patches of a mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Filled {
@@ -64,4 +100,28 @@ pub struct Filled {
     pub status: HoleStatus,
     /// The edges of sharp and flat patches that are bent by more than 30 degrees, smaller vertex first, sorted.
     pub ridges: Vec<[u32; 2]>,
+}
+
+impl Filled {
+    /// No patches yet.
+    pub(super) fn none() -> Self {
+        Self {
+            vertices: Vec::new(),
+            faces: Vec::new(),
+            patch: Vec::new(),
+            holes: Vec::new(),
+            status: HoleStatus::Converged,
+            ridges: Vec::new(),
+        }
+    }
+
+    /// Once all holes are there: how they ended together, and each ridge once.
+    pub(super) fn sum_up(&mut self) {
+        let ended = |status| self.holes.iter().any(|hole| hole.status == status);
+        if let Some(status) = [HoleStatus::Stopped, HoleStatus::Finished].into_iter().find(|&status| ended(status)) {
+            self.status = status;
+        }
+        self.ridges.sort_unstable();
+        self.ridges.dedup();
+    }
 }

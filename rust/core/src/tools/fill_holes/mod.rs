@@ -1,18 +1,24 @@
 //! Hole filling that brings ridges back (Rowe et al. 2024, section 7.4.2, and beyond it).
 //!
-//! Each hole is a problem of its own ([`region`]): the patch and a few rings around it. The patch starts as the minimizer of a
-//! quadratic energy ([`start`]). Where the surface around is smooth ([`decide`]) that is the result. Where it has ridges,
-//! cycles follow: the L1 flow flattens ([`flow`]), edges flip along the ridges ([`flips`]). Then the smooth parts around the
-//! hole ([`parts`]), each a plane or gently bent ([`model`]), are given the faces of the patch ([`assign`]) and go on until they
-//! meet ([`extend`]). Where they do not say how, the cycles go on: vertices snap onto the planes around them and their
-//! intersections ([`snap`]), the patch is remeshed with its ridges kept ([`resample`]). In the end bent parts become smooth
-//! ([`fair`]) and the ridges go on as those around ([`ridge_curves`]). No move folds the surface ([`guard`]). Planar rims that the
-//! surface meets steeply all round are closed flat without any of this; a patch that came out folded gives way to one that did not
-//! ([`sound`]). All of it is done on an oriented mesh without seams, and given back for the mesh as it was ([`give_back`]).
+//! Each hole is a problem of its own ([`region`]): the patch and a few rings around it. The passes, in their order:
+//!
+//! 1. Which loops ([`choice`]), on an oriented mesh without seams; what comes out is given back for the mesh as it was ([`give_back`]).
+//! 2. Planar rims that the surface meets steeply all round are closed flat; every other patch is [`restore`]d, and one that came out
+//!    folded gives way to one that did not ([`sound`]).
+//! 3. It starts as the minimizer of a quadratic energy ([`start`]). Where the surface around is smooth ([`decide`]) that is all.
+//! 4. Where it has ridges, [`cycles`] follow: the L1 flow flattens ([`flow`]), edges flip along the ridges ([`flips`]).
+//! 5. Then the smooth parts around the hole ([`parts`]), each a plane or gently bent ([`model`]), are given the faces of the patch
+//!    ([`assign`]) and go on until they meet ([`extend`], [`meeting`]), with folds opened ([`untangle`]).
+//! 6. Where they do not say how, the cycles go on: vertices snap onto the planes around them and their intersections ([`snap`]),
+//!    the patch is remeshed with its ridges kept ([`resample`]).
+//! 7. In the end bent parts become smooth ([`fair`]) and the ridges go on as those around ([`ridge_curves`]).
+//!
+//! No move folds the surface ([`guard`]).
 
 mod assign;
 mod choice;
 mod constants;
+mod cycles;
 mod decide;
 mod extend;
 mod fair;
@@ -28,6 +34,7 @@ mod options;
 mod parts;
 mod region;
 mod resample;
+mod restoration;
 mod restore;
 mod ridge_curves;
 mod snap;
@@ -52,9 +59,9 @@ use crate::progress::{Progress, Report};
 use crate::remesh::budget;
 use crate::Result;
 use constants::{MARKED_ANGLE, REGION_RINGS};
+use filled::Restored;
 use neighborhoods::Neighborhoods;
 use region::Region;
-use restore::Restored;
 use sound::restored_in_order;
 
 /// Fills holes so that the ridges around them go on.
@@ -125,14 +132,7 @@ fn fill(working: &Working<'_>, options: &FillHolesOptions, progress: &Progress) 
     demand(mesh, loops.iter().map(Vec::len).max().unwrap_or(0)).admit(options.solve.memory_limit)?;
     let at_loops = faces_at(mesh, &loops)?;
     let patches = choice::triangulate(mesh, &mut chosen, &at_loops, &geometry, progress)?;
-    let mut filled = Filled {
-        vertices: Vec::new(),
-        faces: Vec::new(),
-        patch: Vec::new(),
-        holes: Vec::with_capacity(chosen.len()),
-        status: HoleStatus::Converged,
-        ridges: Vec::new(),
-    };
+    let mut filled = Filled::none();
     let near = Neighborhoods::new(mesh.connectivity(), &at_loops);
     let shared = choice::on_several(&chosen);
     let filling = Filling { working, near, shared, options, progress };
@@ -151,27 +151,9 @@ fn fill(working: &Working<'_>, options: &FillHolesOptions, progress: &Progress) 
         };
         done += share;
         from += patch.vertices.len() as u32;
-        filled.holes.push(match outcome {
-            Ok(Restored { shape, sharpness, status, energy, gap, iterations }) => {
-                FilledHole { boundary, status, shape, sharpness, energy, gap, iterations }
-            }
-            Err(reason) => FilledHole {
-                boundary,
-                status: HoleStatus::Refused(reason),
-                shape: PatchShape::Auto,
-                sharpness: 0.0,
-                energy: [0.0; 2],
-                gap: 0.0,
-                iterations: 0,
-            },
-        });
+        filled.holes.push(FilledHole::of(boundary, outcome));
     }
-    let ended = |status| filled.holes.iter().any(|hole| hole.status == status);
-    if let Some(status) = [HoleStatus::Stopped, HoleStatus::Finished].into_iter().find(|&status| ended(status)) {
-        filled.status = status;
-    }
-    filled.ridges.sort_unstable();
-    filled.ridges.dedup();
+    filled.sum_up();
     report(progress, 1.0, "filling", 0, None);
     Ok(filled)
 }

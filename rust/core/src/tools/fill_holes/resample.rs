@@ -31,17 +31,20 @@ impl Kept<'_> {
     }
 }
 
-/// Remeshes the patch [Botsch and Kobbelt 2004] in `rounds` rounds: where vertices have met on a ridge edges collapse, where the
-/// ridge has stretched the patch they split. Where the patch would have more than about `max_faces` faces, edges grow with their
-/// distance from the rim.
-pub(super) fn resample(
-    region: &mut Region,
-    edge_length: Option<f64>,
-    kept: &Kept<'_>,
-    max_faces: usize,
-    rounds: usize,
-    progress: &Progress,
-) -> Result<()> {
+/// What a remeshing is to reach.
+pub(super) struct Target {
+    /// The edge length; that of the patch where `None`.
+    pub edge_length: Option<f64>,
+    /// About how many faces the patch may have: where it would have more, edges grow with their distance from the rim.
+    pub max_faces: usize,
+    /// Rounds of all passes.
+    pub rounds: usize,
+}
+
+/// Remeshes the patch [Botsch and Kobbelt 2004]: where vertices have met on a ridge edges collapse, where the ridge has stretched
+/// the patch they split.
+pub(super) fn resample(region: &mut Region, kept: &Kept<'_>, target: &Target, progress: &Progress) -> Result<()> {
+    let &Target { edge_length, max_faces, rounds } = target;
     let (points, faces, rim) = region.patch();
     let n = rim.len();
     let mut mesh = EditableMesh::new(points, faces)?;
@@ -136,7 +139,8 @@ mod tests {
         let n = mesh.connectivity().n_vertices() as u32;
         let mut region = Region::new(&mesh, &near, &patch, n, 2, &HashSet::new()).unwrap();
         let mut faces_after = |max_faces| {
-            resample(&mut region, None, &Kept::ridges(1.0), max_faces, 4, &progress).unwrap();
+            let target = Target { edge_length: None, max_faces, rounds: 4 };
+            resample(&mut region, &Kept::ridges(1.0), &target, &progress).unwrap();
             assert!(region.patch_faces().all(|(f, _)| norm(region.mesh.area_vector(f)) > 0.0));
             region.patch_faces().count()
         };

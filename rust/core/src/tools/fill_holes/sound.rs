@@ -1,8 +1,10 @@
 //! No patch is left folded, or facing inwards: where one came out so, the next simpler one takes its place.
 
 use super::constants::INWARDS;
+use super::filled::Restored;
 use super::region::Region;
-use super::restore::{restore, Restored, Watch};
+use super::restoration::Watch;
+use super::restore::restore;
 use super::{FillHolesOptions, PatchShape};
 use crate::hole_filling::Patch;
 use crate::mesh::vector::{dot, norm, Point};

@@ -8,8 +8,8 @@ use crate::mesh::{vector, Connectivity};
 /// Faces that meet at less than this angle lie in one plane to the eye (radians; 2 degrees).
 const FLAT: f64 = 2.0 / 180.0 * std::f64::consts::PI;
 
-/// Edges with more than this angle are ridges to the eye, whatever the shading (radians; 20 degrees).
-const RIDGE: f64 = 20.0 / 180.0 * std::f64::consts::PI;
+/// Edges with less than this angle are soft to the eye, whatever the shading (radians; 20 degrees).
+const SOFT: f64 = 20.0 / 180.0 * std::f64::consts::PI;
 
 /// The least part of the area that a facet has which one would count: a sixtieth of the width of a square picture, squared.
 const SEEN: f64 = 3e-4;
@@ -49,7 +49,7 @@ impl Flatness {
             let [a, b] = [connectivity.tail(h), connectivity.head(h)].map(|v| points[v as usize]);
             let bent = vector::distance(a, b) * angle;
             bend += bent;
-            if angle < RIDGE {
+            if angle < SOFT {
                 soft += bent;
             }
             if angle < FLAT {

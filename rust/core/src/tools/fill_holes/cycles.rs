@@ -1,0 +1,161 @@
+//! The cycles that bring ridges back: flow, flips, snapping, remeshing, until the patch rests or the parts around it meet in it.
+
+use super::constants::{
+    ALIKE, COARSE_FACES, EXTEND_AFTER, FAIR_ROUNDS, FAIR_STEPS, FLIP_SWEEPS, FLOW_STEPS, MOST_BEND, RESAMPLE_EVERY,
+    RESAMPLE_ROUNDS, RIDGE_SHARE, SNAPS, SNAP_FROM, STILL_CYCLE,
+};
+use super::extend::{extend, Extended};
+use super::fair::fair;
+use super::filled::Restored;
+use super::flips::flip_along_ridges;
+use super::flow::flow;
+use super::region::Region;
+use super::resample::typical_edge;
+use super::restoration::Restoration;
+use super::snap::{snap, Snapping};
+use super::surface::total_bend;
+use super::{HoleStatus, PatchShape, Sharpness};
+use crate::remesh::guard::worst_bend;
+use crate::shape_guard::FOLDED;
+use crate::Result;
+
+/// The last region without folds, or with no worse ones than the first had.
+struct Unfolded {
+    region: Region,
+    worst: f64,
+}
+
+impl Unfolded {
+    fn new(region: &Region) -> Self {
+        Self { region: region.clone(), worst: worst_bend(&region.mesh).min(FOLDED) }
+    }
+
+    fn allows(&self, region: &Region) -> bool {
+        worst_bend(&region.mesh) >= self.worst
+    }
+
+    fn keep(&mut self, region: &Region) {
+        if self.allows(region) {
+            self.region.clone_from(region);
+        }
+    }
+}
+
+impl Restoration<'_, '_> {
+    /// The cycles that bring the ridges around the hole back.
+    pub(super) fn form_ridges(&mut self, region: &mut Region) -> Result<()> {
+        let (smooth, mut last) = (region.clone(), Unfolded::new(region));
+        let cycles = self.options.iterations.div_ceil(FLOW_STEPS);
+        let is_sharp = self.restored.sharpness > 0.0;
+        self.restored.status = HoleStatus::Finished;
+        for cycle in 1..=cycles {
+            self.progress.check()?;
+            if self.progress.is_finishing() {
+                self.restored.status = HoleStatus::Stopped;
+                return Ok(());
+            }
+            let flowed = self.flow(region, cycle)?;
+            let moved = if is_sharp { flowed.max(align(region, cycle)) } else { flowed };
+            self.report(region, 0.05 + 0.9 * cycle as f64 / cycles as f64);
+            last.keep(region);
+            if cycle > SNAP_FROM && moved < STILL_CYCLE * typical_edge(&region.mesh) {
+                self.restored.status = HoleStatus::Converged;
+                break;
+            }
+            if is_sharp && cycle == EXTEND_AFTER {
+                if let Some(extended) = self.extended(region)?.filter(|extended| last.allows(extended)) {
+                    *region = extended;
+                    self.report(region, 1.0);
+                    self.restored.status = HoleStatus::Converged;
+                    return Ok(());
+                }
+            }
+            if is_sharp && cycle % RESAMPLE_EVERY == 0 {
+                self.resample(region, self.ridge(), COARSE_FACES, RESAMPLE_ROUNDS)?;
+                flip_along_ridges(region, FLIP_SWEEPS);
+            }
+        }
+        if is_sharp && cycles > 0 {
+            self.smooth_between(region, self.ridge())?;
+            if !last.allows(region) {
+                region.clone_from(&last.region);
+                self.smooth_between(region, self.ridge())?;
+            }
+            self.report(region, 1.0);
+        }
+        if !last.allows(region) {
+            *region = last.region;
+        }
+        let is_free = self.options.sharpness == Sharpness::Auto && self.options.shape != PatchShape::Sharp;
+        if is_free && is_sharp && cycles > 0 && total_bend(region) > MOST_BEND * total_bend(&smooth) {
+            *region = smooth;
+            self.restored = Restored::smooth();
+        }
+        Ok(())
+    }
+
+    /// The steps of the flow of one cycle; returns the longest move.
+    fn flow(&mut self, region: &mut Region, cycle: usize) -> Result<f64> {
+        let steps = FLOW_STEPS.min(self.options.iterations - self.restored.iterations);
+        let flowed = flow(region, steps, self.restored.sharpness, self.options, self.progress)?;
+        if cycle == 1 {
+            self.restored.energy[0] = flowed.energy[0];
+        }
+        self.restored.energy[1] = flowed.energy[1];
+        self.restored.gap = flowed.gap;
+        self.restored.iterations += steps;
+        Ok(flowed.moved)
+    }
+
+    /// The patch in which the parts between the ridges around it have gone on until they meet. Where there are folds besides
+    /// ridges, the parts between ridges alone are tried too.
+    fn extended(&self, region: &Region) -> Result<Option<Region>> {
+        let Some(ridges) = self.ridges else { return Ok(None) };
+        for bend in [ridges.least, ridges.most] {
+            let mut extended = region.clone();
+            match extend(&mut extended, RIDGE_SHARE * bend, self.options.edge_length, self.progress)? {
+                Extended::NotMet => {}
+                Extended::Planes => return Ok(Some(extended)),
+                Extended::Bent => {
+                    self.smooth_between(&mut extended, RIDGE_SHARE * bend)?;
+                    return Ok(Some(extended));
+                }
+            }
+            if ridges.most < ALIKE * ridges.least {
+                break;
+            }
+        }
+        Ok(None)
+    }
+
+    /// Makes the parts between ridges smooth. Between the rounds the patch is remeshed: thin triangles would hold the next one
+    /// back.
+    fn smooth_between(&self, region: &mut Region, ridge: f64) -> Result<()> {
+        for _ in 0..FAIR_ROUNDS {
+            self.resample(region, ridge, COARSE_FACES, RESAMPLE_ROUNDS)?;
+            for _ in 0..FAIR_STEPS {
+                flip_along_ridges(region, FLIP_SWEEPS);
+                fair(region, ridge, self.progress)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Turns the edges of the patch along its ridges and snaps its vertices onto them; returns the longest move, infinite where an
+/// edge was flipped.
+fn align(region: &mut Region, cycle: usize) -> f64 {
+    let mut flips = flip_along_ridges(region, FLIP_SWEEPS);
+    let mut moved: f64 = 0.0;
+    if cycle >= SNAP_FROM {
+        for _ in 0..SNAPS {
+            moved = moved.max(snap(region, &Snapping::DEFAULT));
+            flips += flip_along_ridges(region, FLIP_SWEEPS);
+        }
+    }
+    if flips > 0 {
+        f64::INFINITY
+    } else {
+        moved
+    }
+}
