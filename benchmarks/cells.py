@@ -40,6 +40,12 @@ def grid(head: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
     return "".join("| " + " | ".join(str(cell) for cell in line) + " |\n" for line in lines)
 
 
+def columns(rows: Iterable[dict[str, object]]) -> str:
+    """A Markdown table of rows whose cells are named by their columns."""
+    rows = list(rows)
+    return grid(rows[0] if rows else (), (row.values() for row in rows))
+
+
 def solved(record: Record | None) -> str:
     """Time, and in brackets iterations, factorizations and the gap where it was missed."""
     if record is None:

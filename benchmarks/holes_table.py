@@ -5,7 +5,7 @@ from __future__ import annotations
 import statistics
 from collections.abc import Iterable
 
-from cells import duration, grid
+from cells import columns, duration, grid
 from driver import Record
 from holes_cases import KINDS
 from holes_run import OURS
@@ -130,31 +130,20 @@ def limits(results: Record) -> list[str]:
 
 
 def _locality(found: list[Record]) -> str:
-    head = [
-        "hole",
-        "edges around it",
-        "vertices",
-        "new faces",
-        "filling",
-        "of the first",
-        "reading",
-        "joining",
-    ]
-    first = {}
-    rows = [
-        [
-            r["hole"],
-            r["loop_vertices"],
-            r["vertices"],
-            r["new_faces"],
-            duration(r["seconds"]),
-            f"{r['seconds'] / first.setdefault(r['hole'], r['seconds']):.2f}",
-            duration(r["reading"]),
-            duration(r["joining"]),
-        ]
+    first: dict[str, float] = {}
+    return columns(
+        {
+            "hole": r["hole"],
+            "edges around it": r["loop_vertices"],
+            "vertices": r["vertices"],
+            "new faces": r["new_faces"],
+            "filling": duration(r["seconds"]),
+            "of the first": f"{r['seconds'] / first.setdefault(r['hole'], r['seconds']):.2f}",
+            "reading": duration(r["reading"]),
+            "joining": duration(r["joining"]),
+        }
         for r in found
-    ]
-    return grid(head, rows)
+    )
 
 
 def _long(found: list[Record]) -> str:
@@ -166,27 +155,13 @@ def _long(found: list[Record]) -> str:
 
 
 def _ridges(found: list[Record]) -> str:
-    head = [
-        "hole",
-        "holes",
-        "ridge, mean",
-        "median",
-        "9 of 10",
-        "worst",
-        "filling, mean",
-        "worst",
-        "worst triangle",
-    ]
+    head = ["hole", "holes", "ridge, mean", "median", "9 of 10", "worst", "filling, mean", "worst"]
+    numbers = [[f"{x:.4f}" for x in [*r["ridge"], *r["filling"]]] for r in found]
     rows = [
-        [
-            r["kind"],
-            r["holes"],
-            *(f"{x:.4f}" for x in [*r["ridge"], *r["filling"]]),
-            f"{r['worst_quality']:.2f}",
-        ]
-        for r in found
+        [r["kind"], r["holes"], *row, f"{r['worst_quality']:.2f}"]
+        for r, row in zip(found, numbers, strict=True)
     ]
-    return grid(head, rows)
+    return grid([*head, "worst triangle"], rows)
 
 
 def _stress(found: Record) -> str:

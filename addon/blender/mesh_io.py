@@ -125,19 +125,18 @@ def _corner_array(mesh: bpy.types.Mesh, name: str, prop: str) -> np.ndarray:
 
 def selected_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
     """Which vertices (n,) bool are selected and visible."""
-    selected = np.empty(len(mesh.vertices), bool)
-    hidden = np.empty(len(mesh.vertices), bool)
-    mesh.vertices.foreach_get("select", selected)
-    mesh.vertices.foreach_get("hide", hidden)
-    return selected & ~hidden
+    return _selected(mesh.vertices)
 
 
 def selected_faces(mesh: bpy.types.Mesh) -> np.ndarray:
     """Which faces (f,) bool are selected and visible."""
-    selected = np.empty(len(mesh.polygons), bool)
-    hidden = np.empty(len(mesh.polygons), bool)
-    mesh.polygons.foreach_get("select", selected)
-    mesh.polygons.foreach_get("hide", hidden)
+    return _selected(mesh.polygons)
+
+
+def _selected(elements: bpy.types.bpy_prop_collection) -> np.ndarray:
+    selected, hidden = np.empty(len(elements), bool), np.empty(len(elements), bool)
+    elements.foreach_get("select", selected)
+    elements.foreach_get("hide", hidden)
     return selected & ~hidden
 
 

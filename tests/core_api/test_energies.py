@@ -3,16 +3,9 @@
 import numpy as np
 import pytest
 import ridgeform
+from fuzz.calls import ENERGIES as KINDS
 from known_shapes import shapes
 
-KINDS = (
-    "l1_hessian",
-    "l2_hessian",
-    "l2_curved_hessian",
-    "l2_laplacian",
-    "l1_hessian_stein2018",
-    "l1_edge_laplacian",
-)
 QUADRATIC = [kind for kind in KINDS if kind.startswith("l2")]
 
 

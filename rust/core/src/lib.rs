@@ -10,6 +10,7 @@ pub mod linear;
 pub mod memory;
 pub mod mesh;
 pub mod operators;
+mod ordered;
 pub mod progress;
 #[doc(hidden)]
 pub mod random;

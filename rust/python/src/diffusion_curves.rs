@@ -288,21 +288,24 @@ pub(crate) fn smooth_curves(py: Python<'_>, mesh: &Mesh, edges: &Bound<'_, PyAny
 }
 
 fn read_labels(object: &Bound<'_, PyAny>, n_faces: usize) -> PyResult<Vec<i32>> {
-    let py = object.py();
-    let labels = arrays::integers("labels", object)?.exactly(py, "labels", n_faces, "face")?;
-    let narrow = |&label: &i64| {
-        i32::try_from(label).map_err(|_| argument(py, "labels", format!("{label} is too large for 32 bits")))
-    };
-    labels.iter().map(narrow).collect()
+    of_faces("labels", object, n_faces, "too large for 32 bits")
 }
 
 fn read_groups(object: &Bound<'_, PyAny>, n_faces: usize) -> PyResult<Vec<u32>> {
+    of_faces("face_groups", object, n_faces, "not from 0 to 2^32 - 1")
+}
+
+/// A number for each face; one that does not fit is named and said to be `what`.
+fn of_faces<T: TryFrom<i64>>(
+    name: &'static str,
+    object: &Bound<'_, PyAny>,
+    n_faces: usize,
+    what: &str,
+) -> PyResult<Vec<T>> {
     let py = object.py();
-    let groups = arrays::integers("face_groups", object)?.exactly(py, "face_groups", n_faces, "face")?;
-    let narrow = |&group: &i64| {
-        u32::try_from(group).map_err(|_| argument(py, "face_groups", format!("{group} is not from 0 to 2^32 - 1")))
-    };
-    groups.iter().map(narrow).collect()
+    let numbers = arrays::integers(name, object)?.exactly(py, name, n_faces, "face")?;
+    let narrow = |&number: &i64| T::try_from(number).map_err(|_| argument(py, name, format!("{number} is {what}")));
+    numbers.iter().map(narrow).collect()
 }
 
 fn read_edges(object: &Bound<'_, PyAny>, n_vertices: usize) -> PyResult<Vec<[u32; 2]>> {

@@ -42,6 +42,21 @@ pub(crate) fn dual(py: Python<'_>, given: &str) -> PyResult<Dual> {
     choice(py, "dual", given, &duals)
 }
 
+const SCALES: [(&str, Scale); 4] = [
+    ("max_edge", Scale::MaxEdge),
+    ("bounding_box", Scale::BoundingBox),
+    ("area", Scale::Area),
+    ("extent", Scale::Extent),
+];
+
+const SOLVERS: [(&str, Solver); 5] = [
+    ("auto", Solver::Auto),
+    ("fast", Solver::Fast),
+    ("clarabel", Solver::Clarabel),
+    ("clarabel-qdldl", Solver::ClarabelQdldl),
+    ("clarabel-faer", Solver::ClarabelFaer),
+];
+
 /// `coupling=`.
 ///
 /// # Errors
@@ -55,13 +70,7 @@ pub(crate) fn coupling(py: Python<'_>, given: &str) -> PyResult<Coupling> {
 /// # Errors
 /// `ArgumentError` for an unknown word.
 pub(crate) fn scale(py: Python<'_>, given: &str) -> PyResult<Scale> {
-    let scales = [
-        ("max_edge", Scale::MaxEdge),
-        ("bounding_box", Scale::BoundingBox),
-        ("area", Scale::Area),
-        ("extent", Scale::Extent),
-    ];
-    choice(py, "scale", given, &scales)
+    choice(py, "scale", given, &SCALES)
 }
 
 /// `solver=`.
@@ -69,14 +78,7 @@ pub(crate) fn scale(py: Python<'_>, given: &str) -> PyResult<Scale> {
 /// # Errors
 /// `ArgumentError` for an unknown word.
 pub(crate) fn solver(py: Python<'_>, given: &str) -> PyResult<Solver> {
-    let solvers = [
-        ("auto", Solver::Auto),
-        ("fast", Solver::Fast),
-        ("clarabel", Solver::Clarabel),
-        ("clarabel-qdldl", Solver::ClarabelQdldl),
-        ("clarabel-faer", Solver::ClarabelFaer),
-    ];
-    choice(py, "solver", given, &solvers)
+    choice(py, "solver", given, &SOLVERS)
 }
 
 /// `solver=`, `tolerance=`, `max_iterations=`, `memory_limit=` and `threads=`.

@@ -157,46 +157,32 @@ fn local_rows(panels: &Panels, list: &[Range<usize>]) -> Vec<u32> {
 
 /// `x ← L⁻¹x` by these panels.
 fn forward<'p, const K: usize>(panels: impl Iterator<Item = Panel<'p>>, x: &mut [[f64; K]], space: &mut [f64]) {
-    Arch::new().dispatch(Forward { panels, x, space });
+    Arch::new().dispatch(Sweep::<_, K, true> { panels, x, space });
 }
 
 /// `x ← L⁻ᵀx` by these panels, the last one first.
 fn backward<'p, const K: usize>(panels: impl Iterator<Item = Panel<'p>>, x: &mut [[f64; K]], space: &mut [f64]) {
-    Arch::new().dispatch(Backward { panels, x, space });
+    Arch::new().dispatch(Sweep::<_, K, false> { panels, x, space });
 }
 
 /// To be compiled for each set of vector instructions.
-struct Forward<'b, I, const K: usize> {
+struct Sweep<'b, I, const K: usize, const FORWARD: bool> {
     panels: I,
     x: &'b mut [[f64; K]],
     space: &'b mut [f64],
 }
 
-impl<'p, I: Iterator<Item = Panel<'p>>, const K: usize> WithSimd for Forward<'_, I, K> {
+impl<'p, I: Iterator<Item = Panel<'p>>, const K: usize, const FORWARD: bool> WithSimd for Sweep<'_, I, K, FORWARD> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         for panel in self.panels {
-            panel.forward(simd, self.x, self.space);
-        }
-    }
-}
-
-/// To be compiled for each set of vector instructions.
-struct Backward<'b, I, const K: usize> {
-    panels: I,
-    x: &'b mut [[f64; K]],
-    space: &'b mut [f64],
-}
-
-impl<'p, I: Iterator<Item = Panel<'p>>, const K: usize> WithSimd for Backward<'_, I, K> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        for panel in self.panels {
-            panel.backward(simd, self.x, self.space);
+            if FORWARD {
+                panel.forward(simd, self.x, self.space);
+            } else {
+                panel.backward(simd, self.x, self.space);
+            }
         }
     }
 }

@@ -4,6 +4,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use crate::mesh::vector::distance;
+use crate::ordered::Ordered;
 use crate::remesh::curves::Curves;
 use crate::remesh::EditableMesh;
 
@@ -178,22 +179,4 @@ impl Sizing {
 /// The neighbors of every vertex.
 fn neighbors(mesh: &EditableMesh) -> Vec<Vec<u32>> {
     (0..mesh.n_vertices() as u32).map(|v| mesh.neighbors(v)).collect()
-}
-
-/// A number in its total order.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Ordered(pub(crate) f64);
-
-impl Eq for Ordered {}
-
-impl PartialOrd for Ordered {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Ordered {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.0.total_cmp(&other.0)
-    }
 }

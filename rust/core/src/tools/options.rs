@@ -66,6 +66,28 @@ pub(super) fn check_range(name: &'static str, value: f64, least: f64, most: f64)
     Err(Error::argument(name, format!("is {value}; it must be between {least} and {most}")))
 }
 
+/// Refuses weights of edges, one row a face, that do not fit a mesh of `m` faces, or are negative or not finite.
+pub(super) fn check_edge_weights(rows: Option<&[[f64; 3]]>, m: usize) -> Result<()> {
+    let Some(rows) = rows else { return Ok(()) };
+    if rows.len() != m {
+        return Err(Error::argument("edge_weights", format!("has {} rows, expected one per face: {m}", rows.len())));
+    }
+    check_weights("edge_weights", Some(&rows.as_flattened().to_vec()), 3 * m, "halfedge")
+}
+
+/// Refuses a choice of faces that does not fit a mesh of `m` faces, or is empty.
+pub(super) fn check_faces(faces: Option<&[bool]>, m: usize) -> Result<()> {
+    match faces {
+        Some(faces) if faces.len() != m => {
+            Err(Error::argument("faces", format!("has {} entries, expected one per face: {m}", faces.len())))
+        }
+        Some(faces) if !faces.contains(&true) => {
+            Err(Error::argument("faces", "names no face; give at least one, or None for all"))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Refuses a weight list of the wrong length or with entries that are negative or not finite.
 pub(super) fn check_weights(name: &'static str, values: Option<&Vec<f64>>, n: usize, of: &str) -> Result<()> {
     let Some(values) = values else { return Ok(()) };

@@ -1,7 +1,7 @@
 //! The chained borders between regions, and what fitted colors make of them.
 
 use super::chains::{sided, CurveEdge};
-use super::fit::Fit;
+use super::fit::CopyColors;
 use super::redraw::{copy_at, ColoredCurves};
 use super::thinning::thin;
 use crate::linear::Columns;
@@ -85,7 +85,7 @@ impl Borders<'_> {
     }
 
     /// A face for each vertex that has the copy which the vertex takes its color from.
-    pub(super) fn sides(&self, fit: &Fit) -> Vec<Option<u32>> {
+    pub(super) fn sides(&self, fit: &CopyColors) -> Vec<Option<u32>> {
         let mut sides = vec![None; fit.owners.len()];
         for (f, face) in (0..).zip(&self.cut.faces) {
             for &copy in face {

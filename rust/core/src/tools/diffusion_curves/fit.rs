@@ -20,7 +20,7 @@ pub(super) struct Task<'a> {
 }
 
 /// Colors of the copies, and which of its copies each vertex takes its color from.
-pub(super) struct Fit {
+pub(super) struct CopyColors {
     pub values: Columns,
     /// The copy whose side a vertex is on; nothing for one that is a blend of its sides and for vertices without faces.
     pub owners: Vec<Option<u32>>,
@@ -33,7 +33,7 @@ impl Task<'_> {
     ///
     /// A vertex on a curve has one color, which belongs to one of its sides or is a blend of them. A first fit leaves such
     /// vertices out and tells, by the nearest color, which it is; the next uses it on its side and nowhere else.
-    pub(super) fn screened(&self, progress: &Progress) -> Result<Fit> {
+    pub(super) fn screened(&self, progress: &Progress) -> Result<CopyColors> {
         let copies = self.copies();
         let mut roots = pieces(self.cut);
         let single = |copy: usize| copies[self.cut.vertices[copy] as usize].len() == 1;
@@ -51,7 +51,7 @@ impl Task<'_> {
             weights = next;
             values = self.solve(&weights, &target, progress)?;
         }
-        Ok(Fit { values, owners, weights })
+        Ok(CopyColors { values, owners, weights })
     }
 
     fn solve(&self, weights: &[f64], target: &Columns, progress: &Progress) -> Result<Columns> {
@@ -68,7 +68,7 @@ impl Task<'_> {
     /// Least squares over the colors of the fixed copies: `min Σ_v m_v (c_v − t_v)²` for the colors `c` that the vertices take
     /// from the harmonic function through them, each channel within the range of the data. The start is (27), and an
     /// early stop keeps of it what the data do not determine.
-    pub(super) fn refined(&self, fit: &mut Fit, harmonic: &mut Harmonic<'_>, progress: &Progress) -> Result<()> {
+    pub(super) fn refined(&self, fit: &mut CopyColors, harmonic: &mut Harmonic<'_>, progress: &Progress) -> Result<()> {
         let reading = Reading::new(self, &fit.owners);
         let mut rebuilt = fit.values.clone();
         harmonic.extend(&mut rebuilt, progress)?;
@@ -91,7 +91,7 @@ impl Task<'_> {
     }
 
     /// The mean of the data of every piece, in the row of its root.
-    pub(super) fn means(&self, fit: &Fit, roots: &mut Partition) -> Columns {
+    pub(super) fn means(&self, fit: &CopyColors, roots: &mut Partition) -> Columns {
         let n = self.cut.n_copies();
         let root: Vec<usize> = (0..n).map(|i| roots.root(i as u32) as usize).collect();
         let mut totals = vec![0.0; n];

@@ -38,7 +38,7 @@ use crate::unit::Unit;
 use crate::{Error, Result};
 use borders::Borders;
 use chains::{border_edges, chain};
-use fit::{pieces, Fit, Task};
+use fit::{pieces, CopyColors, Task};
 use membrane::{Harmonic, Membrane};
 use redraw::Conditions;
 
@@ -181,7 +181,7 @@ fn check_fidelity(fidelity: f64) -> Result<()> {
 }
 
 /// A vertex for every piece of surface without a curve, and the mean color of the piece.
-fn points(task: &Task<'_>, fit: &Fit, on_curves: &[bool]) -> (Vec<u32>, Vec<f64>) {
+fn points(task: &Task<'_>, fit: &CopyColors, on_curves: &[bool]) -> (Vec<u32>, Vec<f64>) {
     let mut roots = pieces(task.cut);
     let means = task.means(fit, &mut roots);
     let mut reached = vec![false; on_curves.len()];

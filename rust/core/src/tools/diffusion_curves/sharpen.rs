@@ -1,12 +1,13 @@
 //! Paint without its soft edges: what a soft brush or a smoothed image leaves between two colors is no color of its own.
 
-use std::cmp::{Ordering, Reverse};
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::constants::MIXING_STEPS;
 use super::patches::Parts;
 use super::sorting::{neighbors, Paint};
 use crate::linear::Columns;
+use crate::ordered::Ordered;
 
 /// The colors, with every blend replaced by the one of the colors that it is a blend of to which it is nearest.
 ///
@@ -20,14 +21,16 @@ pub(super) fn sharpened(paint: &Paint<'_>) -> Columns {
     let around = neighbors(connectivity.faces(), colors.n_rows, |_| true);
     let blended = blends(paint, &around);
     let mut source: Vec<Option<usize>> = (0..colors.n_rows).map(|v| (!blended[v]).then_some(v)).collect();
+    // How far off the color of a vertex is for another one, that one, and it.
+    type Offer = Reverse<(Ordered, usize, usize)>;
     let mut waiting = BinaryHeap::new();
-    let offer = |waiting: &mut BinaryHeap<Reverse<Offer>>, source: &[Option<usize>], from: usize, color: usize| {
+    let offer = |waiting: &mut BinaryHeap<Offer>, source: &[Option<usize>], from: usize, color: usize| {
         for v in around[from].iter().map(|&v| v as usize).filter(|&v| source[v].is_none()) {
-            waiting.push(Reverse(Offer { off: paint.distance(v, color), vertex: v, color }));
+            waiting.push(Reverse((Ordered(paint.distance(v, color)), v, color)));
         }
     };
     (0..colors.n_rows).filter(|&v| !blended[v]).for_each(|v| offer(&mut waiting, &source, v, v));
-    while let Some(Reverse(Offer { vertex, color, .. })) = waiting.pop() {
+    while let Some(Reverse((_, vertex, color))) = waiting.pop() {
         if source[vertex].is_none() {
             source[vertex] = Some(color);
             offer(&mut waiting, &source, vertex, color);
@@ -87,31 +90,3 @@ fn is_mixture(colors: &Columns, v: usize, others: &[u32], tolerance: f64) -> boo
     }
     false
 }
-
-/// The color of a vertex for another one, and how far off it is.
-struct Offer {
-    off: f64,
-    vertex: usize,
-    color: usize,
-}
-
-impl Ord for Offer {
-    fn cmp(&self, other: &Self) -> Ordering {
-        let by_number = (self.vertex, self.color).cmp(&(other.vertex, other.color));
-        self.off.total_cmp(&other.off).then(by_number)
-    }
-}
-
-impl PartialOrd for Offer {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Offer {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Offer {}

@@ -1,6 +1,6 @@
 //! Curves drawn freely over a surface, as paths along its edges.
 
-use std::cmp::Ordering;
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use crate::buckets::Buckets;
@@ -8,6 +8,7 @@ use crate::error::MeshError;
 use crate::memory::Tool;
 use crate::mesh::vector::{add, distance, scale, Point};
 use crate::mesh::{Connectivity, EdgeTable, Mesh};
+use crate::ordered::Ordered;
 use crate::remesh::closest::{closest_on_segment, ClosestPoint};
 use crate::unit::Unit;
 use crate::{Error, Result};
@@ -132,9 +133,9 @@ impl<'a> Search<'a> {
     fn path(&mut self, from: u32, to: u32, line: [Point; 2]) -> Option<Vec<u32>> {
         self.stamp += 1;
         let stamp = self.stamp;
-        let mut heap = BinaryHeap::from([Reached { cost: 0.0, vertex: from }]);
+        let mut heap = BinaryHeap::from([Reverse((Ordered(0.0), from))]);
         self.seen[from as usize] = (stamp, 0.0, from);
-        while let Some(Reached { cost, vertex }) = heap.pop() {
+        while let Some(Reverse((Ordered(cost), vertex))) = heap.pop() {
             if vertex == to {
                 let mut path = vec![to];
                 let mut v = to;
@@ -154,7 +155,7 @@ impl<'a> Search<'a> {
                 let held = &mut self.seen[next as usize];
                 if held.0 != stamp || there < held.1 {
                     *held = (stamp, there, vertex);
-                    heap.push(Reached { cost: there, vertex: next });
+                    heap.push(Reverse((Ordered(there), next)));
                 }
             }
         }
@@ -165,27 +166,6 @@ impl<'a> Search<'a> {
         let middle = scale(add(self.positions[a as usize], self.positions[b as usize]), 0.5);
         let away = distance(middle, closest_on_segment(middle, line[0], line[1])) / self.mean_edge;
         self.length(a, b) * (1.0 + away * away)
-    }
-}
-
-/// A vertex with the cost of its path; a heap takes the cheapest first.
-#[derive(PartialEq)]
-struct Reached {
-    cost: f64,
-    vertex: u32,
-}
-
-impl Eq for Reached {}
-
-impl Ord for Reached {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.cost.total_cmp(&self.cost).then_with(|| other.vertex.cmp(&self.vertex))
-    }
-}
-
-impl PartialOrd for Reached {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
     }
 }
 

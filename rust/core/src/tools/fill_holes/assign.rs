@@ -8,7 +8,7 @@ use super::parts::{Parts, NONE};
 use super::region::Region;
 
 use crate::mesh::vector::{area_vector, centroid, distance, dot, norm};
-use crate::remesh::sizing::Ordered;
+use crate::ordered::Ordered;
 
 /// The part of every face of the patch.
 ///

@@ -5,7 +5,8 @@ use std::collections::BinaryHeap;
 
 use super::constants::MOST_PARTS;
 use super::cut::{cheapest, Cut};
-use super::graph::{Graph, Ordered, NONE};
+use super::graph::{Graph, NONE};
+use crate::ordered::Ordered;
 use crate::progress::{Progress, Report};
 use crate::Result;
 

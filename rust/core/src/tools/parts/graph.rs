@@ -1,12 +1,13 @@
 //! A weighted graph of patches of a surface: faces, or clusters of faces, and what a border between two of
 //! them costs.
 
-use std::cmp::{Ordering, Reverse};
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
 use super::constants::ROUNDING;
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::{add, distance, scale, Point};
+use crate::ordered::Ordered;
 
 /// No node.
 pub(super) const NONE: u32 = u32::MAX;
@@ -182,24 +183,6 @@ impl Graph {
             }
         }
         (distances, nearest)
-    }
-}
-
-/// A number in the order of its value.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Ordered(pub f64);
-
-impl Eq for Ordered {}
-
-impl Ord for Ordered {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.0.total_cmp(&other.0)
-    }
-}
-
-impl PartialOrd for Ordered {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
     }
 }
 

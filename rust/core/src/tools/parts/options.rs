@@ -2,7 +2,7 @@
 
 use super::constants::COST;
 use crate::mesh::Mesh;
-use crate::tools::options::{check_weights, SolveOptions};
+use crate::tools::options::{check_edge_weights, check_faces, check_weights, SolveOptions};
 use crate::{Error, Result};
 
 /// How to find parts.
@@ -42,23 +42,8 @@ impl PartsOptions {
         }
         self.solve().settings()?;
         check_weights("face_weights", self.face_weights.as_ref(), m, "face")?;
-        if let Some(weights) = &self.edge_weights {
-            if weights.len() != m {
-                let problem = format!("has {} rows, expected one per face: {m}", weights.len());
-                return Err(Error::argument("edge_weights", problem));
-            }
-            check_weights("edge_weights", Some(&weights.as_flattened().to_vec()), 3 * m, "halfedge")?;
-        }
-        match &self.faces {
-            Some(faces) if faces.len() != m => {
-                let problem = format!("has {} entries, expected one per face: {m}", faces.len());
-                Err(Error::argument("faces", problem))
-            }
-            Some(faces) if !faces.contains(&true) => {
-                Err(Error::argument("faces", "names no face; give at least one, or None for all"))
-            }
-            _ => Ok(()),
-        }
+        check_edge_weights(self.edge_weights.as_deref(), m)?;
+        check_faces(self.faces.as_deref(), m)
     }
 
     /// Up to which cost cuts are made.

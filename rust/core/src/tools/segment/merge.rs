@@ -1,12 +1,13 @@
 //! Merging segments across their weakest borders.
 
-use std::cmp::Ordering;
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
 use super::constants::MERGE_SHARES;
 use super::crease::Border;
 use super::slopes::Slopes;
 use super::surface::Surface;
+use crate::ordered::Ordered;
 use crate::progress::Progress;
 use crate::Result;
 
@@ -141,27 +142,6 @@ pub(super) fn rename(labels: &mut [u32], merges: &[Merge]) {
     }
 }
 
-#[derive(PartialEq)]
-struct Candidate {
-    strength: f64,
-    labels: [u32; 2],
-}
-
-impl Eq for Candidate {}
-
-impl Ord for Candidate {
-    fn cmp(&self, other: &Self) -> Ordering {
-        // A heap takes the greatest first.
-        other.strength.total_cmp(&self.strength).then_with(|| other.labels.cmp(&self.labels))
-    }
-}
-
-impl PartialOrd for Candidate {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
 /// Removes borders weaker than `threshold`, weakest first; borders that two segments had with a third become one, with their
 /// mean strength by length.
 fn greedy(borders: &[Border], threshold: f64) -> Vec<Merge> {
@@ -170,10 +150,10 @@ fn greedy(borders: &[Border], threshold: f64) -> Vec<Merge> {
     for &Border { labels: [a, b], length, strength } in borders {
         around.entry(a).or_default().insert(b, (length, strength));
         around.entry(b).or_default().insert(a, (length, strength));
-        heap.push(Candidate { strength, labels: [a, b] });
+        heap.push(Reverse((Ordered(strength), [a, b])));
     }
     let mut merges = Vec::new();
-    while let Some(Candidate { strength, labels: [a, b] }) = heap.pop() {
+    while let Some(Reverse((Ordered(strength), [a, b]))) = heap.pop() {
         if strength >= threshold {
             break;
         }
@@ -196,7 +176,7 @@ fn greedy(borders: &[Border], threshold: f64) -> Vec<Merge> {
             let mean = (held.0 * held.1 + length * strength) / total.max(f64::MIN_POSITIVE);
             around.entry(kept).or_default().insert(third, (total, mean));
             around.entry(third).or_default().insert(kept, (total, mean));
-            heap.push(Candidate { strength: mean, labels: [kept.min(third), kept.max(third)] });
+            heap.push(Reverse((Ordered(mean), [kept.min(third), kept.max(third)])));
         }
         merges.push(Merge { kept, gone, strength });
     }

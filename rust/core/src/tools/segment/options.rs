@@ -5,7 +5,7 @@ use super::constants::DEFAULT_SCALE;
 use crate::linear::Columns;
 use crate::mesh::Mesh;
 use crate::solve::MAX_JOINT_COLUMNS;
-use crate::tools::options::{check_range, check_weights};
+use crate::tools::options::{check_edge_weights, check_faces, check_range, check_weights};
 use crate::tools::{Scale, SolveOptions};
 use crate::{Error, Result};
 
@@ -98,26 +98,11 @@ impl SegmentOptions {
         }
         check_range("cut_threshold", self.cut_threshold, 0.0, 1.0)?;
         check_weights("face_weights", self.face_weights.as_ref(), m, "face")?;
-        if let Some(weights) = &self.edge_weights {
-            if weights.len() != m {
-                let problem = format!("has {} rows, expected one per face: {m}", weights.len());
-                return Err(Error::argument("edge_weights", problem));
-            }
-            check_weights("edge_weights", Some(&weights.as_flattened().to_vec()), 3 * m, "halfedge")?;
-        }
+        check_edge_weights(self.edge_weights.as_deref(), m)?;
         if self.n_segments == Some(0) {
             return Err(Error::argument("n_segments", "is 0; ask for at least one segment"));
         }
-        match &self.faces {
-            Some(faces) if faces.len() != m => {
-                let problem = format!("has {} entries, expected one per face: {m}", faces.len());
-                return Err(Error::argument("faces", problem));
-            }
-            Some(faces) if !faces.contains(&true) => {
-                return Err(Error::argument("faces", "names no face; give at least one, or None for all"));
-            }
-            _ => {}
-        }
+        check_faces(self.faces.as_deref(), m)?;
         let Some(values) = values else { return Ok(()) };
         values.check("values", n)?;
         if values.n_columns > MAX_JOINT_COLUMNS {
