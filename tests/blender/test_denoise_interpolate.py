@@ -114,6 +114,14 @@ def select_in_object_mode(obj, mask):
     bpy.ops.object.mode_set(mode="OBJECT")
 
 
+def found_in_edit_mode(obj, outcome):
+    """The values once an operator has ended in Edit Mode, which it leaves the object in."""
+    assert outcome == {"FINISHED"}
+    assert obj.mode == "EDIT"
+    bpy.ops.object.mode_set(mode="OBJECT")
+    return values_of(obj, "heat")
+
+
 def close(data_type, found, expected):
     """Equal bits, but for bytes, which Blender rounds in the space of the screen."""
     if data_type == "BYTE_COLOR":
@@ -159,10 +167,7 @@ def test_filling_the_selection_in_edit_mode(data_type, domain):
     outcome = bpy.ops.ridgeform.interpolate_attribute(
         attribute="heat", known="UNSELECTED", output="IN_PLACE", sharpness=0.5
     )
-    assert outcome == {"FINISHED"}
-    assert obj.mode == "EDIT"
-    bpy.ops.object.mode_set(mode="OBJECT")
-    found = values_of(obj, "heat")
+    found = found_in_edit_mode(obj, outcome)
     assert kit.same_bits(found[~hole], before[~hole])
     assert close(data_type, found[hole], interpolated(mesh_of(obj), before, ~hole, sharpness=0.5)[hole])
     assert np.abs(found[hole] - before[hole]).max() > 0.01
@@ -175,10 +180,7 @@ def test_denoising_the_selection_in_edit_mode(data_type, domain):
     before = add_values(obj, data_type, domain)
     chosen = kit.coordinates(obj)[:, 0] > 0.1
     kit.select_only(obj, chosen)
-    assert bpy.ops.ridgeform.denoise_attribute(attribute="heat", output="IN_PLACE") == {"FINISHED"}
-    assert obj.mode == "EDIT"
-    bpy.ops.object.mode_set(mode="OBJECT")
-    found = values_of(obj, "heat")
+    found = found_in_edit_mode(obj, bpy.ops.ridgeform.denoise_attribute(attribute="heat", output="IN_PLACE"))
     assert kit.same_bits(found[~chosen], before[~chosen])
     assert close(data_type, found[chosen], denoised(mesh_of(obj), before, fixed=~chosen)[chosen])
     assert (found[chosen] != before[chosen]).any()

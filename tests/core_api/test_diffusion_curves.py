@@ -131,7 +131,7 @@ def test_a_piece_without_a_curve_has_a_point():
     assert np.abs(drawn.colors - 0.25).max() < 1e-12
 
 
-def test_refusals():
+def test_refusals(cancelled):
     vertices, faces = lattice(3)
     mesh = ridgeform.Mesh(vertices, faces)
     colors, labels = np.zeros((16, 3)), np.zeros(len(faces), int)
@@ -159,7 +159,5 @@ def test_refusals():
             ridgeform.redraw(mesh, *arguments)
     with pytest.raises(ridgeform.ArgumentError, match="sides: -2 is no face"):
         ridgeform.redraw(mesh, [[0, 1]], np.zeros((1, 2)), np.zeros((1, 2)), sides=np.full(16, -2))
-    progress = ridgeform.Progress()
-    progress.cancel()
     with pytest.raises(ridgeform.Cancelled):
-        ridgeform.diffusion_curves(mesh, colors, labels=labels, progress=progress)
+        ridgeform.diffusion_curves(mesh, colors, labels=labels, progress=cancelled)

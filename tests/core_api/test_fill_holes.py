@@ -166,7 +166,7 @@ def test_several_holes_at_once():
     assert sorted({*filled.patch}) == [-1, 0, 1, 2]
 
 
-def test_progress_shows_the_patch_and_can_stop_it():
+def test_progress_shows_the_patch_and_can_stop_it(cancelled):
     mesh, _ = turned_cube(12, [1, 1, 0.1], 0.5)
     progress = ridgeform.Progress()
     progress.finish()
@@ -176,8 +176,6 @@ def test_progress_shows_the_patch_and_can_stop_it():
     vertices, faces = progress.snapshot_surface()
     assert len(faces) == len(patch_faces(filled))
     assert faces.max() == len(vertices) - 1
-    cancelled = ridgeform.Progress()
-    cancelled.cancel()
     with pytest.raises(ridgeform.Cancelled):
         ridgeform.fill_holes(mesh, progress=cancelled)
 

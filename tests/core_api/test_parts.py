@@ -242,10 +242,9 @@ def test_a_mesh_without_positions_or_area_is_refused():
         ridgeform.parts(ridgeform.Mesh(np.zeros((3, 3)), [[0, 1, 2]]))
 
 
-def test_a_call_can_be_cancelled_and_finished_early(ball):
+def test_a_call_can_be_cancelled_and_finished_early(ball, cancelled):
     mesh = ridgeform.Mesh(*ball[:2])
-    cancelled, finishing = ridgeform.Progress(), ridgeform.Progress()
-    cancelled.cancel()
+    finishing = ridgeform.Progress()
     with pytest.raises(ridgeform.Cancelled):
         ridgeform.parts(mesh, progress=cancelled)
     finishing.finish()

@@ -229,12 +229,10 @@ def test_other_signal_handlers_run_and_the_call_goes_on():
     assert result.iterations == 4
 
 
-def test_a_cancelled_handle_stays_cancelled():
-    progress = ridgeform.Progress()
-    progress.cancel()
+def test_a_cancelled_handle_stays_cancelled(cancelled):
     for call in CALLS.values():
         with pytest.raises(ridgeform.Cancelled):
-            call(progress)
+            call(cancelled)
 
 
 def test_a_flow_finished_before_it_began_is_the_input():

@@ -64,16 +64,14 @@ def test_no_iterations_change_nothing_and_the_same_input_gives_the_same_bits():
     assert repr(result) == f"<ridgeform.Remeshed: {len(vertices)} vertices, {len(faces)} faces, finished>"
 
 
-def test_progress_stops_and_cancels():
+def test_progress_stops_and_cancels(cancelled):
     mesh = ridgeform.Mesh(*shapes.icosphere(2))
     progress = ridgeform.Progress()
     progress.finish()
     result = ridgeform.remesh(mesh, progress=progress)
     assert (result.status, result.iterations) == ("stopped", 0)
-    progress = ridgeform.Progress()
-    progress.cancel()
     with pytest.raises(ridgeform.Cancelled):
-        ridgeform.remesh(mesh, progress=progress)
+        ridgeform.remesh(mesh, progress=cancelled)
 
 
 @pytest.mark.parametrize(

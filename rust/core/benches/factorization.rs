@@ -3,17 +3,12 @@
 
 use criterion::{criterion_group, criterion_main, BatchSize, Criterion};
 use ridgeform_core::linear::cholesky::Cholesky;
-use ridgeform_core::operators::{voronoi_mass, Dual, HessianPattern};
-use ridgeform_core::shapes;
-use ridgeform_core::solve::normal_matrix::NormalMatrix;
+use torus::{torus, Torus};
+
+mod torus;
 
 fn factorization(criterion: &mut Criterion) {
-    let shape = shapes::torus(250, 160, 3.0, 1.0).noisy(0.01, 1);
-    let mesh = shape.mesh().unwrap();
-    let (connectivity, lengths) = (mesh.connectivity(), mesh.edge_lengths());
-    let operator = HessianPattern::new(connectivity).assemble(connectivity, lengths, Dual::Barycentric).unwrap();
-    let fidelity: Vec<f64> = voronoi_mass(connectivity, lengths).iter().map(|m| 2e4 * m).collect();
-    let normal = NormalMatrix::new(&operator);
+    let Torus { shape, operator, fidelity, normal, .. } = torus(250, 160);
     let mut entries = Vec::new();
     normal.assemble(&operator, &vec![1.0; operator.n_blocks()], &fidelity, &mut entries);
     let one: Vec<[f64; 1]> = shape.vertices.iter().map(|x| [x[0]]).collect();

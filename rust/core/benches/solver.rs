@@ -5,22 +5,18 @@ use criterion::{criterion_group, criterion_main, BatchSize, Criterion};
 use ridgeform_core::block_rows::BLOCK;
 use ridgeform_core::linear::cholesky::Cholesky;
 use ridgeform_core::linear::Columns;
-use ridgeform_core::operators::{voronoi_mass, Dual, HessianPattern};
 use ridgeform_core::progress::Progress;
-use ridgeform_core::shapes;
 use ridgeform_core::solve::fast::Sweep;
 use ridgeform_core::solve::normal_matrix::NormalMatrix;
 use ridgeform_core::solve::{Coupling, FreeOperator, Problem, Reduced};
 use ridgeform_core::tools::{stylize, SolveOptions, StylizeOptions};
+use torus::{torus, Torus};
+
+mod torus;
 
 fn solver(criterion: &mut Criterion) {
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().unwrap();
-    let shape = shapes::torus(125, 80, 3.0, 1.0).noisy(0.01, 1);
-    let mesh = shape.mesh().unwrap();
-    let (connectivity, lengths) = (mesh.connectivity(), mesh.edge_lengths());
-    let operator = HessianPattern::new(connectivity).assemble(connectivity, lengths, Dual::Barycentric).unwrap();
-    let fidelity: Vec<f64> = voronoi_mass(connectivity, lengths).iter().map(|m| 2e4 * m).collect();
-    let normal = NormalMatrix::new(&operator);
+    let Torus { shape, operator, fidelity, normal } = torus(125, 80);
     let (ones, mut entries) = (vec![1.0; operator.n_blocks()], Vec::new());
 
     let mut group = criterion.benchmark_group("10k vertices");
@@ -74,6 +70,7 @@ fn solver(criterion: &mut Criterion) {
     };
     group.sample_size(10);
     group.bench_function("a step of the flow, from nothing to a gap of 1e-3", |bencher| {
+        let mesh = shape.mesh().unwrap();
         bencher.iter(|| stylize(&mesh, &options, &Progress::new()));
     });
     group.finish();

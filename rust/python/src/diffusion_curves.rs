@@ -288,20 +288,18 @@ pub(crate) fn smooth_curves(py: Python<'_>, mesh: &Mesh, edges: &Bound<'_, PyAny
 }
 
 fn read_labels(object: &Bound<'_, PyAny>, n_faces: usize) -> PyResult<Vec<i32>> {
-    of_faces("labels", object, n_faces, "too large for 32 bits")
+    of_faces(object, n_faces, "labels", "too large for 32 bits")
 }
 
 fn read_groups(object: &Bound<'_, PyAny>, n_faces: usize) -> PyResult<Vec<u32>> {
-    of_faces("face_groups", object, n_faces, "not from 0 to 2^32 - 1")
+    of_faces(object, n_faces, "face_groups", "not from 0 to 2^32 - 1")
 }
 
 /// A number for each face; one that does not fit is named and said to be `what`.
-fn of_faces<T: TryFrom<i64>>(
-    name: &'static str,
-    object: &Bound<'_, PyAny>,
-    n_faces: usize,
-    what: &str,
-) -> PyResult<Vec<T>> {
+fn of_faces<T>(object: &Bound<'_, PyAny>, n_faces: usize, name: &'static str, what: &str) -> PyResult<Vec<T>>
+where
+    T: TryFrom<i64>,
+{
     let py = object.py();
     let numbers = arrays::integers(name, object)?.exactly(py, name, n_faces, "face")?;
     let narrow = |&number: &i64| T::try_from(number).map_err(|_| argument(py, name, format!("{number} is {what}")));

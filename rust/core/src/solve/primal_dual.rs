@@ -213,6 +213,14 @@ mod tests {
         rows
     }
 
+    /// What holds of that problem.
+    fn with_reduced(check: impl FnOnce(Reduced<'_, 1>)) {
+        let operator = operator();
+        let problem = problem(&operator);
+        let free = FreeOperator::new(&operator, &problem.fixed);
+        check(Reduced::<1>::new(&problem, &free, &[0]).unwrap());
+    }
+
     /// What the dual equations lack.
     fn lacking(reduced: &Reduced<'_, 1>, u: &[[f64; 1]], z: &[Block<1>]) -> Vec<[f64; 1]> {
         let mut g = Vec::new();
@@ -247,66 +255,63 @@ mod tests {
 
     #[test]
     fn the_matrix_is_the_derivative_of_the_slope_on_the_central_path() {
-        let operator = operator();
-        let problem = problem(&operator);
-        let free = FreeOperator::new(&operator, &problem.fixed);
-        let reduced = Reduced::<1>::new(&problem, &free, &[0]).unwrap();
-        let none = vec![[[0.0; 1]; BLOCK]; reduced.n_blocks()];
-        // On the path z is the slope; there, and only there, the matrix is the derivative.
-        let model = |u: &[[f64; 1]]| Model::new(&reduced, u, Model::new(&reduced, u, &none, 0.1).slope(), 0.1);
-        let u = &reduced.target;
-        let step: Vec<[f64; 1]> = (0..u.len()).map(|i| [(1.3 * i as f64).cos()]).collect();
-        let moved = |far: f64| -> Vec<[f64; 1]> { u.iter().zip(&step).map(|(u, s)| [u[0] + far * s[0]]).collect() };
-        let (ahead, behind) = (model(&moved(1e-5)), model(&moved(-1e-5)));
-        let mut change = Vec::new();
-        reduced.apply_change(&step, &mut change);
-        let mut derivative = none.clone();
-        follow(model(u).stiffness(), &change, &mut derivative);
-        for (b, derivative) in derivative.iter().enumerate() {
-            let difference = combine(5e4, &ahead.slope()[b], -5e4, &behind.slope()[b]);
-            assert!(norm(&combine(1.0, &difference, -1.0, derivative)) < 1e-6 * (1.0 + norm(derivative)), "block {b}");
-        }
+        with_reduced(|reduced| {
+            let none = vec![[[0.0; 1]; BLOCK]; reduced.n_blocks()];
+            // On the path z is the slope; there, and only there, the matrix is the derivative.
+            let model = |u: &[[f64; 1]]| Model::new(&reduced, u, Model::new(&reduced, u, &none, 0.1).slope(), 0.1);
+            let u = &reduced.target;
+            let step: Vec<[f64; 1]> = (0..u.len()).map(|i| [(1.3 * i as f64).cos()]).collect();
+            let moved = |far: f64| -> Vec<[f64; 1]> { u.iter().zip(&step).map(|(u, s)| [u[0] + far * s[0]]).collect() };
+            let (ahead, behind) = (model(&moved(1e-5)), model(&moved(-1e-5)));
+            let mut change = Vec::new();
+            reduced.apply_change(&step, &mut change);
+            let mut derivative = none.clone();
+            follow(model(u).stiffness(), &change, &mut derivative);
+            for (b, derivative) in derivative.iter().enumerate() {
+                let difference = combine(5e4, &ahead.slope()[b], -5e4, &behind.slope()[b]);
+                assert!(
+                    norm(&combine(1.0, &difference, -1.0, derivative)) < 1e-6 * (1.0 + norm(derivative)),
+                    "block {b}"
+                );
+            }
+        });
     }
 
     #[test]
     fn steps_converge_to_the_central_path_from_afar() {
-        let operator = operator();
-        let problem = problem(&operator);
-        let free = FreeOperator::new(&operator, &problem.fixed);
-        let mut reduced = Reduced::<1>::new(&problem, &free, &[0]).unwrap();
-        let barrier = 1e-3;
-        let (u, z, far) = center(&mut reduced, barrier, 25);
-        assert!(far < 1e-9, "the last step goes {far}");
-        let mut h = Vec::new();
-        reduced.apply(&u, &mut h);
-        for ((h, z), &w) in h.iter().zip(&z).zip(reduced.weights.iter()) {
-            if w > 0.0 {
-                let (_, t) = cone(barrier / w, norm(h));
-                assert!(norm(&combine(t, z, -w, h)) < 1e-9, "t z = w h");
-            } else {
-                assert_eq!(norm(z), 0.0);
+        with_reduced(|mut reduced| {
+            let barrier = 1e-3;
+            let (u, z, far) = center(&mut reduced, barrier, 25);
+            assert!(far < 1e-9, "the last step goes {far}");
+            let mut h = Vec::new();
+            reduced.apply(&u, &mut h);
+            for ((h, z), &w) in h.iter().zip(&z).zip(reduced.weights.iter()) {
+                if w > 0.0 {
+                    let (_, t) = cone(barrier / w, norm(h));
+                    assert!(norm(&combine(t, z, -w, h)) < 1e-9, "t z = w h");
+                } else {
+                    assert_eq!(norm(z), 0.0);
+                }
             }
-        }
-        assert!(lacking(&reduced, &u, &z).iter().all(|g| g[0].abs() < 1e-8));
+            assert!(lacking(&reduced, &u, &z).iter().all(|g| g[0].abs() < 1e-8));
+        });
     }
 
     #[test]
     fn the_path_ends_at_the_minimum() {
-        let operator = operator();
-        let problem = problem(&operator);
-        let free = FreeOperator::new(&operator, &problem.fixed);
-        let mut reduced = Reduced::<1>::new(&problem, &free, &[0]).unwrap();
-        let (mut h, mut before) = (Vec::new(), f64::INFINITY);
-        for barrier in [1e-1, 1e-3, 1e-5] {
-            let (u, z, _) = center(&mut reduced, barrier, 40);
-            reduced.apply(&u, &mut h);
-            let primal = reduced.objective(&u, &h);
-            let along = h.iter().zip(&z).map(|(h, z)| crate::solve::cones::inner(h, z)).sum::<f64>();
-            // What a cone leaves is at most twice μ.
-            let left = primal - reduced.fidelity_term(&u) - reduced.offset - along;
-            assert!(left > 0.0 && left < 2.0 * barrier * reduced.n_blocks() as f64, "{left}");
-            assert!(primal <= before);
-            before = primal;
-        }
+        with_reduced(|mut reduced| {
+            let (mut h, mut before) = (Vec::new(), f64::INFINITY);
+            for barrier in [1e-1, 1e-3, 1e-5] {
+                let (u, z, _) = center(&mut reduced, barrier, 40);
+                reduced.apply(&u, &mut h);
+                let primal = reduced.objective(&u, &h);
+                let along = h.iter().zip(&z).map(|(h, z)| crate::solve::cones::inner(h, z)).sum::<f64>();
+                // What a cone leaves is at most twice μ.
+                let left = primal - reduced.fidelity_term(&u) - reduced.offset - along;
+                assert!(left > 0.0 && left < 2.0 * barrier * reduced.n_blocks() as f64, "{left}");
+                assert!(primal <= before);
+                before = primal;
+            }
+        });
     }
 }

@@ -101,25 +101,31 @@ pub fn diffusion_curves(
     let unit = Unit::of(colors.data.iter().copied());
     let measured = DiffusionCurvesOptions { color_error: unit.measure(options.color_error), ..*options };
     let mesh = mesh.measured(mesh.unit())?;
-    let mut found = in_their_unit(&mesh, colors.measured(unit).as_ref(), labels, &measured, progress)?;
+    let painted = Painted { mesh: &mesh, colors: &colors.measured(unit), labels };
+    let mut found = in_their_unit(&painted, &measured, progress)?;
     found.error = unit.power(2).restore_finite("the error", found.error)?;
     found.curves.restore(unit);
     found.redrawn.restore(unit);
     Ok(found)
 }
 
+/// A mesh with colors at its vertices and regions of faces.
+struct Painted<'a> {
+    mesh: &'a Mesh,
+    colors: &'a Columns,
+    labels: &'a [i32],
+}
+
 /// [`diffusion_curves`] of colors and a mesh whose sizes are sane.
 fn in_their_unit(
-    mesh: &Mesh,
-    colors: &Columns,
-    labels: &[i32],
+    painted: &Painted<'_>,
     options: &DiffusionCurvesOptions,
     progress: &Progress,
 ) -> Result<DiffusionCurves> {
+    let &Painted { mesh, colors, labels } = painted;
     let connectivity = mesh.connectivity();
-    colors.check("colors", connectivity.n_vertices())?;
+    check_paint(mesh, colors, options.fidelity)?;
     check_labels(labels, connectivity.n_faces())?;
-    check_fidelity(options.fidelity)?;
     check_range("color_error", options.color_error, 0.0, f64::MAX)?;
     let area: f64 = mesh.edge_lengths().iter().map(|&l| triangle::area(l)).sum();
     if area <= 0.0 {
@@ -173,7 +179,9 @@ fn check_labels(labels: &[i32], n_faces: usize) -> Result<()> {
     Err(Error::argument("labels", format!("has {} entries, expected one per face: {n_faces}", labels.len())))
 }
 
-fn check_fidelity(fidelity: f64) -> Result<()> {
+/// Refuses colors that do not fit the mesh, and a fidelity that is not positive.
+fn check_paint(mesh: &Mesh, colors: &Columns, fidelity: f64) -> Result<()> {
+    colors.check("colors", mesh.connectivity().n_vertices())?;
     if fidelity > 0.0 && fidelity.is_finite() {
         return Ok(());
     }

@@ -7,7 +7,7 @@ use super::settle::Faces;
 use super::sharpen::sharpened;
 use super::sorting::{Paint, Sorted};
 use super::weak::merge_weak;
-use super::{check_fidelity, check_labels};
+use super::{check_labels, check_paint};
 use crate::linear::Columns;
 use crate::memory::Tool;
 use crate::mesh::Mesh;
@@ -36,8 +36,7 @@ pub fn color_regions(
     progress: &Progress,
 ) -> Result<Vec<i32>> {
     let connectivity = mesh.connectivity();
-    colors.check("colors", connectivity.n_vertices())?;
-    check_fidelity(fidelity)?;
+    check_paint(mesh, colors, fidelity)?;
     mesh.demand(Tool::DiffusionCurves).admit(options.solve.memory_limit)?;
     let groups = Groups::new(groups, connectivity.n_faces())?;
     let (mesh, colors) = (mesh.measured(mesh.unit())?, colors.measured(Unit::of(colors.data.iter().copied())));
@@ -83,8 +82,7 @@ pub fn follow_colors(
     progress: &Progress,
 ) -> Result<Vec<i32>> {
     let connectivity = mesh.connectivity();
-    colors.check("colors", connectivity.n_vertices())?;
-    check_fidelity(fidelity)?;
+    check_paint(mesh, colors, fidelity)?;
     check_labels(labels, connectivity.n_faces())?;
     let groups = Groups::new(groups, connectivity.n_faces())?;
     let paint = Paint { mesh, colors, fidelity, progress };
