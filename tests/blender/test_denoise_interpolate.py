@@ -114,6 +114,15 @@ def select_in_object_mode(obj, mask):
     bpy.ops.object.mode_set(mode="OBJECT")
 
 
+def box_with_selection(data_type, domain, axis, above):
+    """A box in Edit Mode with values, these, and which vertices are selected: those above a coordinate."""
+    obj = kit.bumpy_box()
+    before = add_values(obj, data_type, domain)
+    chosen = kit.coordinates(obj)[:, axis] > above
+    kit.select_only(obj, chosen)
+    return obj, before, chosen
+
+
 def found_in_edit_mode(obj, outcome):
     """The values once an operator has ended in Edit Mode, which it leaves the object in."""
     assert outcome == {"FINISHED"}
@@ -160,10 +169,7 @@ def test_interpolating_from_the_selection(data_type, domain):
 
 @pytest.mark.parametrize(("data_type", "domain"), KINDS)
 def test_filling_the_selection_in_edit_mode(data_type, domain):
-    obj = kit.bumpy_box()
-    before = add_values(obj, data_type, domain)
-    hole = kit.coordinates(obj)[:, 2] > 0.8
-    kit.select_only(obj, hole)
+    obj, before, hole = box_with_selection(data_type, domain, axis=2, above=0.8)
     outcome = bpy.ops.ridgeform.interpolate_attribute(
         attribute="heat", known="UNSELECTED", output="IN_PLACE", sharpness=0.5
     )
@@ -176,10 +182,7 @@ def test_filling_the_selection_in_edit_mode(data_type, domain):
 
 @pytest.mark.parametrize(("data_type", "domain"), KINDS)
 def test_denoising_the_selection_in_edit_mode(data_type, domain):
-    obj = kit.bumpy_box()
-    before = add_values(obj, data_type, domain)
-    chosen = kit.coordinates(obj)[:, 0] > 0.1
-    kit.select_only(obj, chosen)
+    obj, before, chosen = box_with_selection(data_type, domain, axis=0, above=0.1)
     found = found_in_edit_mode(obj, bpy.ops.ridgeform.denoise_attribute(attribute="heat", output="IN_PLACE"))
     assert kit.same_bits(found[~chosen], before[~chosen])
     assert close(data_type, found[chosen], denoised(mesh_of(obj), before, fixed=~chosen)[chosen])

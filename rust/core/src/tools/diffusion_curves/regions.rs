@@ -35,8 +35,8 @@ pub fn color_regions(
     fidelity: f64,
     progress: &Progress,
 ) -> Result<Vec<i32>> {
-    let connectivity = mesh.connectivity();
     check_paint(mesh, colors, fidelity)?;
+    let connectivity = mesh.connectivity();
     mesh.demand(Tool::DiffusionCurves).admit(options.solve.memory_limit)?;
     let groups = Groups::new(groups, connectivity.n_faces())?;
     let (mesh, colors) = (mesh.measured(mesh.unit())?, colors.measured(Unit::of(colors.data.iter().copied())));
@@ -81,10 +81,10 @@ pub fn follow_colors(
     fidelity: f64,
     progress: &Progress,
 ) -> Result<Vec<i32>> {
-    let connectivity = mesh.connectivity();
     check_paint(mesh, colors, fidelity)?;
-    check_labels(labels, connectivity.n_faces())?;
-    let groups = Groups::new(groups, connectivity.n_faces())?;
+    let n_faces = mesh.connectivity().n_faces();
+    check_labels(labels, n_faces)?;
+    let groups = Groups::new(groups, n_faces)?;
     let paint = Paint { mesh, colors, fidelity, progress };
     let mut labels = labels.to_vec();
     follow(&paint, &groups, false, &mut labels)?;
