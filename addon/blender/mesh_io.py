@@ -31,17 +31,26 @@ def is_out_of_reach(obj: bpy.types.Object) -> bool:
     return obj.data.is_editmode and not reached
 
 
+PAINTING = {
+    "PAINT_WEIGHT": "WEIGHT_PAINT",
+    "PAINT_VERTEX": "VERTEX_PAINT",
+    "PAINT_TEXTURE": "TEXTURE_PAINT",
+    "SCULPT": "SCULPT",
+}
+"""Modes in which one mesh is painted or sculpted, and what they are called where they are set."""
+
+
 @contextlib.contextmanager
 def object_mode() -> Iterator[None]:
-    """Leave Edit Mode for all objects that are in it, and come back: much cannot be read or made there."""
-    edited = bpy.context.mode == "EDIT_MESH"
-    if edited:
+    """Leave the mode for all objects that are in it, and come back: much cannot be read or made there."""
+    mode = PAINTING.get(bpy.context.mode, "EDIT" if bpy.context.mode == "EDIT_MESH" else None)
+    if mode is not None:
         bpy.ops.object.mode_set(mode="OBJECT")
     try:
         yield
     finally:
-        if edited:
-            bpy.ops.object.mode_set(mode="EDIT")
+        if mode is not None:
+            bpy.ops.object.mode_set(mode=mode)
 
 
 def triangles(mesh: bpy.types.Mesh) -> np.ndarray:

@@ -141,6 +141,14 @@ def _named(modifiers: Iterable[bpy.types.Modifier]) -> str:
     return f"its modifier {names[0]}" if len(names) == 1 else f"its modifiers {' and '.join(names)} each"
 
 
+def normal_notes(mesh: bpy.types.Mesh) -> list[str]:
+    """What a modeler should know of custom normals that are not relative to the faces, and so do not turn."""
+    normals = mesh.attributes.get("custom_normal")
+    if normals is None or normals.data_type != "FLOAT_VECTOR":
+        return []
+    return ["its free custom normals stay as they are and hide the facets (Clear Custom Split Normals Data)"]
+
+
 def key_notes(obj: bpy.types.Object) -> list[str]:
     """What a modeler should know of the active shape key of a mesh if its result does not show."""
     key = obj.active_shape_key

@@ -8,7 +8,7 @@ import bpy
 
 from . import mesh_io
 
-MODES = ("OBJECT", "EDIT_MESH")
+MODES = ("OBJECT", "EDIT_MESH", *mesh_io.PAINTING)
 
 
 @dataclass(frozen=True)
@@ -62,9 +62,12 @@ def reason_against(obj: bpy.types.Object, needs: Needs = MOVES) -> str | None:
 
 
 def mesh_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """The mesh objects of the mode: those in Edit Mode, else the selected ones, the active one first."""
-    chosen = context.objects_in_mode if context.mode == "EDIT_MESH" else context.selected_objects
+    """The mesh objects of the mode: those in it, in Object Mode the selected ones, the active one first."""
     active = context.view_layer.objects.active
+    if context.mode == "EDIT_MESH":
+        chosen = context.objects_in_mode
+    else:
+        chosen = [active] if context.mode in mesh_io.PAINTING else context.selected_objects
     return sorted((obj for obj in chosen if obj.type == "MESH"), key=lambda obj: obj != active)
 
 
@@ -87,7 +90,7 @@ def usable(objects: Iterable[bpy.types.Object], needs: Needs = MOVES) -> Selecti
 def reason_disabled(context: bpy.types.Context, needs: Needs = MOVES) -> str | None:
     """Why a tool cannot start here, for the tooltip of its button; `None` if it can."""
     if context.mode not in MODES:
-        return "Switch to Object Mode or to the Edit Mode of a mesh"
+        return "Switch to Object Mode, or to Edit Mode, Sculpt Mode, or a paint mode of a mesh"
     objects = mesh_objects(context)
     if not objects:
         return "Select a mesh object"

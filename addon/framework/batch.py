@@ -22,6 +22,7 @@ from ..blender import selection
 from ..blender.refusals import RefusedError
 from . import files, flags
 from .console import ProgressBar
+from .precision import rounding_notes
 from .run import NO_RESULT, Run
 from .targets import Ledger, Target, assign
 from .tool import Tool
@@ -111,7 +112,10 @@ def _one_file(target: Target, tool: type[Run], settings: object, ledger: Ledger)
 
 
 def _run_file(source: Path, tool: type[Run], settings: object, ledger: Ledger) -> Run:
-    chosen = selection.usable(files.read_file(source), tool.needs)
+    objects = files.read_file(source)
+    # A file of Blender's own has had single precision all along.
+    rounded = [] if source.suffix.lower() == ".blend" else rounding_notes(objects)
+    chosen = selection.usable(objects, tool.needs)
     ledger.add_inputs(files.files_in_use())
     run = tool(chosen.objects, settings, chosen.skipped)
     run.job.start()
@@ -125,6 +129,7 @@ def _run_file(source: Path, tool: type[Run], settings: object, ledger: Ledger) -
         run.job.cancel()
         raise
     run.apply()
+    run.skipped += rounded
     return run
 
 

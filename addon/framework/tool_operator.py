@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The operators of all tools: when they can start, where their settings come from, how they run."""
 
+import contextlib
 from typing import ClassVar
 
 import bpy
 from bpy.props import BoolProperty
 
-from ..blender import selection
+from ..blender import mesh_io, selection
 from ..blender.refusals import RefusedError
 from . import former, rows
 from .modal import ModalRun
@@ -22,6 +23,9 @@ class ToolOperator(ModalRun):
     # then crashes when Python ends.
     tool: ClassVar[object]
     """The `Tool`."""
+
+    _painting: str | None = None
+    """The mode to go back to, one that paints or sculpts."""
 
     from_panel: BoolProperty(
         name="From Panel",
@@ -41,12 +45,28 @@ class ToolOperator(ModalRun):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Do the whole job at once."""
         run = self._prepared(context)
-        return {"CANCELLED"} if run is None else self.run_at_once(context, run)
+        outcome = {"CANCELLED"} if run is None else self.run_at_once(context, run)
+        return self._back(context, outcome)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Run while Blender goes on drawing."""
         run = self._prepared(context)
-        return {"CANCELLED"} if run is None else self.begin_modal(context, run)
+        outcome = {"CANCELLED"} if run is None else self.begin_modal(context, run)
+        return self._back(context, outcome)
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Handle one event."""
+        return self._back(context, super().modal(context, event))
+
+    def _back(self, context: bpy.types.Context, outcome: set[str]) -> set[str]:
+        """Go back to the mode that the run was started in, if it is over; returns the outcome."""
+        painting = self._painting
+        if painting is not None and outcome & {"FINISHED", "CANCELLED"}:
+            self._painting = None
+            # What was painted may be gone, or hidden.
+            with contextlib.suppress(RuntimeError):
+                bpy.ops.object.mode_set(mode=painting)
+        return outcome
 
     def finished(self, context: bpy.types.Context, run: Run) -> set[str]:
         """Write the result and report what happened."""
@@ -69,6 +89,10 @@ class ToolOperator(ModalRun):
             self.from_panel = False
         former.take_given(self, self.tool.settings)
         chosen = selection.usable(selection.mesh_objects(context), self.tool.run.needs)
+        self._painting = mesh_io.PAINTING.get(context.mode)
+        if self._painting is not None:
+            # There Blender keeps what it draws of the mesh.
+            bpy.ops.object.mode_set(mode="OBJECT")
         try:
             # A plain object: a job reads it in a thread of its own, where Blender's must not be touched.
             return self.tool.run(chosen.objects, values_of(self.tool.settings, self), chosen.skipped)

@@ -157,6 +157,7 @@ def _prepare(obj: bpy.types.Object, settings: object) -> FlowPart:
     part.task.call = partial(_stylized, part.task, source, options, settings)
     part.warnings += weld.notes
     part.warnings += modifiers.shape_notes(obj, "CREASE" in settings.marks)
+    part.warnings += modifiers.normal_notes(mesh)
     if settings.output != "SHAPE_KEY":
         part.warnings += modifiers.key_notes(obj)
     scales = np.abs(obj.matrix_world.to_scale())

@@ -32,9 +32,9 @@ def test_only_other_objects_selected():
 
 
 def test_other_mode():
-    kit.bumpy_box()
-    bpy.ops.object.mode_set(mode="SCULPT")
-    assert reason() == "Switch to Object Mode or to the Edit Mode of a mesh"
+    bpy.ops.object.armature_add()
+    bpy.ops.object.mode_set(mode="POSE")
+    assert reason() == "Switch to Object Mode, or to Edit Mode, Sculpt Mode, or a paint mode of a mesh"
 
 
 def test_empty_mesh_and_mesh_without_faces():
