@@ -5,7 +5,7 @@ from importlib import import_module
 
 import bpy
 
-from .framework import batch, former, menus, modal, presets, sidebar, tool_operator
+from .framework import batch, bound, former, menus, modal, presets, sidebar, tool_operator
 
 NAMES = (
     "stylize",
@@ -22,7 +22,7 @@ TOOLS = [tool for feature in FEATURES for tool in feature.tools]
 
 def _classes() -> list[type]:
     """All classes in the order of their registration, made once."""
-    made = [presets.RIDGEFORM_OT_shipped_preset]
+    made = [presets.RIDGEFORM_OT_shipped_preset, *bound.OPERATORS]
     for feature in FEATURES:
         made += feature.operators
         for tool in feature.tools:
@@ -40,6 +40,7 @@ CLASSES = _classes()
 def register() -> None:
     """Add the operators, the panels, the menu entries and the command to Blender."""
     modal.register()
+    bound.register()
     presets.offer(TOOLS)
     former.register(TOOLS)
     for cls in CLASSES:
@@ -55,6 +56,7 @@ def register() -> None:
 
 def unregister() -> None:
     """Take everything out of Blender again; a job that runs is cancelled first."""
+    bound.unregister()
     modal.unregister()
     former.unregister()
     batch.unregister()

@@ -21,6 +21,8 @@ class Task:
     call: Callable[[ridgeform.Progress], object]
     counted: str = "step"
     """What the progress counts."""
+    most: int | None = None
+    """How many of these there can be, if it is known."""
     progress: ridgeform.Progress = field(default_factory=ridgeform.Progress)
     result: object | None = None
     error: Exception | None = None

@@ -3,13 +3,14 @@
 
 import contextlib
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import bpy
 from bpy.app.handlers import persistent
 
 from ..blender.mesh_state import ChangedError
-from .job import Job
+from ..blender.refusals import RefusedError
+from .pacing import Estimate, Throttle, status_line
 from .run import Run
 
 POLL_SECONDS = 0.05
@@ -72,24 +73,14 @@ def abort(run: Run) -> list[str]:
         return [f"not everything could be put back ({type(error).__name__}: {error})"]
 
 
-def status_line(job: Job) -> str:
-    """Where a job is, for the status bar: which mesh, step or iteration, energy and gap."""
-    task = job.current
-    progress = task.progress
-    parts = [f"{task.name}: {progress.stage or 'starting'}", f"{task.counted} {progress.iteration}"]
-    if progress.energy is not None:
-        parts.append(f"energy {progress.energy:.4g}")
-    if progress.gap is not None:
-        parts.append(f"gap {progress.gap:.1g}")
-    return ", ".join(parts)
-
-
 class ModalRun:
     """Mixin for operators that compute while Blender draws: call `begin_modal` from `invoke`.
 
     Whatever goes wrong at whatever moment comes to `_stopped`: nothing is raised to Blender.
     """
 
+    passes_events = False
+    """Whether all but Esc and Enter stays with Blender while a run goes on."""
     _timer = None
     _area: int | None = None
 
@@ -118,11 +109,8 @@ class ModalRun:
 
     def begin_modal(self, context: bpy.types.Context, run: Run) -> set[str]:
         """Start the job and hand over to `modal`."""
-        self._run = run
-        self._keeping = False
-        _running.append(run)
         try:
-            run.job.start()
+            self._start(run)
             manager = context.window_manager
             manager.progress_begin(0, CURSOR_RANGE)
             self._timer = manager.event_timer_add(POLL_SECONDS, window=context.window)
@@ -134,6 +122,14 @@ class ModalRun:
             return self._stopped(context, run, error)
         return {"RUNNING_MODAL"}
 
+    def _start(self, run: Run) -> None:
+        self._run = run
+        self._keeping = False
+        self._shown = ""
+        self._estimate, self._throttle = Estimate(), Throttle(POLL_SECONDS)
+        _running.append(run)
+        run.job.start()
+
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Handle one event."""
         run = self._run
@@ -141,7 +137,10 @@ class ModalRun:
             self._close(context)
             return {"CANCELLED"}
         try:
-            return self._handle(context, run, action_of(event.type, event.value))
+            action = action_of(event.type, event.value)
+            if self.passes_events and action == "ignore":
+                action = "navigate"
+            return self._handle(context, run, action)
         except Exception as error:
             return self._stopped(context, run, error)
 
@@ -156,7 +155,7 @@ class ModalRun:
         if action == "cancel":
             self._close(context)
             left = abort(run)
-            self.report({"WARNING"} if left else {"INFO"}, _cancelled(left))
+            self.report({"WARNING"} if left else {"INFO"}, "; ".join([self.said_of_cancel(left), *left]))
             return {"CANCELLED"}
         if action == "keep":
             self._keeping = True
@@ -167,9 +166,26 @@ class ModalRun:
                 outcome = self.finished(context, run)
                 _running.remove(run)
                 return outcome
-            run.preview()
+            run.watch()
+            again = self.while_running(run)
+            if again is not run:
+                _running.remove(run)
+                self._start(again)
+                return {"RUNNING_MODAL"}
+            if self._throttle.is_due():
+                begin = self._throttle.now()
+                if run.show():
+                    self._throttle.began(begin)
             self._show(context)
         return {"RUNNING_MODAL"}
+
+    def while_running(self, run: Run) -> Run:
+        """Called at every event while a job runs: the run to go on with, another one if this has ended."""
+        return run
+
+    def said_of_cancel(self, left: Sequence[str]) -> str:
+        """What is reported after Esc, given a sentence for each mesh that could not be put back."""
+        return "Canceled" if left else "Canceled: everything is as it was"
 
     def _stopped(self, context: bpy.types.Context, run: Run, error: Exception) -> set[str]:
         """End a run that cannot go on: thread, timer and preview go, and why is said.
@@ -179,7 +195,7 @@ class ModalRun:
         """
         self._close(context)
         left = abort(run)
-        if isinstance(error, ChangedError):
+        if isinstance(error, (ChangedError, RefusedError)):
             reason = str(error)
         else:
             traceback.print_exception(error)
@@ -193,8 +209,15 @@ class ModalRun:
 
     def _show(self, context: bpy.types.Context) -> None:
         job = self._run.job
-        line = status_line(job)
-        context.window_manager.progress_update(int(CURSOR_RANGE * job.fraction))
+        self._estimate.update(job.fraction)
+        fraction, line = self._estimate.fraction, status_line(job, self._estimate)
+        percent = f"{100 * fraction:.0f} %   " if fraction else ""
+        header = f"Ridgeform  {percent}{line}"
+        if header == self._shown:
+            # Every change is drawn, and that takes time.
+            return
+        self._shown = header
+        context.window_manager.progress_update(int(CURSOR_RANGE * fraction))
         hint = "Finishing this step" if self._keeping else "Keep the result so far"
 
         def draw(header: bpy.types.Header, _context: bpy.types.Context) -> None:
@@ -205,7 +228,7 @@ class ModalRun:
 
         if context.workspace is not None:
             context.workspace.status_text_set(draw)
-        _set_header(context, self._area, f"Ridgeform  {100 * job.fraction:.0f} %   {line}")
+        _set_header(context, self._area, header)
 
     def _close(self, context: bpy.types.Context) -> None:
         timer, self._timer = self._timer, None
@@ -223,10 +246,6 @@ class ModalRun:
                 step()
 
 
-def _cancelled(left: Sequence[str]) -> str:
-    return "; ".join(["Canceled", *left]) if left else "Canceled: everything is as it was"
-
-
 def _set_header(context: bpy.types.Context, area_pointer: int | None, text: str | None) -> None:
     for window in context.window_manager.windows:
         for area in window.screen.areas:
@@ -237,24 +256,54 @@ def _set_header(context: bpy.types.Context, area_pointer: int | None, text: str 
 _running: list[Run] = []
 
 
+when_aborted: list[Callable[[], None]] = []
+"""What else is to be done before a file is opened or a step undone; must not raise."""
+
+
 @persistent
 def _abort_all(*_arguments: object) -> None:
     for run in list(_running):
         abort(run)
+    for call in when_aborted:
+        call()
+
+
+@persistent
+def _put_back_all(*_arguments: object) -> None:
+    """A file that is saved while a run goes on has the meshes as they were, and no half of a result."""
+    for run in list(_running):
+        if run.before is not None:
+            abort(run)
+            continue
+        try:
+            run.hide()
+        except Exception:
+            traceback.print_exc()
+            abort(run)
 
 
 # Objects do not outlive a file or an undo step, so no run may.
-_HANDLERS = (bpy.app.handlers.load_pre, bpy.app.handlers.undo_pre, bpy.app.handlers.redo_pre)
+_HANDLERS = (
+    (bpy.app.handlers.load_pre, _abort_all),
+    (bpy.app.handlers.undo_pre, _abort_all),
+    (bpy.app.handlers.redo_pre, _abort_all),
+    (bpy.app.handlers.save_pre, _put_back_all),
+)
+
+
+def is_running() -> bool:
+    """Whether a run goes on."""
+    return bool(_running)
 
 
 def register() -> None:
     """Have runs stopped before a file is opened or a step undone."""
-    for handlers in _HANDLERS:
-        handlers.append(_abort_all)
+    for handlers, call in _HANDLERS:
+        handlers.append(call)
 
 
 def unregister() -> None:
     """Stop the runs, and no longer watch Blender's files and undo steps."""
     _abort_all()
-    for handlers in _HANDLERS:
-        handlers.remove(_abort_all)
+    for handlers, call in _HANDLERS:
+        handlers.remove(call)

@@ -11,6 +11,7 @@ import bpy
 import ridgeform
 
 from ..blender import mesh_io
+from ..blender.mesh_backup import MeshBackup
 from ..blender.mesh_state import ChangedError, MeshState
 from ..blender.refusals import RefusedError
 from ..blender.selection import MOVES
@@ -74,7 +75,12 @@ class Run(ABC):
         self.job = Job([part.task for part in self.parts])
         self.summary: list[dict[str, object]] = []
         self.is_writing = False
-        """Whether writing the results has begun: from then on only undo takes them back."""
+        """Whether writing the results has begun: from then on only undo takes them back, or `unapply`."""
+        self.keeps_original = False
+        """Whether what writing replaces is kept, so that `unapply` can put it back."""
+        self._backups: list[MeshBackup] = []
+        self.before: Run | None = None
+        """The run whose result this one replaces, starting again from its original."""
 
     def _prepare_all(self, objects: Sequence[bpy.types.Object]) -> None:
         for obj in objects:
@@ -135,19 +141,35 @@ class Run(ABC):
     def clear(self) -> None:  # noqa: B027
         """Take away what is shown beside the meshes."""
 
+    def replaces_faces(self, part: Part) -> bool:
+        """Whether writing the result of a part makes other faces."""
+        return False
+
+    def watch(self) -> None:
+        """What is due at every event, and takes no time: `ChangedError` as said above."""
+        self.check_meshes(thorough=False)
+
     def preview(self) -> bool:
         """Show how far the job is; whether there was something new. `ChangedError` as said above."""
-        self._check(thorough=False)
+        self.watch()
         return self.show()
 
     def restore(self) -> list[str]:
         """Put everything back as it was; a sentence for each mesh that was changed meanwhile and stays so.
 
-        Once results are being written nothing is put back: the meshes are no longer what was read.
+        What was there is the result of the run before, for one that started again from its original. Once
+        results are being written nothing is put back: the meshes are no longer what was read.
         """
         self.clear()
         if self.is_writing:
             return []
+        left = self.rewind()
+        if self.before is not None and not left:
+            self.before.write_again()
+        return left
+
+    def rewind(self) -> list[str]:
+        """Put the meshes back as they were read; the same sentences."""
         left = []
         for part in self.parts:
             try:
@@ -157,7 +179,38 @@ class Run(ABC):
                 left.append(str(change))
         return left
 
-    def _check(self, thorough: bool = True) -> None:
+    def hide(self) -> None:
+        """Put the meshes back as they were read until the next preview. `ChangedError` as said above."""
+        self.check_meshes()
+        for part in self.parts:
+            self.put_back(part)
+            part.state.take_coordinates()
+
+    def unapply(self) -> None:
+        """Put the meshes back as they were read, after `apply`. `ChangedError` as said above."""
+        self.check_meshes()
+        for part, backup in zip(self.parts, self._backups, strict=True):
+            backup.put_back()
+            self.put_back(part)
+
+    def write_again(self) -> None:
+        """Write the results once more, after `unapply`."""
+        self.write(self.done)
+        self._take_states()
+
+    def remember(self) -> None:  # noqa: B027
+        """Keep what a run with other settings could use."""
+
+    def forget(self) -> None:
+        """Let go of what was kept to start again from."""
+        self._backups.clear()
+
+    def _take_states(self) -> None:
+        for part in self.parts:
+            part.state = MeshState(part.object)
+
+    def check_meshes(self, thorough: bool = True) -> None:
+        """`ChangedError` if a mesh is not what was read or last written."""
         for part in self.parts:
             part.state.check(thorough)
 
@@ -183,11 +236,16 @@ class Run(ABC):
             if part.task.error is not None and not isinstance(part.task.error, ridgeform.RidgeformError):
                 self.restore()
                 raise part.task.error
-        self._check()
+        self.check_meshes()
         for part in self.parts:
             self.check(part)
         self.is_writing = True
+        if self.keeps_original:
+            self._backups = [MeshBackup(part.object, self.replaces_faces(part)) for part in self.parts]
         self.write(self.done)
+        if self.keeps_original:
+            self._take_states()
+            self.remember()
         self.summary = [self._summary_of(part) for part in self.parts]
         store_summary(self.summary)
 

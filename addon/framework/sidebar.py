@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import bpy
 
-from . import former, job, rows
+from . import bound, former, job, rows
 from .run import NO_RESULT
 from .settings import properties_of
 from .tool import Tool
@@ -34,7 +34,12 @@ class _ToolPanel:
             return
         row = layout.row()
         row.scale_y = LARGE if tool.prominent else 1.0
-        row.operator(tool.idname, icon=tool.icon).from_panel = True
+        if bound.current(tool) is None:
+            row.operator(tool.idname, icon=tool.icon).from_panel = True
+        else:
+            row.operator("ridgeform.apply_result", icon="CHECKMARK")
+            row.operator(tool.idname, text="Go On from Here", icon="PLAY").from_panel = True
+            layout.label(text="A change starts from the original", icon="FILE_REFRESH")
         if tool.draw_more is not None:
             tool.draw_more(layout, settings)
         draw_last_run(layout, tool)

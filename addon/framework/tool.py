@@ -31,6 +31,8 @@ class Tool:
     """Whether the panel is open at first and its button large."""
     open_sections: Sequence[str] = ()
     """The subpanels that are open at first."""
+    stays_bound: bool = False
+    """Whether its panel stays bound to the last result: changed settings start again from the original."""
     presets: Mapping[str, Mapping[str, object]] | None = None
     """The shipped presets: what each sets; `None` for a tool without any. All set what any of them names, to
     the default where it is not said."""

@@ -9,7 +9,7 @@ from bpy.props import BoolProperty
 
 from ..blender import mesh_io, selection
 from ..blender.refusals import RefusedError
-from . import former, rows
+from . import bound, former, rows
 from .modal import ModalRun
 from .run import Run
 from .settings import properties_of, setting_names, values_of
@@ -45,12 +45,20 @@ class ToolOperator(ModalRun):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Do the whole job at once."""
         run = self._prepared(context)
+        if run is not None and self.options.is_repeat:
+            self._tell_panel(context)
+            self._keep_original(run)
         outcome = {"CANCELLED"} if run is None else self.run_at_once(context, run)
         return self._back(context, outcome)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Run while Blender goes on drawing."""
+        """Run while Blender goes on drawing, with the panel's values for all that is not given."""
+        bound.release()
+        former.take_given(self, self.tool.settings)
+        self._ask_panel(context)
         run = self._prepared(context)
+        if run is not None:
+            self._keep_original(run)
         outcome = {"CANCELLED"} if run is None else self.begin_modal(context, run)
         return self._back(context, outcome)
 
@@ -68,25 +76,43 @@ class ToolOperator(ModalRun):
                 bpy.ops.object.mode_set(mode=painting)
         return outcome
 
+    def _keep_original(self, run: Run) -> None:
+        run.keeps_original = self._painting is None and bound.can_bind(self.tool, run)
+
     def finished(self, context: bpy.types.Context, run: Run) -> set[str]:
         """Write the result and report what happened."""
         outcome = super().finished(context, run)
         if outcome == {"FINISHED"}:
             for name, value in run.kept_settings().items():
                 setattr(self, name, value)
+            if run.keeps_original:
+                bound.bind(self.tool, context.scene, run)
         return outcome
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the redo panel."""
         rows.draw_all(self.layout, self, self.tool.settings, context.object)
 
+    def _ask_panel(self, context: bpy.types.Context) -> None:
+        """Take the panel's values for all that is not given, and give it the others: they are one set."""
+        panel = getattr(context.scene, self.tool.scene_property)
+        for name in setting_names(self.tool.settings):
+            if self.properties.is_property_set(name, ghost=False) and not self.from_panel:
+                setattr(panel, name, getattr(self, name))
+            else:
+                setattr(self, name, getattr(panel, name))
+        # From now on these are the operator's own, for the redo panel to change.
+        self.from_panel = False
+
+    def _tell_panel(self, context: bpy.types.Context) -> None:
+        """Give the panel the values of the redo panel."""
+        panel = getattr(context.scene, self.tool.scene_property)
+        for name in setting_names(self.tool.settings):
+            setattr(panel, name, getattr(self, name))
+
     def _prepared(self, context: bpy.types.Context) -> Run | None:
         if self.from_panel:
-            panel = getattr(context.scene, self.tool.scene_property)
-            for name in setting_names(self.tool.settings):
-                setattr(self, name, getattr(panel, name))
-            # From now on these are the operator's own, for the redo panel to change.
-            self.from_panel = False
+            self._ask_panel(context)
         former.take_given(self, self.tool.settings)
         chosen = selection.usable(selection.mesh_objects(context), self.tool.run.needs)
         self._painting = mesh_io.PAINTING.get(context.mode)

@@ -18,6 +18,7 @@ FEATURE = Feature(
             title="Stylize",
             prominent=True,
             open_sections=(WHERE,),
+            stays_bound=True,
             presets=PRESETS,
         ),
     )

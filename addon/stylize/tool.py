@@ -15,7 +15,7 @@ from ..blender.refusals import RefusedError
 from ..framework.job import Task
 from ..framework.run import Part, Run, counted, meshes_phrase
 from ..framework.surface import group_weights, painted_ridges, welded
-from . import finish, reduction
+from . import finish, recorded, reduction
 from .finish import Source
 from .settings import stylize_options
 
@@ -28,6 +28,7 @@ class FlowPart(Part):
     """One mesh of a run of stylize; the result of its task is a `Finished`."""
 
     source: Source
+    flow: recorded.Flow
 
 
 class Stylization(Run):
@@ -67,18 +68,43 @@ class Stylization(Run):
                 moved = True
         return moved
 
+    def watch(self) -> None:
+        """Take down every step."""
+        super().watch()
+        for part in self.parts:
+            if part.task.started:
+                part.flow.watch(part.task.progress)
+
+    def remember(self) -> None:
+        """Keep the flows that were computed."""
+        for part in self.done:
+            if part.flow.result is not None:
+                recorded.keep(part.flow)
+
+    def forget(self) -> None:
+        """Let go of the steps, too."""
+        super().forget()
+        recorded.forget()
+
     def put_back(self, part: FlowPart) -> None:
         """Put back every bit of the coordinates."""
         part.source.coordinates.restore()
 
+    def replaces_faces(self, part: FlowPart) -> bool:
+        """Whether the finish made other faces."""
+        return part.task.result is not None and part.task.result.reduced is not None
+
     def check(self, part: FlowPart) -> None:
         """What lies on a mesh whose faces are replaced must be what was carried over."""
-        if part.task.result is not None and part.task.result.reduced is not None:
+        if self.replaces_faces(part):
             reduction.check(part.object, part.source.reducible)
 
     def kept_settings(self) -> dict[str, object]:
-        """The most flow steps that any part has made: redo repeats what was kept, not what was asked for."""
-        return {"steps": max((part.task.result.flow.iterations for part in self.done), default=1) or 1}
+        """The steps that were made, if the flow was told to keep them: to be repeated."""
+        flows = [part.task.result.flow for part in self.done]
+        if not any(flow.status == "stopped" for flow in flows):
+            return {}
+        return {"steps": max(1, *(flow.iterations for flow in flows))}
 
     def write(self, parts: Sequence[FlowPart]) -> None:
         """Write the results with all that is made of them; parts without a result are restored."""
@@ -90,8 +116,6 @@ class Stylization(Run):
         with mesh_io.object_mode() if makes_keys else contextlib.nullcontext():
             for part in parts:
                 finish.write(part.object, part.source, part.task.result, self.settings)
-        for part in parts:
-            part.warnings += part.task.result.notes
 
     def figures(self, part: FlowPart) -> dict[str, object]:
         """What the flow did: facets, movement, energy before and after, the largest gap, steps."""
@@ -105,6 +129,7 @@ class Stylization(Run):
             "gap": float(result.gap.max()) if len(result.gap) else 0.0,
             "steps": int(result.iterations),
             "status": str(result.status),
+            "warnings": part.warnings + part.task.result.notes,
         }
 
     def headline(self, done: Sequence[dict[str, object]]) -> str:
@@ -153,8 +178,11 @@ def _prepare(obj: bpy.types.Object, settings: object) -> FlowPart:
         source.refusal = reduction.reason_against(mesh, makes_key=settings.output == "SHAPE_KEY")
         if source.refusal is None:
             source.reducible = reduction.read(obj)
-    part = FlowPart(obj, Task(obj.name, lambda _: None), len(vertices), source=source)
-    part.task.call = partial(_stylized, part.task, source, options, settings)
+    del options["iterations"]
+    flow = recorded.Flow(weld.places(vertices), weld.triangles, options)
+    task = Task(obj.name, lambda _: None, most=settings.steps)
+    part = FlowPart(obj, task, len(vertices), source=source, flow=flow)
+    task.call = partial(_stylized, part, settings)
     part.warnings += weld.notes
     part.warnings += modifiers.shape_notes(obj, "CREASE" in settings.marks)
     part.warnings += modifiers.normal_notes(mesh)
@@ -168,14 +196,16 @@ def _prepare(obj: bpy.types.Object, settings: object) -> FlowPart:
     return part
 
 
-def _stylized(
-    task: Task, source: Source, options: dict[str, object], settings: object, progress: ridgeform.Progress
-) -> finish.Finished:
+def _stylized(part: FlowPart, settings: object, progress: ridgeform.Progress) -> finish.Finished:
     """The flow of a mesh, and what is made of its result: in the thread of the job."""
-    weld = source.weld
-    mesh = ridgeform.Mesh(weld.places(source.coordinates.original), weld.triangles)
-    flow = ridgeform.stylize(mesh, **options, progress=progress)
+    task, source, flow = part.task, part.source, part.flow
+    known = recorded.known(flow)
+    result = None if known is None else known.after(settings.steps)
+    if result is None:
+        mesh = ridgeform.Mesh(flow.vertices, flow.triangles)
+        result = ridgeform.stylize(mesh, iterations=settings.steps, **flow.options, progress=progress)
+        flow.result = result
     task.check()
     if source.reducible is not None:
         task.stage = "reducing the triangles"
-    return finish.finished(source, flow, settings, task.check)
+    return finish.finished(source, result, settings, task.check)

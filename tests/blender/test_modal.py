@@ -1,12 +1,13 @@
 """The modal run, without a window: events are handed to it one by one."""
 
+import re
 import time
 
 import addon_kit as kit
 import bpy
 import numpy as np
 import pytest
-from bl_ext.user_default.ridgeform.framework import job, modal
+from bl_ext.user_default.ridgeform.framework import job, modal, pacing
 from bl_ext.user_default.ridgeform.stylize.settings import default_settings
 from bl_ext.user_default.ridgeform.stylize.tool import Stylization
 from modal_kit import PATIENCE, begin, event, poll_to_the_end, poll_until
@@ -104,13 +105,10 @@ def test_view_can_be_turned_meanwhile():
     operator.modal(context, event("ESC"))
 
 
-def test_status_bar_says_step_energy_and_gap():
+def test_status_bar_says_step_and_time():
     run, operator, context = start(kit.bumpy_box())
-    line = modal.status_line(run.job)
-    assert "Box" in line
-    assert "step" in line
-    assert "energy" in line
-    assert "gap" in line
+    line = pacing.status_line(run.job, operator._estimate)
+    assert re.match(r"Box: \w+, step \d+ of at most 2000, \d+ s elapsed", line), line
     assert context.status is not None
     operator.modal(context, event("ESC"))
 

@@ -155,6 +155,22 @@ def test_snapshots_follow_the_flow():
     assert np.abs(running.result.vertices).max() > 0.5
 
 
+def test_snapshots_are_numbered():
+    assert ridgeform.Progress().numbered_snapshot() is None
+    running = Running(lambda progress: flow(progress, iterations=4))
+    seen = {}
+    while running._thread.is_alive():
+        snapshot = running.progress.numbered_snapshot()
+        if snapshot is not None:
+            seen.setdefault(*snapshot)
+    running.end()
+    number, last = running.progress.numbered_snapshot()
+    assert number == 4
+    np.testing.assert_array_equal(last, running.result.vertices)
+    for steps, vertices in seen.items():
+        np.testing.assert_array_equal(vertices, flow(ridgeform.Progress(), iterations=steps).vertices)
+
+
 def test_the_fraction_only_grows():
     fractions = []
     running = Running(lambda progress: flow(progress, iterations=6))

@@ -32,6 +32,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 struct State {
     report: Report,
     snapshot: Option<Arc<[[f64; 3]]>>,
+    n_snapshots: usize,
     surface: Option<Arc<Surface>>,
 }
 
@@ -129,13 +130,22 @@ impl Progress {
     /// Publish the vertices after a finished flow step.
     pub fn set_snapshot(&self, vertices: &[[f64; 3]]) {
         let vertices = vertices.iter().map(|p| p.map(|x| self.unit.restore(x))).collect();
-        self.with(|state| state.snapshot = Some(vertices));
+        self.with(|state| {
+            state.snapshot = Some(vertices);
+            state.n_snapshots += 1;
+        });
     }
 
     /// The vertices after the last finished flow step.
     #[must_use]
     pub fn snapshot(&self) -> Option<Arc<[[f64; 3]]>> {
         self.with(|state| state.snapshot.clone()).flatten()
+    }
+
+    /// The same, with how many were published through this handle: for one flow the number of the step, from 1.
+    #[must_use]
+    pub fn numbered_snapshot(&self) -> Option<(usize, Arc<[[f64; 3]]>)> {
+        self.with(|state| state.snapshot.clone().map(|vertices| (state.n_snapshots, vertices))).flatten()
     }
 
     /// Publish the faces that the call has made so far, with vertices of their own.

@@ -75,6 +75,15 @@ impl Progress {
         self.inner.snapshot().map(|vertices| float_rows(py, &vertices)).transpose()
     }
 
+    /// The number of that step, from 1, and its vertices (n,3) float64, read at once; None before the first. Counted are the
+    /// steps that were published through this handle: give every call its own.
+    fn numbered_snapshot<'py>(&self, py: Python<'py>) -> PyResult<Option<(usize, Bound<'py, PyArray2<f64>>)>> {
+        self.inner
+            .numbered_snapshot()
+            .map(|(number, vertices)| PyResult::Ok((number, float_rows(py, &vertices)?)))
+            .transpose()
+    }
+
     /// The faces that a call which makes some (`fill_holes`) has made so far: their vertices (k,3) float64 and faces (j,3)
     /// int32 among these, fresh arrays; None before the first.
     fn snapshot_surface<'py>(&self, py: Python<'py>) -> PyResult<Option<Surface<'py>>> {
