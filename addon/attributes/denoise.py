@@ -11,9 +11,11 @@ from ..blender.attribute_io import PointValues
 from ..blender.refusals import RefusedError
 from ..blender.selection import Needs
 from ..framework.job import Task
+from ..framework.run import counted
 from ..framework.sources import as_argument, varying_means
 from ..framework.surface import Surface
 from .attribute_run import AttributePart, AttributeRun, Solved, energy_on
+from .jumps import cut, jumping
 from .settings import denoise_fidelity_of
 
 
@@ -34,6 +36,19 @@ class Denoising(AttributeRun):
         free = weld.all_of(self.selected(obj) if self._in_edit_mode else everywhere)
         if not free.any():
             raise RefusedError(f'Nothing is selected in "{obj.name}": select the part to work on')
+        notes = []
+        if self.settings.use_jumps:
+            across = jumping(surface.mesh.faces, values, self.settings.jump)
+            if across.all():
+                raise RefusedError(f'"{source.name}" jumps everywhere on "{obj.name}": raise Jump')
+            surface, joined = cut(surface, across)
+            free &= joined
+            count = int(across[: weld.n_own].sum())
+            notes.append(
+                f"its values jump across {counted(count, 'triangle')}, and were kept apart there"
+                if count
+                else "its values jump nowhere (lower Jump to keep them apart)"
+            )
         options = self.options
         if not free.all():
             options["fixed"] = ~free
@@ -42,7 +57,7 @@ class Denoising(AttributeRun):
             fidelity = fidelity_for(surface.mesh, values, self.settings.strength, self.settings.energy)
             if fidelity is None:
                 raise RefusedError(f'"{source.name}" is the same on all of "{obj.name}" that has an area')
-        return AttributePart(
+        part = AttributePart(
             obj,
             Task(obj.name, partial(_denoised, surface, values, fidelity, options), counted="iteration"),
             len(source.values),
@@ -52,6 +67,8 @@ class Denoising(AttributeRun):
             columns=columns,
             constants=source.values[0],
         )
+        part.warnings += notes
+        return part
 
 
 def _denoised(

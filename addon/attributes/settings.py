@@ -192,7 +192,28 @@ class StrengthSettings(AttributeName):
     )
 
 
-class DenoiseSettings(StrengthSettings, ResultSettings, DisplaySettings, CoupledSettings, ExpertSettings):
+class JumpSettings(Settings):
+    """Where values are kept apart."""
+
+    use_jumps: boolean(
+        "Keep Jumps",
+        "Keep values apart where they jump from one vertex to the next, as colors do at the border of what "
+        "was painted. Otherwise a jump is a steep slope, and is leveled",
+        flag=None,
+    )
+    jump: factor(
+        "Jump",
+        "Difference between neighboring vertices from which on values jump, as a part of their range",
+        default=0.25,
+        min=0.001,
+        active=lambda settings: settings.use_jumps,
+        implies={"use_jumps": True},
+    )
+
+
+class DenoiseSettings(
+    StrengthSettings, JumpSettings, ResultSettings, DisplaySettings, CoupledSettings, ExpertSettings
+):
     """The settings of denoising."""
 
 

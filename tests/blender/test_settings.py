@@ -88,6 +88,7 @@ def test_every_value_of_a_setting_can_be_given_on_the_command_line(tool):
     silent = {
         "show",
         "use_fidelity",
+        "use_jumps",
         "use_count",
         "use_mark_angle",
         "source",
