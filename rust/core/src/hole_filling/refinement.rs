@@ -4,8 +4,9 @@ use std::f64::consts::{PI, SQRT_2};
 
 use crate::mesh::vector::{centroid, distance, dot, norm, quality};
 use crate::mesh::{edge_lengths, triangle};
-use crate::remesh::guard::{self, SLIVER};
+use crate::remesh::guard;
 use crate::remesh::{budget, EditableMesh};
+use crate::shape_guard::SLIVER;
 use crate::{Progress, Result};
 
 /// A face is split if its center is this much farther from each corner than the lengths wanted there: Liepa's density

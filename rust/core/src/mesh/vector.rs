@@ -74,6 +74,17 @@ pub fn area_vector([a, b, c]: [Point; 3]) -> Point {
     scale(cross(sub(b, a), sub(c, a)), 0.5)
 }
 
+/// The cosine of the angle between two vectors; 1 if one is zero.
+#[must_use]
+pub fn cosine(a: Point, b: Point) -> f64 {
+    let lengths = norm(a) * norm(b);
+    if lengths > 0.0 {
+        dot(a, b) / lengths
+    } else {
+        1.0
+    }
+}
+
 /// The quality `4 √3 area / Σ length²` of a triangle: 1 if equilateral, 0 if degenerate (Bank and Smith 1997).
 #[must_use]
 pub fn quality(corners: [Point; 3]) -> f64 {

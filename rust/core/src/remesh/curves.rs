@@ -7,7 +7,7 @@ use crate::remesh::closest::ClosestPoint;
 use crate::remesh::{key, Edge, EditableMesh};
 
 /// A vertex where a border or feature line turns by more than this (45 degrees) is a corner, and stays.
-const CORNER_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+pub(crate) const CORNER_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// How far a vertex may move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

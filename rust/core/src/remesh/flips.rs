@@ -8,8 +8,11 @@ use crate::mesh::vector::{dot, norm, quality};
 use crate::remesh::curves::Role;
 use crate::remesh::remesher::Remesher;
 use crate::remesh::{guard, EditableMesh};
-use crate::shape_guard::RIDGE;
+use crate::shape_guard::SLIVER;
 use crate::Progress;
+
+/// Edges whose faces turn by more than this (40 degrees) carry shape and are not flipped for better valences.
+const CARRIES_SHAPE: f64 = 0.766;
 
 /// By how much the worse of two faces must gain in quality for a flip that leaves the valences as good as they were.
 const WORTH: f64 = 1.1;
@@ -51,8 +54,8 @@ pub(crate) fn gain(mesh: &EditableMesh, a: u32, b: u32) -> f64 {
 fn keeps_shape(mesh: &EditableMesh, a: u32, b: u32) -> bool {
     mesh.wings(a, b).is_some_and(|wings| {
         let [m, n] = wings.faces.map(|f| mesh.area_vector(f));
-        let is_sliver = |f: u32| mesh.face(f).is_some_and(|face| quality(mesh.corners(face)) < guard::SLIVER);
-        dot(m, n) > RIDGE * norm(m) * norm(n) || wings.faces.into_iter().any(is_sliver)
+        let is_sliver = |f: u32| mesh.face(f).is_some_and(|face| quality(mesh.corners(face)) < SLIVER);
+        dot(m, n) > CARRIES_SHAPE * norm(m) * norm(n) || wings.faces.into_iter().any(is_sliver)
     })
 }
 

@@ -17,7 +17,7 @@ pub(crate) mod remesher;
 mod repair;
 mod rings;
 pub(crate) mod sizing;
-mod split;
+pub(crate) mod split;
 
 pub use editable::{key, Edge, EditableMesh, Wings};
 pub use isotropic::{remesh, RemeshOptions, Remeshed};

@@ -6,7 +6,7 @@ use crate::mesh::vector::{add, between, dot, norm, scale, sub, unit, Point};
 use crate::remesh::curves::Role;
 use crate::remesh::guard;
 use crate::remesh::remesher::Remesher;
-use crate::shape_guard::PARTS_OF_A_MOVE;
+use crate::shape_guard::farthest;
 use crate::Progress;
 
 /// Moves every free vertex in its tangent plane to the center of its neighbors, weighted by the area around them over that
@@ -31,8 +31,7 @@ pub(crate) fn relax_and_project(remesher: &mut Remesher, progress: &Progress) {
         }
         let Some((target, near)) = target else { continue };
         let start = remesher.mesh.position(v);
-        let allowed = PARTS_OF_A_MOVE.iter().map(|&step| between(start, target, step));
-        if let Some(position) = allowed.into_iter().find(|&p| guard::may_move(&remesher.mesh, v, p)) {
+        if let Some(position) = farthest(start, target, |p| guard::may_move(&remesher.mesh, v, p)) {
             remesher.mesh.set_position(v, position);
             remesher.near[v as usize] = near;
         }

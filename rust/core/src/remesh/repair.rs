@@ -2,9 +2,10 @@
 
 use crate::mesh::vector::quality;
 use crate::remesh::flips::gain;
-use crate::remesh::guard::{self, SLIVER};
+use crate::remesh::guard;
 use crate::remesh::relax::relax_and_project;
 use crate::remesh::remesher::Remesher;
+use crate::shape_guard::SLIVER;
 use crate::Progress;
 
 /// A repair can make another one possible; hardly any takes more.

@@ -4,37 +4,28 @@ use crate::linear::bounded::Limits;
 
 // Regions.
 
-/// What differs by less than this part of the range of the colors may be shading; a patch differs by more
-/// from its region everywhere, and across its border.
+/// What differs by less than this part of the range of the colors may be shading. A patch differs by more
+/// from its region everywhere, and across its border; a vertex that differs by more from its region is a
+/// blend or noise, and gets no face for itself; borders over which colors jump by more are kept untried.
 pub(super) const SHADING: f64 = 0.1;
 
 /// And by this many times what colors change over half of the edges, which is noise where it is much.
 pub(super) const PAINT_NOISE: f64 = 4.0;
 
-/// Rounds of moving borders at most: each moves them by a row of faces, and segments are rarely off by
-/// more than two.
+/// Rounds of moving borders at most, and sweeps that shorten them: each moves them by a row of faces;
+/// segments are rarely off by more than two, and few sweeps follow a third.
 pub(super) const REGION_ROUNDS: usize = 16;
-
-/// A vertex whose color is farther from that of its region, in parts of the range of the colors, is a
-/// blend or noise, and gets no face for itself.
-pub(super) const SURE: f64 = 0.1;
 
 /// Smaller islands are what moving borders leaves over, not paint.
 pub(super) const LEAST_ISLAND: usize = 5;
 
-/// A region must explain a vertex better than any other by this factor: a gentle change of color is no
-/// reason to move a border.
+/// A region must explain a vertex better than any other by this factor, and by what can be seen
+/// ([`UNSEEN`]): a gentle change of color is no reason to move a border.
 pub(super) const NEARER: f64 = 2.0;
-
-/// And by this part of the range of the colors, which is less than can be seen.
-pub(super) const LEAST_GAIN: f64 = 0.01;
 
 /// The largest fidelity of the fit that tells where vertices belong: broad, so that vertices on the wrong
 /// side cannot hide behind each other. It smooths over a fifth of a surface.
 pub(super) const BROAD: f64 = 30.0;
-
-/// Sweeps over all faces at most; few need more than three.
-pub(super) const SETTLE_SWEEPS: usize = 16;
 
 /// A border must become shorter by this part of the edges that change, or two equal ones would change for
 /// ever.
@@ -54,9 +45,6 @@ pub(super) const FIT_LIMITS: Limits = Limits { products: 60, fall: 1e-4 };
 /// vertices are on curves, the first owners come from a blend of its sides, and the second from its own
 /// colors; more never changed anything.
 pub(super) const MOST_FITS: usize = 3;
-
-/// Borders over which colors jump by more than this part of their range are kept untried.
-pub(super) const FAINT: f64 = 0.1;
 
 /// How much the squared error of two regions may grow when they become one, …
 pub(super) const WORSE: f64 = 1.25;

@@ -1,6 +1,6 @@
 //! The regions of a painted surface: segments of its colors, whose borders then follow the paint vertex by vertex.
 
-use super::constants::{REGION_ROUNDS, SURE};
+use super::constants::{REGION_ROUNDS, SHADING};
 use super::groups::Groups;
 use super::patches::add_patches;
 use super::settle::Faces;
@@ -95,7 +95,7 @@ pub fn follow_colors(
 /// Moves borders until every face is in a region of one of its vertices, and with `cover` until every vertex has a face of its
 /// region; returns where the vertices belong.
 fn follow(paint: &Paint<'_>, groups: &Groups, cover: bool, labels: &mut [i32]) -> Result<Sorted> {
-    let most = SURE * paint.scale();
+    let most = SHADING * paint.scale();
     let mut sorted = paint.sort(labels)?;
     for _ in 0..REGION_ROUNDS {
         paint.progress.check()?;

@@ -1,6 +1,6 @@
 //! Faces for vertices: every vertex has a face of its region, and the borders between are short.
 
-use super::constants::{SETTLE_SWEEPS, SHORTER_BY};
+use super::constants::{REGION_ROUNDS, SHORTER_BY};
 use super::groups::{majority, Groups};
 use crate::mesh::{Connectivity, Mesh};
 
@@ -64,7 +64,7 @@ impl<'a> Faces<'a> {
     /// Shortens the borders by giving groups of faces to other regions that their vertices belong to. An edge of a border more than
     /// two at a vertex counts as much as all edges around the group, so that regions are not pinched off where it can be helped.
     pub(super) fn shorten(&mut self) {
-        for _ in 0..SETTLE_SWEEPS {
+        for _ in 0..REGION_ROUNDS {
             let mut changed = false;
             for group in 0..self.groups.members.len() {
                 let old = self.label(group);

@@ -1,7 +1,7 @@
 //! Which region the color of each vertex belongs to.
 
 use super::chains::border_edges;
-use super::constants::{BROAD, LEAST_GAIN, NEARER};
+use super::constants::{BROAD, NEARER, UNSEEN};
 use super::fit::Task;
 use super::membrane::Membrane;
 use crate::linear::Columns;
@@ -67,7 +67,7 @@ impl Paint<'_> {
         for (face, &label) in connectivity.faces().iter().zip(labels) {
             face.iter().for_each(|&v| corners[v as usize].push(label));
         }
-        let least = LEAST_GAIN * self.scale();
+        let least = UNSEEN * self.scale();
         let mut sorted = Sorted { regions: Vec::with_capacity(copies.len()), off: Vec::with_capacity(copies.len()) };
         for (v, own) in copies.iter().enumerate() {
             let beside = around[v].iter().flat_map(|&u| &copies[u as usize]);

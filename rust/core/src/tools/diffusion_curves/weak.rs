@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::constants::{FAINT, UNSEEN, WORSE};
+use super::constants::{SHADING, UNSEEN, WORSE};
 use super::sorting::Paint;
 use super::{diffusion_curves, DiffusionCurves, DiffusionCurvesOptions};
 use crate::operators::voronoi_mass;
@@ -27,7 +27,7 @@ pub(super) fn merge_weak(paint: &Paint<'_>, labels: &mut [i32]) -> Result<()> {
     while !paint.progress.is_finishing() {
         let mut order: Vec<([i32; 2], f64)> =
             jumps.iter().map(|(&pair, &[length, sum])| (pair, sum / length)).collect();
-        order.retain(|(pair, jump)| *jump <= FAINT * scale && !kept.contains(pair));
+        order.retain(|(pair, jump)| *jump <= SHADING * scale && !kept.contains(pair));
         order.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
         let mut used = BTreeSet::new();
         order.retain(|([a, b], _)| {

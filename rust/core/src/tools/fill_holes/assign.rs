@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::constants::{ASSIGN_SWEEPS, DIRECTION_COST, FIXED_WEIGHT, MISFIT_COST, RIM_BORDER_COST};
+use super::constants::{ASSIGN_SWEEPS, FIXED_WEIGHT, RIM_BORDER_COST};
 use super::parts::{Parts, NONE};
 use super::region::Region;
 
@@ -23,7 +23,7 @@ pub(super) fn assign(region: &Region, parts: &Parts, edge: f64) -> Vec<u32> {
     labels
 }
 
-/// How badly face `f` fits to `part`: squared distance in edge lengths and direction.
+/// How badly face `f` fits to `part`: squared distance in edge lengths, and direction, where a right angle counts as one edge.
 fn misfit(region: &Region, parts: &Parts, edge: f64, f: u32, part: u32) -> f64 {
     let Some(face) = region.mesh.face(f) else { return 0.0 };
     let model = &parts.models[part as usize];
@@ -36,7 +36,7 @@ fn misfit(region: &Region, parts: &Parts, edge: f64, f: u32, part: u32) -> f64 {
     }
     let area = area_vector(corners);
     let cosine = if norm(area) > 0.0 { dot(area, model.at(centroid(corners)).1) / norm(area) } else { 1.0 };
-    squares / total + DIRECTION_COST * (1.0 - cosine)
+    squares / total + (1.0 - cosine)
 }
 
 /// For each edge of a face of the patch: its ends and the face beyond.
@@ -104,7 +104,7 @@ fn shorten(region: &Region, parts: &Parts, edge: f64, labels: &mut [u32]) {
             let cost = |part: u32| {
                 let others = around.iter().filter(|(_, other)| *other != part);
                 let length: f64 = others.map(|&(ends, other)| border(ends, part, other)).sum();
-                length + MISFIT_COST * area * misfit(region, parts, edge, f, part)
+                length + area * misfit(region, parts, edge, f, part)
             };
             let mut best = (cost(here), here);
             for &(_, part) in around.iter().filter(|(_, part)| *part != NONE && *part != here) {

@@ -75,11 +75,12 @@ pub(super) const MOST_BEND: f64 = 1.35;
 /// with a loop of 5000 vertices came back alike in half of the time.
 pub(super) const SOLVER_ITERATIONS: usize = 150;
 
-/// A flip must lower the cost by more than this part of it.
-pub(super) const FLIP_GAIN: f64 = 1e-6;
-
 /// Costs that differ by less than this angle (radians) along an edge are equal.
 pub(super) const EVEN_ANGLE: f64 = 0.01;
+
+/// Moves onto ridges may squeeze faces, which remeshing will mend, to this part of their quality: with 1 a
+/// concave edge came back 0.055 off instead of exactly.
+pub(super) const KEPT: f64 = 0.75;
 
 // The parts around a hole.
 
@@ -106,12 +107,6 @@ pub(super) const AS_GOOD: f64 = 1.5;
 /// How much more the distance of a vertex on the rim counts, which will stay where it is.
 pub(super) const FIXED_WEIGHT: f64 = 10.0;
 
-/// How much the direction of a face counts: 1 is one edge of distance for a face at a right angle.
-pub(super) const DIRECTION_COST: f64 = 1.0;
-
-/// How much a face's misfit counts beside the length of the borders around it.
-pub(super) const MISFIT_COST: f64 = 1.0;
-
 /// What a border counts along edges of the rim where the two parts meet: without favor, faces between it
 /// and a border beside it would have no area.
 pub(super) const RIM_BORDER_COST: f64 = 0.5;
@@ -136,12 +131,12 @@ pub(super) const SETTLE_PASSES: usize = 3;
 /// A corner this near to another one, in edges, is the same.
 pub(super) const CLOSE_CORNERS: f64 = 0.4;
 
-/// Borders between two vertices on the rim are cut from this length on, in edges: as remeshing splits
-/// others.
-pub(super) const LONG_BORDER: f64 = 4.0 / 3.0;
-
 /// How often triangles are cut before the faces are assigned anew.
 pub(super) const CUTS: usize = 3;
+
+/// A patch whose faces all lie on their surfaces is done if none is thinner: along a ridge that meets the
+/// rim at a slant, faces between fixed vertices are as thin as the rim has them.
+pub(super) const ARRIVED_SLIVER: f64 = 0.02;
 
 /// Newton steps onto the surfaces: for planes one is enough.
 pub(super) const NEWTON_STEPS: usize = 5;
@@ -163,11 +158,4 @@ pub(super) const UNTANGLE_PASSES: usize = 30;
 /// rather be flat.
 pub(super) const RIDGE_STIFFNESS: f64 = 100.0;
 
-/// A ridge that turns by more than this at a vertex (45 degrees) has a corner there.
-pub(super) const RIDGE_CORNER_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
-
 // In order or not.
-
-/// A face of a patch in a rim that calls for a lid faces inwards if it looks against the lid by more than
-/// this (120 degrees): the flanks of a smooth patch, which go on with the surface around, look across it.
-pub(super) const INWARDS: f64 = -0.5;

@@ -2,8 +2,8 @@
 
 use super::assign::{assign, borders, parts_at};
 use super::constants::{
-    CLOSE_CORNERS, COARSE_FACES, CUTS, EXTEND_ROUNDS, FLIP_SWEEPS, LONG_BORDER, RESAMPLE_ROUNDS, SETTLE_PASSES,
-    STILL_ROUND, UNTANGLE_FROM,
+    CLOSE_CORNERS, COARSE_FACES, CUTS, EXTEND_ROUNDS, FLIP_SWEEPS, RESAMPLE_ROUNDS, SETTLE_PASSES, STILL_ROUND,
+    UNTANGLE_FROM,
 };
 use super::flips::flip_along_ridges;
 use super::guard::move_guarded;
@@ -14,7 +14,8 @@ use super::resample::{resample, typical_edge, Kept, Target};
 use super::untangle::untangle;
 use crate::mesh::vector::{between, centroid, distance, Point};
 use crate::progress::Progress;
-use crate::shape_guard::{PARTS_OF_A_MOVE, SLIVER};
+use crate::remesh::split::LONG;
+use crate::shape_guard::{farthest, SLIVER};
 use crate::Result;
 
 /// How letting the parts go on ended.
@@ -117,7 +118,7 @@ fn cut(region: &mut Region, parts: &Parts, labels: &mut Vec<u32>, edge: f64) -> 
         let ends = [a, b].map(|v| parts_at(region, parts, labels, v));
         let is_chord = own == other && ends[0].iter().any(|part| *part != own && ends[1].contains(part));
         let is_stiff =
-            own != other && [a, b].iter().all(|&v| region.is_anchor(v)) && length(region, a, b) > LONG_BORDER * edge;
+            own != other && [a, b].iter().all(|&v| region.is_anchor(v)) && length(region, a, b) > LONG * edge;
         if is_chord || is_stiff {
             split(region, labels, a, b);
         }
@@ -167,14 +168,12 @@ fn settle(region: &mut Region, parts: &Parts, labels: &[u32]) -> f64 {
         for (_, v, goal) in moves {
             let start = region.mesh.position(v);
             let before = order(region, parts, labels, v).min(SLIVER);
-            for part in PARTS_OF_A_MOVE {
-                region.mesh.set_position(v, between(start, goal, part));
-                if order(region, parts, labels, v) >= before {
-                    longest = longest.max(part * distance(start, goal));
-                    break;
-                }
-                region.mesh.set_position(v, start);
-            }
+            let reached = farthest(start, goal, |position| {
+                region.mesh.set_position(v, position);
+                order(region, parts, labels, v) >= before
+            });
+            region.mesh.set_position(v, reached.unwrap_or(start));
+            longest = longest.max(reached.map_or(0.0, |position| distance(start, position)));
         }
     }
     longest

@@ -1,15 +1,15 @@
 //! Data-dependent flips: edges of the patch turn until they run along the ridge (Dyn, Levin and Rippa 1990).
 
-use super::constants::{EVEN_ANGLE, FLIP_GAIN};
+use super::constants::EVEN_ANGLE;
 use super::region::Region;
 use super::surface::angle;
 use crate::mesh::vector::{area_vector, distance, quality, Point};
 use crate::remesh::editable::key;
 use crate::remesh::EditableMesh;
-use crate::shape_guard::FLIPPED_SLIVER;
+use crate::shape_guard::is_thinned;
 
 /// Flips edges of the patch while that lowers `Σ length · |dihedral angle|` over the edge and its four neighbors, and
-/// makes no triangle of less quality than [`FLIPPED_SLIVER`] unless the old one was worse. Returns the number of flips.
+/// makes no sliver where there was none ([`is_thinned`]). Returns the number of flips.
 pub(super) fn flip_along_ridges(region: &mut Region, sweeps: usize) -> usize {
     let mut edges: Vec<[u32; 2]> = (region.n_outer as u32..region.mesh.n_faces() as u32)
         .filter_map(|f| region.mesh.face(f))
@@ -51,7 +51,7 @@ fn lowers(region: &Region, a: u32, b: u32) -> bool {
     let shape = |face: [u32; 3]| quality(mesh.corners(face));
     let old = [[a, b, c], [b, a, d]];
     let worst = |faces: [[u32; 3]; 2]| shape(faces[0]).min(shape(faces[1]));
-    if worst(new) < FLIPPED_SLIVER.min(worst(old)) {
+    if is_thinned(worst(new), worst(old)) {
         return false;
     }
     let normal = |face: [u32; 3]| area_vector(mesh.corners(face));
@@ -67,8 +67,7 @@ fn lowers(region: &Region, a: u32, b: u32) -> bool {
     }
     // Of two ways of the same cost, the one with the better triangles.
     let slack = EVEN_ANGLE * distance(at(a), at(b)).max(distance(at(c), at(d)));
-    cost_after < (1.0 - FLIP_GAIN) * cost && cost_after < cost - slack
-        || cost_after < cost + slack && worst(new) > 1.05 * worst(old)
+    cost_after < cost - slack || cost_after < cost + slack && worst(new) > 1.05 * worst(old)
 }
 
 /// The area vector of the face beyond an edge of one of `inside`.

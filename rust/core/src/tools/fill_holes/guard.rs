@@ -1,12 +1,9 @@
 //! Moves that fold nothing: the vertices of faces that would turn over or become slivers move less far.
 
+use super::constants::KEPT;
 use super::region::Region;
-use super::surface::angle;
-use crate::mesh::vector::{area_vector, between, distance, dot, norm, quality, Point};
-use crate::shape_guard::{FOLD_ANGLE, KEPT, MOVED_SLIVER, PARTS_OF_A_MOVE, TURNED};
-
-/// How often the steps at a bad face are halved before they are taken back.
-const HALVINGS: usize = 4;
+use crate::mesh::vector::{area_vector, between, cosine, distance, norm, quality, Point};
+use crate::shape_guard::{farthest, is_thinned, is_turned, shorter, FOLDED};
 
 /// Moves the free vertices toward `goal` as far as the faces around them stay in order, and returns the longest move.
 pub(super) fn move_guarded(region: &mut Region, goal: &[Point]) -> f64 {
@@ -15,7 +12,7 @@ pub(super) fn move_guarded(region: &mut Region, goal: &[Point]) -> f64 {
     let faces: Vec<(u32, [u32; 3])> = region.patch_faces().collect();
     let before: Vec<(Point, f64)> =
         faces.iter().map(|&(_, face)| region.mesh.corners(face)).map(|c| (area_vector(c), quality(c))).collect();
-    for round in 0.. {
+    loop {
         for v in region.free() {
             let i = v as usize;
             region.mesh.set_position(v, between(old[i], goal[i], part[i]));
@@ -33,9 +30,7 @@ pub(super) fn move_guarded(region: &mut Region, goal: &[Point]) -> f64 {
         if !any {
             break;
         }
-        for (part, _) in part.iter_mut().zip(&bad).filter(|(_, bad)| **bad) {
-            *part = if round < HALVINGS { 0.5 * *part } else { 0.0 };
-        }
+        part.iter_mut().zip(&bad).filter(|(_, bad)| **bad).for_each(|(part, _)| *part = shorter(*part));
     }
     let moved = |(&a, &b): (&Point, &Point)| distance(a, b);
     old.iter().zip(region.mesh.positions()).map(moved).fold(0.0, f64::max)
@@ -48,39 +43,33 @@ pub(super) fn move_one(region: &mut Region, v: u32, goal: Point) -> f64 {
         region.mesh.faces_of(v).iter().filter_map(|&f| Some((f, region.mesh.face(f)?))).collect();
     let before: Vec<(Point, f64)> =
         around.iter().map(|&(_, face)| region.mesh.corners(face)).map(|c| (area_vector(c), quality(c))).collect();
-    for part in PARTS_OF_A_MOVE {
-        let position = between(start, goal, part);
+    let reached = farthest(start, goal, |position| {
         region.mesh.set_position(v, position);
         let was = |g: u32| {
             let old = |w: u32| if w == v { start } else { region.mesh.position(w) };
             region.mesh.face(g).map_or([0.0; 3], |face| area_vector(face.map(old)))
         };
-        let sound = around.iter().zip(&before).all(|(&(f, face), &(area, shape))| {
+        around.iter().zip(&before).all(|(&(f, face), &(area, shape))| {
             is_sound(region.mesh.corners(face), area, shape) && !folds(region, f, face, &was)
-        });
-        if sound {
-            return distance(start, position);
-        }
-    }
-    region.mesh.set_position(v, start);
-    0.0
+        })
+    });
+    region.mesh.set_position(v, reached.unwrap_or(start));
+    reached.map_or(0.0, |position| distance(start, position))
 }
 
 /// Whether a face that had this area vector and quality is still in order.
 fn is_sound(corners: [Point; 3], area: Point, shape: f64) -> bool {
-    let new = area_vector(corners);
-    let turned = norm(area) > 0.0 && dot(new, area) < TURNED * norm(new) * norm(area);
-    !turned && quality(corners) >= MOVED_SLIVER.min(KEPT * shape)
+    !(norm(area) > 0.0 && is_turned(corners, area)) && !is_thinned(quality(corners), KEPT * shape)
 }
 
-/// Whether a dihedral angle at face `f` is too large and was smaller before; `was` gives the area vectors of then.
+/// Whether face `f` and a neighbor fold the surface more than before; `was` gives the area vectors of then.
 fn folds(region: &Region, f: u32, face: [u32; 3], was: &dyn Fn(u32) -> Point) -> bool {
     let mesh = &region.mesh;
     let here = mesh.area_vector(f);
     (0..3).any(|i| {
         let Some(wings) = mesh.wings(face[i], face[(i + 1) % 3]) else { return false };
         let other = if wings.faces[0] == f { wings.faces[1] } else { wings.faces[0] };
-        let now = angle(here, mesh.area_vector(other));
-        now > FOLD_ANGLE && now > angle(was(f), was(other))
+        let now = cosine(here, mesh.area_vector(other));
+        now < FOLDED && now < cosine(was(f), was(other))
     })
 }

@@ -1,12 +1,12 @@
 //! Where the parts around a hole meet in its patch, and whether its faces lie there in order.
 
 use super::assign::parts_at;
-use super::constants::{DROPPED_EIGENVALUES, NEWTON_STEPS};
+use super::constants::{ARRIVED_SLIVER, DROPPED_EIGENVALUES, NEWTON_STEPS};
 use super::parts::Parts;
 use super::region::Region;
 use crate::linear::small::Quadric;
-use crate::mesh::vector::{add, area_vector, centroid, dot, norm, quality, scale, unit, Point};
-use crate::shape_guard::{ARRIVED_SLIVER, ARRIVED_TURNED, TURNED};
+use crate::mesh::vector::{add, area_vector, centroid, dot, quality, scale, unit, Point};
+use crate::shape_guard::{is_turned, TURNED};
 
 /// How good the worst face at `v` is: its quality, or how much it looks along its part, less what is allowed, if that is not enough.
 pub(super) fn order(region: &Region, parts: &Parts, labels: &[u32], v: u32) -> f64 {
@@ -25,8 +25,7 @@ pub(super) fn turned(region: &Region, parts: &Parts, labels: &[u32]) -> Vec<u32>
     let is_turned = |(f, face): (u32, [u32; 3])| {
         let model = parts.models.get(*labels.get((f as usize).checked_sub(region.n_outer)?)? as usize)?;
         let corners = region.mesh.corners(face);
-        let normal = model.at(centroid(corners)).1;
-        (dot(unit(area_vector(corners)), normal) < TURNED).then_some(f)
+        is_turned(corners, model.at(centroid(corners)).1).then_some(f)
     };
     region.patch_faces().filter_map(is_turned).collect()
 }
@@ -53,10 +52,8 @@ pub(super) fn has_arrived(region: &Region, parts: &Parts, labels: &[u32], edge: 
     region.patch_faces().zip(labels).all(|((_, face), &part)| {
         let Some(model) = parts.models.get(part as usize) else { return false };
         let corners = region.mesh.corners(face);
-        let area = area_vector(corners);
-        let normal = model.at(centroid(corners)).1;
         corners.into_iter().all(|p| parts.has(part, p, edge))
-            && dot(area, normal) > ARRIVED_TURNED * norm(area)
+            && !is_turned(corners, model.at(centroid(corners)).1)
             && quality(corners) > ARRIVED_SLIVER
     })
 }

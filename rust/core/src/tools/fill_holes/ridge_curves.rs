@@ -1,9 +1,9 @@
 //! Ridges that go on as the ridges around the hole do: straight ones straight, bent ones bent alike.
 
-use super::constants::RIDGE_CORNER_COSINE;
 use super::region::Region;
 use super::surface::Surface;
 use crate::mesh::vector::{distance, dot, norm, sub};
+use crate::remesh::curves::CORNER_COSINE;
 
 /// Rows of the third derivative along the ridges: vertices, their coefficients, and the length that each row stands for.
 ///
@@ -24,7 +24,7 @@ pub(super) fn third_derivatives(region: &Region, ridge: f64) -> Vec<([u32; 4], [
         [a, b] => {
             let next = if a == from { b } else { a };
             let (before, after) = (sub(at(v), at(from)), sub(at(next), at(v)));
-            (dot(before, after) > RIDGE_CORNER_COSINE * norm(before) * norm(after)).then_some(next)
+            (dot(before, after) > CORNER_COSINE * norm(before) * norm(after)).then_some(next)
         }
         _ => None,
     };

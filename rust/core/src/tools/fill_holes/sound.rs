@@ -1,6 +1,5 @@
 //! No patch is left folded, or facing inwards: where one came out so, the next simpler one takes its place.
 
-use super::constants::INWARDS;
 use super::filled::Restored;
 use super::region::Region;
 use super::restoration::Watch;
@@ -10,7 +9,7 @@ use crate::hole_filling::Patch;
 use crate::mesh::vector::{dot, norm, Point};
 use crate::progress::Progress;
 use crate::remesh::guard::worst_bend_of;
-use crate::shape_guard::FOLDED;
+use crate::shape_guard::{FOLDED, TURNED};
 use crate::Result;
 
 /// [`restore`], and if that leaves a patch folded or facing inwards, the smooth patch, or the triangulation that it started from:
@@ -55,7 +54,8 @@ pub(super) fn restored_in_order(
     Ok(restored)
 }
 
-/// By how much the worst bend of the patch, or its face that looks inwards most, is within the limits; negative if not.
+/// By how much the worst bend of the patch, or its face that looks inwards most, is within the limits; negative if not. A face looks
+/// inwards that looks against the lid to [`TURNED`]: the flanks of a smooth patch, which go on with the surface around, look across it.
 fn order(region: &Region, lid: Option<Point>) -> f64 {
     let bend = worst_bend_of(&region.mesh, region.patch_faces().map(|(f, _)| f));
     let looks = |(f, _): (u32, [u32; 3])| {
@@ -63,5 +63,5 @@ fn order(region: &Region, lid: Option<Point>) -> f64 {
         lid.map_or(1.0, |lid| if norm(area) > 0.0 { dot(area, lid) / norm(area) } else { 1.0 })
     };
     let least = region.patch_faces().map(looks).fold(1.0, f64::min);
-    (bend - FOLDED).min(least - INWARDS)
+    (bend - FOLDED).min(least + TURNED)
 }

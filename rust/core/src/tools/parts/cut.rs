@@ -3,11 +3,11 @@
 use std::cmp::Ordering;
 
 use super::constants::{
-    AREA_POWER, FUNCTIONS, FUNCTION_ACCURACY, LEAST_PART, LEAST_PATCHES, LEVELS, LEVELS_APART, SAME_CUT, STEP,
-    TIGHTENED,
+    AREA_POWER, BAND, FUNCTIONS, FUNCTION_ACCURACY, LEAST_PART, LEAST_PATCHES, LEVELS, LEVELS_APART, SAME_CUT, STEP,
+    TIGHTENED, TIGHTENINGS,
 };
 use super::graph::Graph;
-use super::tighten::tightened;
+use super::tighten::moved;
 use crate::block_rows::BlockRows;
 use crate::progress::Progress;
 use crate::solve::eigen::Pencil;
@@ -101,8 +101,22 @@ pub(super) fn cheapest(graph: &Graph, progress: &Progress) -> Result<Option<Cut>
 }
 
 /// Whether both sides are connected.
-pub(super) fn is_whole(graph: &Graph, side: &[bool]) -> bool {
+fn is_whole(graph: &Graph, side: &[bool]) -> bool {
     graph.pieces(|e| side[e.ends[0] as usize] == side[e.ends[1] as usize]).1 == 2
+}
+
+/// The cut moved to where it costs least within its band, as long as that makes it cheaper and both sides
+/// stay connected.
+fn tightened(graph: &Graph, mut side: Vec<bool>) -> Vec<bool> {
+    let area = area_of(graph, &side);
+    let width = BAND * area.min(graph.area() - area).max(0.0).sqrt();
+    for _ in 0..TIGHTENINGS {
+        match moved(graph, &side, width) {
+            Some(better) if is_whole(graph, &better) && cost(graph, &better) < cost(graph, &side) => side = better,
+            _ => break,
+        }
+    }
+    side
 }
 
 /// The area in which two cuts differ, whichever side is called which.

@@ -1,23 +1,7 @@
-//! A cut pulled tight: the minimum cut in a band around it.
+//! The minimum cut in a band around a cut.
 
-use super::constants::{BAND, TIGHTENINGS};
-use super::cut::{area_of, cost, is_whole};
 use super::graph::{Graph, NONE};
 use crate::tools::minimum_cut;
-
-/// The cut moved to where it costs least within its band, as long as that makes it cheaper and both sides
-/// stay connected.
-pub(super) fn tightened(graph: &Graph, mut side: Vec<bool>) -> Vec<bool> {
-    let area = area_of(graph, &side);
-    let width = BAND * area.min(graph.area() - area).max(0.0).sqrt();
-    for _ in 0..TIGHTENINGS {
-        match moved(graph, &side, width) {
-            Some(better) if is_whole(graph, &better) && cost(graph, &better) < cost(graph, &side) => side = better,
-            _ => break,
-        }
-    }
-    side
-}
 
 /// The minimum cut between what lies farther than `width` from the border on one side, and on the other;
 /// nothing where one of them is empty.

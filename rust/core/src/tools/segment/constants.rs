@@ -160,10 +160,8 @@ pub(super) const LEAST_NOISE_OF_VALUES: f64 = 0.02;
 /// The most that one corner's misfit costs: a spike does not decide alone.
 pub(super) const MOST_MISFIT: f64 = 12.0;
 
-/// How far unit normals of faces stray: that much in any case, and more for each mean edge of noise
-/// (measured on noisy cubes).
+/// How far unit normals of faces stray in any case, beside what noise adds ([`STRAY_OF_NOISE`]).
 pub(super) const LEAST_TURN: f64 = 0.15;
-pub(super) const TURN_OF_NOISE: f64 = 2.0;
 
 /// What a mean edge of border costs, in the units of the misfit: 1.5 and more leave fewer teeth on
 /// characters, but lose a side of a noisy dodecahedron.

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use super::constants::{
     EDGE_COST, LEAST_NOISE, LEAST_NOISE_OF_VALUES, LEAST_TURN, MOST_MISFIT, PLANE_EDGE, PLANE_NOISE, RELABEL_ROUNDS,
-    RELABEL_SWEEPS, TURN_OF_NOISE,
+    RELABEL_SWEEPS, STRAY_OF_NOISE,
 };
 use super::patches::{nearby, patch_size, Patch, Plane};
 use super::surface::{pieces, Surface};
@@ -185,7 +185,7 @@ impl<'a, 'b> Round<'a, 'b> {
             stamp: 0,
             patch_size: patch_size(relabel.noise / surface.mean_edge),
             deviation: relabel.noise.max(least),
-            turn: LEAST_TURN + TURN_OF_NOISE * relabel.noise / surface.mean_edge,
+            turn: LEAST_TURN + STRAY_OF_NOISE * relabel.noise / surface.mean_edge,
         }
     }
 
