@@ -56,7 +56,8 @@ def test_limbs_that_are_mirror_images_are_cut_alike(ball, found):
     vertices, faces, _ = ball
     areas = np.sort(areas_of(vertices, faces, found.labels))
     assert np.ptp(areas[:4]) <= 0.02 * areas[0]
-    assert found.costs[:4] == pytest.approx(np.full(4, found.costs[0]), rel=0.1)
+    # What a limb is cut from grows thicker with the limbs that it has.
+    assert found.costs[:4].max() <= 2 * found.costs[:4].min()
 
 
 def test_divisions_are_nested_and_their_parts_connected_at_every_count(ball, found):
@@ -73,8 +74,25 @@ def test_divisions_are_nested_and_their_parts_connected_at_every_count(ball, fou
         assert (pieces_of(faces, labels) == 1).all()
         finer = labels
     assert len(found.costs) == most - 1
-    assert (np.diff(found.costs) >= 0).all()
+    assert (found.costs > 0).all()
     assert np.array_equal(found.labels, found.labels_at(found.n_parts))
+
+
+def test_a_thumb_on_a_limb_goes_before_the_limb():
+    """Its cut is the cheapest: least border, and least area."""
+    vertices, faces, truth = limbs.ball_with_limbs(4)
+    plain = ridgeform.parts(ridgeform.Mesh(vertices, faces), n_parts=5)
+    far = np.linalg.norm(vertices[faces].mean(axis=1), axis=1)
+    tip = (truth == 0) & (far > far[truth == 0].max() - 0.15)
+    weights = np.ones((len(faces), 3))
+    first, second, edges = segment_shapes.face_pairs(faces)
+    rim = {tuple(sorted(edge)) for edge in edges[tip[first] != tip[second]].tolist()}
+    for f, face in enumerate(faces.tolist()):
+        for i in range(3):
+            if tuple(sorted((face[(i + 1) % 3], face[(i + 2) % 3]))) in rim:
+                weights[f, i] = 0.3
+    thumbed = ridgeform.parts(ridgeform.Mesh(vertices, faces), edge_weights=weights)
+    assert adjusted_rand_index(thumbed.labels_at(5), plain.labels) >= 0.95
 
 
 def test_the_result_is_complete_and_consistent(ball, found):

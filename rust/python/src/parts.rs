@@ -57,7 +57,8 @@ impl Parts {
         (fewest, most)
     }
 
-    /// What the cuts cost that make two parts of one, three of two, and so on, ascending, float64.
+    /// What the cuts cost that make two parts of one, three of two, and so on, float64. They come in the order of
+    /// how much they are worth, which grows with the areas that they part: not ascending.
     #[getter]
     fn costs<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         let costs: Vec<f64> = self.hierarchy.strengths().iter().rev().map(|strength| 1.0 / strength).collect();
@@ -75,7 +76,8 @@ impl Parts {
 /// People cut where a closed curve is short against what it cuts off, and runs through hollows (minima rule) or
 /// where the thickness changes. A cut costs the length of its border, in hollows and at changes of thickness down
 /// to a tenth of it, over the 0.7th power of the area of the smaller side, in units of the whole area. The part
-/// with the cheapest cut is divided, over and over. Any mesh will do: vertices at the same place count as one,
+/// with the cheapest cut is divided, over and over, as long as cuts cost little; where fewer parts are wanted, those
+/// become one that lose least: the logarithm of how cheap their cut is, times the product of their areas. Any mesh will do: vertices at the same place count as one,
 /// faces are turned to agree, pieces that nothing joins are parts or belong to what lies nearest. For the faces
 /// of what is plane or evenly curved use `segment`.
 ///

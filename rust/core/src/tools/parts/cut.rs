@@ -22,8 +22,8 @@ pub(super) struct Cut {
 
 /// One side of a cut: its area, and the integral of the logarithm of the thickness over it.
 #[derive(Debug, Clone, Copy, Default)]
-struct Side {
-    area: f64,
+pub(super) struct Side {
+    pub(super) area: f64,
     thickness: f64,
 }
 
@@ -34,7 +34,7 @@ impl Side {
     }
 
     /// The side of all nodes in `inside`.
-    fn of(graph: &Graph, inside: impl Fn(usize) -> bool) -> Self {
+    pub(super) fn of(graph: &Graph, inside: impl Fn(usize) -> bool) -> Self {
         let mut side = Self::default();
         (0..graph.n_nodes()).filter(|&i| inside(i)).for_each(|i| side.add(graph, i));
         side
@@ -44,8 +44,13 @@ impl Side {
         Self { area: whole.area - self.area, thickness: whole.thickness - self.thickness }
     }
 
+    /// Both sides as one.
+    pub(super) fn with(self, other: Self) -> Self {
+        Self { area: self.area + other.area, thickness: self.thickness + other.thickness }
+    }
+
     /// What a cut with this border between this side and `other` costs.
-    fn price(self, other: Self, border: f64) -> f64 {
+    pub(super) fn price(self, other: Self, border: f64) -> f64 {
         let mean = |side: Self| side.thickness / side.area.max(f64::MIN_POSITIVE);
         let (small, large) = if self.area < other.area { (self, other) } else { (other, self) };
         let step = (mean(large) - mean(small)).max(0.0);

@@ -4,7 +4,8 @@
 //! thickness changes. The faces become a graph whose edges cost that ([`surface`], [`hollows`],
 //! [`thickness`]), pieces that nothing joins are joined to what is near ([`stitch`]), large meshes become
 //! a few thousand [`clusters`]. Then the part with the cheapest [`cut`] is divided, over and over
-//! ([`division`]); the borders are drawn on the faces ([`borders`]), and the count is chosen ([`choice`]).
+//! ([`division`]); the borders are drawn on the faces ([`borders`]), the count is chosen ([`choice`]), and
+//! the parts are put in the order in which they become one where fewer are wanted ([`merging`]).
 
 mod borders;
 mod choice;
@@ -15,6 +16,7 @@ mod diffusion;
 mod division;
 mod graph;
 mod hollows;
+mod merging;
 mod options;
 mod stitch;
 mod surface;
@@ -29,6 +31,7 @@ use crate::solve::Status;
 use crate::tools::segment::{boundary_edges, Hierarchy};
 use crate::Result;
 use borders::Drawn;
+use graph::Graph;
 use surface::Surface;
 
 /// What came out of a division into parts.
@@ -40,7 +43,8 @@ pub struct Parts {
     pub n_parts: usize,
     /// The vertices of the edges between parts.
     pub boundary_edges: Vec<[u32; 2]>,
-    /// Coarser and finer divisions, nested; the strength of a border is one over what its cut costs.
+    /// Coarser and finer divisions, nested, in the order of what they are worth; the strength of a border is one
+    /// over what its cut costs.
     pub hierarchy: Hierarchy,
     /// `Solved`, or `Stopped` if the caller asked to finish early: then with fewer parts at most.
     pub status: Status,
@@ -68,7 +72,7 @@ fn found(mesh: &Mesh, options: &PartsOptions, progress: &Progress) -> Result<Par
     say(progress, "measuring");
     let surface = Surface::new(mesh, &faces, |h| options.weight(h))?;
     let graph = hollows::border_graph(&surface, progress)?;
-    let graph = stitch::stitched(&surface, graph);
+    let (graph, pieces) = stitch::stitched(&surface, graph);
     let (clusters, n_clusters) = clusters::clusters(&graph, progress)?;
     let coarse = graph.quotient(&clusters, n_clusters);
     say(progress, "dividing");
@@ -76,19 +80,22 @@ fn found(mesh: &Mesh, options: &PartsOptions, progress: &Progress) -> Result<Par
     say(progress, "drawing borders");
     let drawn = borders::drawn(&graph, &clusters, n_clusters, &divisions, progress)?;
     let costs: Vec<f64> = drawn.divisions.iter().map(|(_, cost)| *cost).collect();
-    let hierarchy = nested(drawn).spread(&faces, n_faces);
-    let n_parts = options.n_parts.unwrap_or_else(|| choice::count(&costs, options.most_cost()));
-    let n_parts = n_parts.min(hierarchy.range()[0]);
+    let found = choice::count(&costs, options.most_cost());
+    let hierarchy = nested(&graph, &pieces, drawn, found, options.most_cost()).spread(&faces, n_faces);
+    let n_parts = options.n_parts.unwrap_or(found).min(hierarchy.range()[0]);
     let labels = hierarchy.labels_at(n_parts)?;
     let status = if progress.is_finishing() { Status::Stopped } else { Status::Solved };
     Ok(Parts { boundary_edges: boundary_edges(mesh, &labels), labels, n_parts, hierarchy, status })
 }
 
-/// The divisions undone from the last on.
-fn nested(drawn: Drawn) -> Hierarchy {
+/// Divisions of every count, among them the first `found` parts that were divided.
+fn nested(graph: &Graph, pieces: &[u32], drawn: Drawn, found: usize, limit: f64) -> Hierarchy {
     let count = drawn.divisions.len() + 1;
-    let undone = drawn.divisions.into_iter().rev().map(|(parts, cost)| (parts, 1.0 / cost.max(f64::MIN_POSITIVE)));
-    Hierarchy::new(drawn.labels, count, undone)
+    let mut origin: Vec<u32> = (0..found as u32).collect();
+    drawn.divisions.iter().skip(found - 1).for_each(|([part, _], _)| origin.push(origin[*part as usize]));
+    let merging = merging::Merging::new(graph, pieces, &drawn.labels, origin, limit);
+    let strengths = merging.merges().into_iter().map(|(pair, price)| (pair, 1.0 / price.max(f64::MIN_POSITIVE)));
+    Hierarchy::new(drawn.labels, count, strengths)
 }
 
 fn say(progress: &Progress, stage: &str) {

@@ -1,7 +1,7 @@
 //! Joints across gaps: pieces that nothing joins belong to what lies nearest.
 //!
-//! A piece large enough to be a part is joined by less than any hollow, so that it comes off before all limbs. Smaller
-//! ones, down to loose triangles, are joined along their open edges as if the surface went on.
+//! A piece large enough to be a part is joined by less than any hollow, so that it comes off before all limbs.
+//! Smaller ones, down to loose triangles, are joined along their open edges as if the surface went on.
 
 use super::constants::{HOLLOW, LEAST_PART, LOOKOUTS};
 use super::graph::{Edge, Graph};
@@ -10,11 +10,11 @@ use crate::mesh::partition::Partition;
 use crate::mesh::vector::{between, distance, Point};
 use crate::remesh::closest::ClosestPoint;
 
-/// `graph` with edges that make one piece of it.
-pub(super) fn stitched(surface: &Surface, graph: Graph) -> Graph {
+/// `graph` with edges that make one piece of it, and the piece of each node without those across gaps.
+pub(super) fn stitched(surface: &Surface, graph: Graph) -> (Graph, Vec<u32>) {
     let (mut pieces, mut count) = graph.pieces(|_| true);
     if count == 1 {
-        return graph;
+        return (graph, pieces);
     }
     let tree = ClosestPoint::new(surface.triangles.clone());
     let mut edges = graph.edges.clone();
@@ -34,6 +34,7 @@ pub(super) fn stitched(surface: &Surface, graph: Graph) -> Graph {
     }
     let mut graph = graph.with_edges(edges.clone());
     (pieces, count) = graph.pieces(|_| true);
+    let apart = pieces.clone();
     // Each round joins every piece to the one nearest to it (Borůvka 1926).
     while count > 1 {
         let areas = piece_areas(&graph, &pieces, count);
@@ -44,7 +45,7 @@ pub(super) fn stitched(surface: &Surface, graph: Graph) -> Graph {
         graph = graph.with_edges(edges.clone());
         (pieces, count) = graph.pieces(|_| true);
     }
-    graph
+    (graph, apart)
 }
 
 fn distance_of(graph: &Graph, ends: [u32; 2]) -> f64 {

@@ -15,20 +15,24 @@ pub struct Hierarchy {
 }
 
 impl Hierarchy {
-    /// `leaves` are contiguous labels; of each merge the segment kept, the one gone, and the strength, which becomes ascending by
-    /// the running maximum.
+    /// `leaves` are contiguous labels; of each merge the segment kept, the one gone, and the strength.
     pub(in crate::tools) fn new(
         leaves: Vec<u32>,
         n_leaves: usize,
         merges: impl IntoIterator<Item = ([u32; 2], f64)>,
     ) -> Self {
-        let mut most = 0.0_f64;
-        let ascending = |(pair, strength): ([u32; 2], f64)| {
-            most = most.max(strength);
-            (pair, most)
-        };
-        let (merges, strengths) = merges.into_iter().map(ascending).unzip();
+        let (merges, strengths) = merges.into_iter().unzip();
         Self { leaves, n_leaves, merges, strengths }
+    }
+
+    /// The same where no border is weaker than one that fell before it.
+    pub(in crate::tools) fn ascending(mut self) -> Self {
+        let mut most = 0.0_f64;
+        for strength in &mut self.strengths {
+            most = most.max(*strength);
+            *strength = most;
+        }
+        self
     }
 
     /// The same for a mesh of which only some faces took part: face `i` of this hierarchy is face `faces[i]` there, of `n_faces`.
@@ -47,7 +51,7 @@ impl Hierarchy {
         [self.n_leaves, self.n_leaves - self.merges.len()]
     }
 
-    /// The strength of the border that falls with each merge, from the finest segmentation on, ascending.
+    /// The strength of the border that falls with each merge, from the finest segmentation on.
     #[must_use]
     pub fn strengths(&self) -> &[f64] {
         &self.strengths
@@ -82,7 +86,7 @@ mod tests {
     #[test]
     fn takes_as_many_merges_as_it_needs() {
         let merges = [([0, 1], 0.3), ([2, 3], 0.2), ([0, 2], 0.5)];
-        let hierarchy = Hierarchy::new(vec![0, 1, 2, 3, 0], 4, merges);
+        let hierarchy = Hierarchy::new(vec![0, 1, 2, 3, 0], 4, merges).ascending();
         assert_eq!(hierarchy.range(), [4, 1]);
         assert_eq!(hierarchy.strengths(), [0.3, 0.3, 0.5]);
         assert_eq!(hierarchy.labels_at(9).unwrap(), [0, 1, 2, 3, 0]);

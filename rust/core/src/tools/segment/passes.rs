@@ -186,7 +186,8 @@ impl<'a> Passes<'a> {
         let mut current = finest.clone();
         rename(&mut current, &merges);
         merges.extend(merging.all(&mut current)?);
-        Ok(Hierarchy::new(finest, n_leaves, merges.iter().map(|m| ([m.kept, m.gone], m.strength))))
+        let merges = merges.iter().map(|m| ([m.kept, m.gone], m.strength));
+        Ok(Hierarchy::new(finest, n_leaves, merges).ascending())
     }
 
     /// Each leaf belongs to the segment that has most of its faces; faces elsewhere go to the nearest leaf of their own segment.

@@ -1,0 +1,157 @@
+//! In which order the finest parts become one: nested divisions of every count.
+//!
+//! The cheapest cuts say what is a part, but not which part to give up where fewer are wanted: hands are cut
+//! off more cheaply than arms. Two parts that touch are two for people the more surely the cheaper the cut is,
+//! as surely as not at the limit: the logarithm of limit over price is the evidence. The Rand index says what a
+//! merge is worth: it joins as many pairs of points as the product of both areas, which is right or wrong for
+//! all of them. The merge with the least evidence against it, times those pairs, comes next.
+
+use std::collections::BTreeMap;
+
+use super::cut::Side;
+use super::graph::Graph;
+use crate::mesh::partition::Partition;
+
+/// Parts that become one, two at a time.
+pub(super) struct Merging {
+    sides: Vec<Side>,
+    /// What the border between two parts costs.
+    borders: BTreeMap<[u32; 2], f64>,
+    /// Parts of the same one that was found merge before all others.
+    found: Vec<u32>,
+    /// The piece of the surface that a part belongs to, and of how many parts of it besides.
+    pieces: Vec<(u32, usize)>,
+    limit: f64,
+}
+
+impl Merging {
+    /// The parts by `labels`, from 0, of a graph whose nodes lie in `pieces` that only gaps join; which part each
+    /// comes from that was `found`, and up to which price cuts are made.
+    pub(super) fn new(graph: &Graph, pieces: &[u32], labels: &[u32], found: Vec<u32>, limit: f64) -> Self {
+        let parts = graph.quotient(labels, found.len());
+        let sides = (0..parts.n_nodes()).map(|i| Side::of(&parts, |node| node == i)).collect();
+        let mut borders: BTreeMap<[u32; 2], f64> = BTreeMap::new();
+        parts.edges.iter().for_each(|e| *borders.entry(ordered(e.ends)).or_default() += e.cost);
+        // A part that holds a gap makes one piece of both sides.
+        let mut joined = Partition::new(found.len() + pieces.len());
+        let name = |piece: u32| found.len() as u32 + piece;
+        labels.iter().zip(pieces).for_each(|(&part, &piece)| joined.unite(part, name(piece)));
+        let roots: Vec<u32> = (0..found.len() as u32).map(|part| joined.root(part)).collect();
+        let others = |root: u32| roots.iter().filter(|r| **r == root).count() - 1;
+        let pieces = roots.iter().map(|&root| (root, others(root))).collect();
+        Self { sides, borders, found, pieces, limit }
+    }
+
+    /// The pairs that merge, the second into the first, with the price of the cut that goes, until one part is
+    /// left.
+    pub(super) fn merges(mut self) -> Vec<([u32; 2], f64)> {
+        let mut merges = Vec::with_capacity(self.sides.len());
+        loop {
+            let allowed = self.borders.iter().filter(|(pair, _)| self.may_merge(**pair));
+            let judged = allowed.map(|(&pair, &border)| {
+                let [a, b] = pair.map(|part| self.sides[part as usize]);
+                let apart = self.found[pair[0] as usize] != self.found[pair[1] as usize];
+                let price = a.price(b, border);
+                (pair, price, apart, loss(a, b, price / self.limit))
+            });
+            let next = judged.min_by(|a, b| a.2.cmp(&b.2).then(a.3.total_cmp(&b.3)));
+            let Some((pair, price, ..)) = next else { return merges };
+            merges.push((pair, price));
+            self.merge(pair);
+        }
+    }
+
+    /// Across a gap only whole pieces merge: limbs of two figures that nearly touch are no part.
+    fn may_merge(&self, pair: [u32; 2]) -> bool {
+        let [(a, others_of_a), (b, others_of_b)] = pair.map(|part| self.pieces[part as usize]);
+        a == b || others_of_a == 0 || others_of_b == 0
+    }
+
+    fn merge(&mut self, [kept, gone]: [u32; 2]) {
+        let [(a, others_of_a), (b, others_of_b)] = [kept, gone].map(|part| self.pieces[part as usize]);
+        if a == b {
+            let left = others_of_a - 1;
+            self.pieces.iter_mut().filter(|(piece, _)| *piece == a).for_each(|(_, others)| *others = left);
+        } else if others_of_a == 0 {
+            self.pieces[kept as usize] = (b, others_of_b);
+        }
+        self.sides[kept as usize] = self.sides[kept as usize].with(self.sides[gone as usize]);
+        let renamed = |end: u32| if end == gone { kept } else { end };
+        for (ends, border) in std::mem::take(&mut self.borders) {
+            let ends = ends.map(renamed);
+            if ends[0] != ends[1] {
+                *self.borders.entry(ordered(ends)).or_default() += border;
+            }
+        }
+    }
+}
+
+/// What speaks against one part instead of two: the evidence for the cut, whose price is in units of the limit,
+/// times the pairs of points that it parts, over the square of the whole area.
+fn loss(a: Side, b: Side, price: f64) -> f64 {
+    -a.area * b.area * price.max(f64::MIN_POSITIVE).min(f64::MAX).ln()
+}
+
+fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tools::parts::graph::Edge;
+
+    /// Parts with these areas, and what the borders between them cost.
+    fn parts(areas: &[f64], borders: &[([u32; 2], f64)]) -> Graph {
+        let edges = borders.iter().map(|&(ends, cost)| Edge { ends, length: cost, cost, distance: 1.0 });
+        Graph::new(areas.to_vec(), vec![[0.0; 3]; areas.len()], edges.collect())
+    }
+
+    fn merges(parts: &Graph, pieces: &[u32], found: &[u32]) -> Vec<([u32; 2], f64)> {
+        let labels: Vec<u32> = (0..found.len() as u32).collect();
+        Merging::new(parts, pieces, &labels, found.to_vec(), 1.0).merges()
+    }
+
+    fn pairs(parts: &Graph, pieces: &[u32], found: &[u32]) -> Vec<[u32; 2]> {
+        merges(parts, pieces, found).into_iter().map(|(pair, _)| pair).collect()
+    }
+
+    #[test]
+    fn a_hand_goes_to_its_arm_before_the_arm_goes_to_the_body() {
+        // The hand's border is by far the shortest.
+        let body = parts(&[0.7, 0.25, 0.05], &[([0, 1], 0.1), ([1, 2], 0.01)]);
+        assert_eq!(pairs(&body, &[0; 3], &[0, 1, 2]), [[1, 2], [0, 1]]);
+    }
+
+    #[test]
+    fn halves_of_a_body_are_one_before_its_limbs_go() {
+        let body = parts(&[0.4, 0.4, 0.1, 0.1], &[([0, 1], 0.9), ([0, 2], 0.02), ([1, 3], 0.02)]);
+        assert_eq!(pairs(&body, &[0; 4], &[0, 1, 2, 3])[0], [0, 1]);
+    }
+
+    #[test]
+    fn what_was_found_stays_longest() {
+        let row = parts(&[0.25; 4], &[([0, 1], 0.5), ([1, 2], 0.1), ([2, 3], 0.5)]);
+        assert_eq!(pairs(&row, &[0; 4], &[0, 1, 1, 2])[0], [1, 2]);
+    }
+
+    #[test]
+    fn borders_add_up() {
+        let ring = parts(&[0.5, 0.25, 0.25], &[([0, 1], 0.1), ([1, 2], 0.9), ([0, 2], 0.1)]);
+        let found = merges(&ring, &[0; 3], &[0, 1, 2]);
+        assert_eq!(found[0].0, [1, 2]);
+        assert!((found[1].1 - 0.2 / 0.5_f64.powf(0.7)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn limbs_of_two_figures_that_nearly_touch_do_not_become_one() {
+        let figures = parts(&[0.45, 0.05, 0.05, 0.45], &[([0, 1], 0.02), ([1, 2], 0.001), ([2, 3], 0.02)]);
+        assert_eq!(pairs(&figures, &[0, 0, 1, 1], &[0, 1, 2, 3]), [[0, 1], [2, 3], [0, 2]]);
+    }
+
+    #[test]
+    fn an_eye_goes_to_the_head_it_sits_in_as_a_whole() {
+        let figure = parts(&[0.6, 0.39, 0.01], &[([0, 1], 0.1), ([1, 2], 0.001)]);
+        assert_eq!(pairs(&figure, &[0, 0, 1], &[0, 1, 2]), [[1, 2], [0, 1]]);
+    }
+}
