@@ -3,6 +3,7 @@
 
 from ..framework.tool import Feature, Tool
 from . import operator
+from .coloring import RIDGEFORM_OT_color_diffusion_curves
 from .settings import DiffusionSettings
 from .tool import DiffusionCurves
 
@@ -19,8 +20,15 @@ FEATURE = Feature(
             draw_more=operator.draw_buttons,
         ),
     ),
-    operators=(operator.RIDGEFORM_OT_redraw_diffusion_curves, operator.RIDGEFORM_OT_export_diffusion_svg),
-    menu=((operator.RIDGEFORM_OT_redraw_diffusion_curves.bl_idname, "FILE_REFRESH"),),
+    operators=(
+        operator.RIDGEFORM_OT_redraw_diffusion_curves,
+        RIDGEFORM_OT_color_diffusion_curves,
+        operator.RIDGEFORM_OT_export_diffusion_svg,
+    ),
+    menu=(
+        (operator.RIDGEFORM_OT_redraw_diffusion_curves.bl_idname, "FILE_REFRESH"),
+        (RIDGEFORM_OT_color_diffusion_curves.bl_idname, "COLOR"),
+    ),
     register=operator.register,
     unregister=operator.unregister,
 )

@@ -123,6 +123,24 @@ def read_curves(child: bpy.types.Object) -> DrawnCurves:
     return DrawnCurves(sizes, cyclic, places, left, right)
 
 
+def selected_points(data: bpy.types.Curves) -> np.ndarray:
+    """Which points (p,) bool are selected, alone or with their curve; all where none was ever chosen."""
+    attribute = data.attributes.get(".selection")
+    if attribute is None:
+        return np.ones(len(data.points), bool)
+    values = np.zeros(len(attribute.data), bool if attribute.data_type == "BOOLEAN" else np.float32)
+    attribute.data.foreach_get("value", values)
+    if attribute.domain == "CURVE":
+        return np.repeat(values > 0, [curve.points_length for curve in data.curves])
+    return values > 0
+
+
+def write_colors(data: bpy.types.Curves, name: str, colors: np.ndarray) -> None:
+    """Store colors (p, 4) of the points."""
+    _store(data, name, ("FLOAT_COLOR", "POINT"), colors.astype(np.float32).ravel())
+    data.update_tag()
+
+
 def point_values(data: bpy.types.Curves, name: str, n: int, width: int) -> np.ndarray:
     """An attribute (n, width) of the points; 0 where it was never given."""
     values = np.zeros(width * n, np.float32)

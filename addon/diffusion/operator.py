@@ -17,7 +17,7 @@ from .redraw_curves import read_on_mesh, redraw
 from .settings import SHOW
 
 
-def _pair(context: bpy.types.Context) -> tuple[bpy.types.Object, bpy.types.Object] | str:
+def pair_of(context: bpy.types.Context) -> tuple[bpy.types.Object, bpy.types.Object] | str:
     """The mesh object and its diffusion curves, whichever of them is active, or why there are none."""
     obj = context.object
     if curves_io.is_curves(obj):
@@ -31,13 +31,13 @@ def _pair(context: bpy.types.Context) -> tuple[bpy.types.Object, bpy.types.Objec
     return (obj, child) if child is not None else f'"{obj.name}" has no diffusion curves: find them first'
 
 
-class _OnCurves:
+class OnCurves:
     """Mixin for an operator over a mesh with diffusion curves."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether there are curves; the tooltip says why not."""
-        pair = _pair(context)
+        pair = pair_of(context)
         if isinstance(pair, str):
             cls.poll_message_set(pair)
             return False
@@ -52,7 +52,7 @@ class _OnCurves:
         return None
 
 
-class RIDGEFORM_OT_redraw_diffusion_curves(_OnCurves, bpy.types.Operator):  # noqa: N801
+class RIDGEFORM_OT_redraw_diffusion_curves(OnCurves, bpy.types.Operator):  # noqa: N801
     """Redraw the colors of the mesh from its diffusion curves as they are now"""
 
     bl_idname = "ridgeform.redraw_diffusion_curves"
@@ -69,7 +69,7 @@ class RIDGEFORM_OT_redraw_diffusion_curves(_OnCurves, bpy.types.Operator):  # no
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Redraw."""
-        obj, child = _pair(context)
+        obj, child = pair_of(context)
         try:
             name = redraw(obj, child)
         except (RefusedError, ridgeform.RidgeformError) as error:
@@ -81,7 +81,7 @@ class RIDGEFORM_OT_redraw_diffusion_curves(_OnCurves, bpy.types.Operator):  # no
         return {"FINISHED"}
 
 
-class RIDGEFORM_OT_export_diffusion_svg(_OnCurves, bpy.types.Operator, ExportHelper):  # noqa: N801
+class RIDGEFORM_OT_export_diffusion_svg(OnCurves, bpy.types.Operator, ExportHelper):  # noqa: N801
     """Draw the diffusion curves of a flat mesh into an SVG file, each with its two colors"""
 
     bl_idname = "ridgeform.export_diffusion_svg"
@@ -105,7 +105,7 @@ class RIDGEFORM_OT_export_diffusion_svg(_OnCurves, bpy.types.Operator, ExportHel
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Write the file."""
-        obj, child = _pair(context)
+        obj, child = pair_of(context)
         try:
             with mesh_io.object_mode():
                 _, points = read_on_mesh(obj, child)
@@ -121,6 +121,7 @@ class RIDGEFORM_OT_export_diffusion_svg(_OnCurves, bpy.types.Operator, ExportHel
 def draw_buttons(layout: bpy.types.UILayout, settings: object) -> None:
     """Draw the buttons for curves that were found."""
     layout.operator("ridgeform.redraw_diffusion_curves", icon="FILE_REFRESH").show = settings.show
+    layout.operator("ridgeform.color_diffusion_curves", icon="COLOR").show = settings.show
     layout.operator("ridgeform.export_diffusion_svg", text="Export SVG", icon="EXPORT")
 
 
