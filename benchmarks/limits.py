@@ -2,8 +2,9 @@
 
 Each call runs in a child that was forked after the arrays were made and then capped (`RLIMIT_AS`, what
 `ulimit -v` sets), from the smallest cap up; once it has come to a result it is not run under larger ones.
+What computes for longer than `--seconds` of processor time is asked to finish early.
 
-    python benchmarks/limits.py [--write] [--sizes 10000 100000] [--caps 0.25 0.5] [--call NAME]
+    python benchmarks/limits.py [--write] [--sizes 10000 100000] [--caps 0.25 0.5] [--call NAME] [--again]
 """
 
 from __future__ import annotations
@@ -14,36 +15,50 @@ import resource
 import signal
 import sys
 import time
+import warnings
+from pathlib import Path
 
 import ridgeform
-from reliability_page import write_section
-from tool_calls import CALLS, bumpy_grid
+from reliability_page import Records, write_section
+from tool_calls import CALLS, finishing_after, mesh_for
 
+RECORDS = Path(__file__).resolve().parent / "limits.json"
 SIZES = [10_000, 100_000, 300_000, 1_000_000]
-CAPS = [0.25, 0.5, 1.0, 1.5, 2.0, 4.0, 8.0]
+CAPS = [0.25, 0.5, 1.0, 2.0, 4.0, 8.0]
 """GiB."""
 
-SECONDS = 900
-"""A child that takes longer is ended; it was not a fault of memory."""
+SECONDS = 10
+"""Processor time until a call is asked to finish early."""
+PATIENCE = 12
+"""So many times as long by the clock, and a child is ended: it is the time that is missing, not memory."""
+
+REFUSALS = ("MemoryLimitError", "MemoryError", "SolveError: memory")
 
 
-def outcome(call: str, arrays: tuple, cap: float) -> str:
-    """How one capped child ended: "result", the name of an error, "signal N" or "time"."""
+def run(call: str, arrays: tuple, cap: float, seconds: float) -> str:
+    """What the call comes to in this process: "result", "finished early" or the name of an error."""
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    progress = finishing_after(seconds)
+    begin = time.process_time()
+    resource.setrlimit(resource.RLIMIT_AS, (int(cap * 2**30),) * 2)
+    try:
+        CALLS[call](ridgeform.Mesh(*arrays), {"progress": progress})
+    except ridgeform.SolveError as error:
+        return "SolveError: memory" if "of memory" in str(error) else f"SolveError: {error}"
+    except BaseException as error:
+        return type(error).__name__
+    return "finished early" if time.process_time() - begin > seconds else "result"
+
+
+def outcome(call: str, arrays: tuple, cap: float, seconds: float) -> str:
+    """How one capped child ended: what [`run`] says, "signal N" or "time"."""
     read, write = os.pipe()
     child = os.fork()
     if child == 0:
-        answer = "no answer"
-        try:
-            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-            resource.setrlimit(resource.RLIMIT_AS, (int(cap * 2**30),) * 2)
-            CALLS[call](ridgeform.Mesh(*arrays), {})
-            answer = "result"
-        except BaseException as error:
-            answer = type(error).__name__
-        os.write(write, answer.encode())
+        os.write(write, run(call, arrays, cap, seconds).encode()[:200])
         os._exit(0)
     os.close(write)
-    ends = time.monotonic() + SECONDS
+    ends = time.monotonic() + PATIENCE * seconds
     while True:
         done, status = os.waitpid(child, os.WNOHANG)
         if done:
@@ -61,53 +76,56 @@ def outcome(call: str, arrays: tuple, cap: float) -> str:
     return answer or "no answer"
 
 
-def under_caps(call: str, arrays: tuple, caps: list[float]) -> list[tuple[float, str]]:
-    """The outcome under every cap up to the first result."""
+def under_caps(call: str, arrays: tuple, caps: list[float], seconds: float) -> list[tuple[float, str]]:
+    """The outcome under every cap up to the first that lets the call compute to its end, or for long."""
     found = []
     for cap in caps:
-        found.append((cap, outcome(call, arrays, cap)))
-        if found[-1][1] == "result":
+        found.append((cap, outcome(call, arrays, cap, seconds)))
+        if found[-1][1] in ("result", "finished early", "time"):
             break
     return found
 
 
 def cell(found: list[tuple[float, str]]) -> str:
     """What the table says: the smallest cap with a result, and faults by their names."""
-    faults = [
-        f"{answer} at {cap:g}"
-        for cap, answer in found
-        if answer not in ("result", "MemoryLimitError", "MemoryError")
-    ]
-    refused = sum(answer in ("MemoryLimitError", "MemoryError") for _, answer in found)
-    result = next((f"result from {cap:g} GiB on" for cap, answer in found if answer == "result"), "no result")
-    return ", ".join([result] + ([f"{refused} refusals"] if refused else []) + faults)
+    texts = {"result": "result", "finished early": "finished early", "time": "computed until it was ended"}
+    refused = sum(answer in REFUSALS for _, answer in found)
+    faults = [f"{answer} at {cap:g}" for cap, answer in found if answer not in (*REFUSALS, *texts)]
+    last, answer = found[-1]
+    reached = f"{texts[answer]} at {last:g} GiB" if answer in texts else "no result"
+    return ", ".join([reached] + ([f"{refused} refusals"] if refused else []) + faults)
+
+
+def is_fault(answer: str) -> bool:
+    """Whether a process ended that should have lived."""
+    return answer.startswith(("signal", "no answer"))
 
 
 def main() -> None:
     """Run, print, and with `--write` put the table where the documentation shows it; fails on any signal."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--write", action="store_true", help="put the table into docs/reliability.md")
-    parser.add_argument("--sizes", type=int, nargs="+", default=SIZES)
+    parser.add_argument("--sizes", type=int, nargs="*", default=SIZES)
     parser.add_argument("--caps", type=float, nargs="+", default=CAPS)
     parser.add_argument("--call", action="append", help="a call")
+    parser.add_argument("--seconds", type=float, default=SECONDS)
+    parser.add_argument("--again", action="store_true", help="also what was measured before")
     options = parser.parse_args()
-    lines = ["| call | " + " | ".join(f"{size:,} vertices" for size in options.sizes) + " |"]
-    lines.append("| --- |" + " --- |" * len(options.sizes))
-    signals = runs = 0
-    meshes = {size: bumpy_grid(size) for size in options.sizes}
-    for call in options.call or CALLS:
-        cells = []
-        for size in options.sizes:
-            found = under_caps(call, meshes[size], options.caps)
-            runs += len(found)
-            signals += sum(answer.startswith(("signal", "no answer")) for _, answer in found)
-            cells.append(cell(found))
-            print(f"{call} at {size}: {cells[-1]}", flush=True)
-        lines.append(f"| {call} | " + " | ".join(cells) + " |")
-    summary = f"{runs} runs, {signals} signals."
+    warnings.simplefilter("ignore")
+    records = Records(RECORDS)
+    for size in options.sizes:
+        for call in options.call or CALLS:
+            if str(size) in records.of.get(call, {}) and not options.again:
+                continue
+            found = under_caps(call, mesh_for(call, size), options.caps, options.seconds)
+            records.keep(call, size, found)
+            print(f"{call} at {size}: {cell(found)}", flush=True)
+    answers = [answer for sizes in records.of.values() for found in sizes.values() for _, answer in found]
+    signals = sum(map(is_fault, answers))
+    summary = f"{len(answers)} runs, {signals} signals."
     print(summary)
     if options.write:
-        write_section("limits", "\n".join([*lines, "", summary]))
+        write_section("limits", records.table(CALLS, SIZES, cell) + f"\n\n{summary}")
     sys.exit(signals > 0)
 
 

@@ -1,7 +1,9 @@
-"""Every public call of the package on one mesh, as the tables of reliability make it: few iterations."""
+"""Every tool of the package on one mesh, as the tables of reliability call it: few iterations."""
 
 from __future__ import annotations
 
+import threading
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -13,8 +15,10 @@ Call = Callable[[ridgeform.Mesh, dict[str, Any]], Any]
 EVERY_THOUSANDTH = 1000
 
 
-def bumpy_grid(n_vertices: int, noise: float = 0.02) -> tuple[np.ndarray, np.ndarray]:
-    """A square grid of about so many vertices `(n,3)` at unit steps, with noise and a hole; faces `(m,3)`."""
+def bumpy_grid(
+    n_vertices: int, noise: float = 0.02, most_radius: float = 12
+) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices `(n,3)` and faces `(m,3)` of a square grid at unit steps, with noise and a round hole."""
     side = max(round(float(np.sqrt(n_vertices))), 12)
     x, y = np.meshgrid(np.arange(side, dtype=float), np.arange(side, dtype=float), indexing="ij")
     vertices = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
@@ -28,7 +32,7 @@ def bumpy_grid(n_vertices: int, noise: float = 0.02) -> tuple[np.ndarray, np.nda
         ]
     )
     center = vertices[faces].mean(1)[:, :2] - side / 2
-    return vertices, faces[np.hypot(*center.T) > min(side / 6, 12)].astype(np.int32)
+    return vertices, faces[np.hypot(*center.T) > min(side / 6, most_radius)].astype(np.int32)
 
 
 def _pins(mesh: ridgeform.Mesh) -> tuple[np.ndarray, np.ndarray]:
@@ -75,19 +79,23 @@ CALLS: dict[str, Call] = {
         mesh, mesh.vertices, fidelity=1.0, solver="clarabel", max_iterations=2, **options
     ),
     "vibration_modes": lambda mesh, options: ridgeform.vibration_modes(mesh, 3, max_iterations=10, **options),
+    "vibration_modes l2": lambda mesh, options: ridgeform.vibration_modes(
+        mesh, 3, energy="l2_hessian", max_iterations=10, **options
+    ),
     "segment": lambda mesh, options: ridgeform.segment(mesh, **options),
     "segment paper": lambda mesh, options: ridgeform.segment(
         mesh, method="paper", epsilon_end=0.05, max_iterations=10, **options
     ),
+    "parts": lambda mesh, options: ridgeform.parts(mesh, **options),
     "fill_holes": lambda mesh, options: ridgeform.fill_holes(mesh, iterations=1, **options),
     "fill_holes outer": lambda mesh, options: ridgeform.fill_holes(mesh, iterations=1, outer=True, **options),
-    "remesh": lambda mesh, options: ridgeform.remesh(mesh, iterations=2),
+    "remesh": lambda mesh, options: ridgeform.remesh(mesh, iterations=2, **options),
     "diffusion_curves": lambda mesh, options: ridgeform.diffusion_curves(mesh, _paint(mesh)),
     "trace_curves": lambda mesh, options: ridgeform.trace_curves(
         mesh, mesh.vertices[:: EVERY_THOUSANDTH // 10]
     ),
 }
-"""Name in the tables → the call; `options` are keywords that only tools with a solver take."""
+"""Name in the tables → the call; `options` are keywords that all tools take, such as `progress`."""
 
 ESTIMATED: dict[str, tuple[str, int, str]] = {
     "hessian": ("hessian", 1, "auto"),
@@ -100,11 +108,36 @@ ESTIMATED: dict[str, tuple[str, int, str]] = {
     "interpolate": ("interpolate", 1, "auto"),
     "interpolate clarabel": ("interpolate", 1, "clarabel"),
     "denoise clarabel": ("denoise", 3, "clarabel"),
-    "vibration_modes": ("vibration_modes", 1, "auto"),
+    "vibration_modes": ("vibration_modes", 3, "auto"),
+    "vibration_modes l2": ("vibration_modes_quadratic", 3, "auto"),
     "segment": ("segment", 3, "auto"),
     "segment paper": ("segment", 3, "auto"),
+    "parts": ("parts", 1, "auto"),
+    "fill_holes": ("fill_holes", 3, "auto"),
     "remesh": ("remesh", 1, "auto"),
     "diffusion_curves": ("diffusion_curves", 3, "auto"),
     "trace_curves": ("trace_curves", 1, "auto"),
 }
 """Calls whose peak `memory_estimate` says: the tool, columns and solver to ask it for."""
+
+WIDE_HOLE = {"fill_holes"}
+"""Calls whose memory is that of the hole: it grows with the mesh there."""
+
+
+def mesh_for(call: str, n_vertices: int) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices and faces that a call is made on."""
+    return bumpy_grid(n_vertices, most_radius=np.inf if call in WIDE_HOLE else 12)
+
+
+def finishing_after(seconds: float) -> ridgeform.Progress:
+    """A handle that asks the call to finish once this process has computed for so many seconds more."""
+    progress = ridgeform.Progress()
+    end = time.process_time() + seconds
+
+    def watch() -> None:
+        while time.process_time() < end:
+            time.sleep(0.1)
+        progress.finish()
+
+    threading.Thread(target=watch, daemon=True).start()
+    return progress

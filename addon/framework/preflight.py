@@ -29,9 +29,22 @@ def reason_too_large(obj: bpy.types.Object, call: str) -> str | None:
             fits = middle
         else:
             too_much = middle
+    return _refusal(obj, needed, free, f"reduce it to about {int(fits * size[0])} vertices")
+
+
+def reason_too_long(obj: bpy.types.Object, mesh: ridgeform.Mesh, longest: int) -> str | None:
+    """Why filling holes of which the longest has so many edges would not fit into memory; `None` if it would."""
+    free = SHARE * ridgeform.memory_available()
+    needed = ridgeform.memory_estimate("fill_holes", mesh, longest=longest)
+    if needed <= free:
+        return None
+    return _refusal(obj, needed, free, f"cut its hole of {longest} edges in two by a strip of faces")
+
+
+def _refusal(obj: bpy.types.Object, needed: float, free: float, cure: str) -> str:
     return (
-        f'"{obj.name}" needs about {_gigabytes(needed)} of memory, {_gigabytes(free)} are free: reduce it to '
-        f"about {int(fits * size[0])} vertices, or close other programs"
+        f'"{obj.name}" needs about {_gigabytes(needed)} of memory, {_gigabytes(free)} are free: {cure}, '
+        "or close other programs"
     )
 
 

@@ -15,6 +15,7 @@ from ..blender.overlay import Overlay
 from ..blender.refusals import RefusedError
 from ..blender.welding import Weld
 from ..framework.job import Task
+from ..framework.preflight import reason_too_long
 from ..framework.run import Part, Run, counted, meshes_phrase
 from ..framework.surface import welded
 from .append import append
@@ -58,7 +59,7 @@ class HoleFilling(Run):
     """One run of filling holes."""
 
     name = "fill_holes"
-    call = "fill_holes"
+    call = "mesh"
 
     def __init__(
         self, objects: Sequence[bpy.types.Object], settings: object, skipped: Sequence[str] = ()
@@ -93,6 +94,9 @@ class HoleFilling(Run):
         if not chosen:
             raise RefusedError(f'No hole of "{obj.name}" was filled: {"; ".join(reasons)}')
         loops = [hole.vertices for hole in chosen]
+        reason = reason_too_long(obj, mesh, max(map(len, loops)))
+        if reason is not None:
+            raise RefusedError(reason)
         source = read_source(obj.data, coordinates, triangles, weld, np.concatenate(loops))
         part = HolePart(
             obj, Task(obj.name, None), len(coordinates), weld.notes + reasons, source=source, loops=loops

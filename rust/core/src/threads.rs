@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
 use crate::error::ThreadsError;
-use crate::{Error, Result};
+use crate::{memory, Error, Result};
 
 /// The process whose global pool is used, 0 before the first call.
 static HOME: AtomicU32 = AtomicU32::new(0);
@@ -16,14 +16,17 @@ static HOME: AtomicU32 = AtomicU32::new(0);
 /// nobody in it, so that whoever asks it waits forever. In a process other than the one that came first, each call therefore
 /// has a pool of its own, which ends with it. Nothing is locked here: a lock held at the fork is never released in the child.
 ///
+/// Where address space is limited each call has a pool of its own as well, of as many threads as there is room for.
+///
 /// # Errors
 /// What `work` returns, or [`ThreadsError`] when the system gives no thread.
 pub fn in_this_process<T: Send>(work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
     let here = std::process::id();
+    let whole = memory::room_for_threads().is_none();
     match HOME.compare_exchange(0, here, Ordering::Relaxed, Ordering::Relaxed) {
-        Ok(_) => work(),
-        Err(home) if home == here => work(),
-        Err(_) => pool(available())?.install(work),
+        Ok(_) if whole => work(),
+        Err(home) if whole && home == here => work(),
+        _ => pool(available())?.install(work),
     }
 }
 
@@ -41,8 +44,9 @@ pub fn available() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// A pool of `n` threads, or of one where the system does not give so many.
+/// A pool of `n` threads, or of as many as have room, or of one where the system does not give so many.
 fn pool(n: usize) -> Result<ThreadPool> {
+    let n = memory::room_for_threads().map_or(n, |most| n.min(most));
     let build = |n| ThreadPoolBuilder::new().num_threads(n).build();
     let refused = |error: ThreadPoolBuildError| Error::Threads(ThreadsError { reason: error.to_string() });
     build(n).or_else(|_| build(1)).map_err(refused)

@@ -485,7 +485,12 @@ def fill_holes(
 ) -> Filled: ...
 def memory_available() -> int: ...
 def memory_estimate(
-    tool: str, mesh: Mesh | tuple[int, int], *, columns: int = 1, solver: Solver = "auto"
+    tool: str,
+    mesh: Mesh | tuple[int, int],
+    *,
+    columns: int = 1,
+    solver: Solver = "auto",
+    longest: int | None = None,
 ) -> int: ...
 def remesh(
     mesh: Mesh,

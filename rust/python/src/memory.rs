@@ -23,23 +23,25 @@ pub(crate) fn memory_available() -> usize {
 ///
 /// Parameters
 /// ----------
-/// tool : the name of a function of this package, "mesh" or "report"; for quadratic energies "denoise_quadratic" and
-///     "interpolate_quadratic"
+/// tool : the name of a function of this package, "mesh" or "report"; for quadratic energies "denoise_quadratic",
+///     "interpolate_quadratic" and "vibration_modes_quadratic"
 /// mesh : Mesh, or its numbers of vertices and faces; for "fill_holes" a Mesh, since it is the longest hole that counts
-/// columns : columns of the values, ≥ 1
+/// columns : columns of the values, ≥ 1; for "vibration_modes" the number of modes
 /// solver : as the tool takes it
+/// longest : for "fill_holes", the edges of the longest hole that is filled, or None: of all of the Mesh
 ///
 /// Raises
 /// ------
 /// ArgumentError
 #[pyfunction]
-#[pyo3(signature = (tool, mesh, *, columns=1, solver="auto"))]
+#[pyo3(signature = (tool, mesh, *, columns=1, solver="auto", longest=None))]
 pub(crate) fn memory_estimate(
     py: Python<'_>,
     tool: &str,
     mesh: &Bound<'_, PyAny>,
     columns: i64,
     solver: &str,
+    longest: Option<i64>,
 ) -> PyResult<usize> {
     let tool = options::choice(py, "tool", tool, &Tool::ALL)?;
     let (n_vertices, n_faces) = match mesh.cast::<Mesh>() {
@@ -50,8 +52,9 @@ pub(crate) fn memory_estimate(
     };
     let n_columns = at_least(py, "columns", columns, 1)?;
     let solver = options::solver(py, solver)?;
+    let longest = longest.map(|count| at_least(py, "longest", count, 1)).transpose()?;
     let demand = match mesh.cast::<Mesh>() {
-        Ok(mesh) if tool == Tool::FillHoles => tools::filling_demand(mesh.get().inner()),
+        Ok(mesh) if tool == Tool::FillHoles => tools::filling_demand(mesh.get().inner(), longest),
         _ => Demand::new(tool, n_vertices, n_faces),
     };
     Ok(demand.with_columns(n_columns, solver.is_clarabel()).estimate())

@@ -1,8 +1,8 @@
 //! One call and its size: what it needs, and whether that fits.
 
-use super::model::{Cost, CLARABEL, LOOSE};
+use super::model::{Cost, CLARABEL, DIVIDED, LOOSE};
 use super::threads::settle;
-use super::{is_granted, share_of_free, with_margin, Tool, SMALL};
+use super::{available, is_granted, share_of, share_of_free, with_margin, Tool, SMALL};
 use crate::{Error, Result};
 
 /// What decides how much memory a call takes.
@@ -42,12 +42,16 @@ impl Demand {
         let Cost { face, logarithmic, column } = if is_clarabel { CLARABEL } else { self.tool.cost() };
         let faces = self.n_faces as f64;
         let n_columns = if self.tool == Tool::Stylize && is_clarabel { 3 } else { self.n_columns };
-        // Clarabel takes columns as they are; our own rows fill vector registers.
-        let lanes = if is_clarabel { n_columns } else { n_columns.max(1).next_power_of_two() };
+        // Modes are computed one after the other; Clarabel takes columns as they are.
+        let is_single = self.tool.has_single_columns();
+        let column = if is_single { self.tool.cost().column } else { column };
+        let lanes = if is_single || is_clarabel { n_columns } else { n_columns.max(1).next_power_of_two() };
         let further = lanes.saturating_sub(1) as f64;
         let loose = self.n_vertices.saturating_sub(self.n_faces.div_ceil(2).saturating_mul(3)) as f64;
         let per_loose = if is_solved { LOOSE[0] } else { LOOSE[1] };
-        let bytes = faces * (face + logarithmic * faces.max(2.0).log2() + column * further) + per_loose * loose;
+        let divided = if self.tool == Tool::Parts { DIVIDED.1 * faces.min(DIVIDED.0) } else { 0.0 };
+        let per_face = face + logarithmic * faces.max(2.0).log2() + column * further;
+        let bytes = faces * per_face + divided + per_loose * loose;
         bytes.min(1e18) as usize
     }
 
@@ -78,13 +82,23 @@ impl Demand {
     /// [`Error::Memory`] with what is needed, what there is, and what would fit.
     pub fn admit(&self, limit: Option<usize>) -> Result<usize> {
         let needed = self.estimate();
-        if self.tool.solves() {
-            settle(self.tool.name())?;
-        }
+        let reserved = settle(self.tool.name(), self.tool.solves())?;
         let most = limit.unwrap_or_else(|| share_of_free(needed));
-        if needed > most || needed >= SMALL && !is_granted(with_margin(needed)) {
+        if needed > most {
             let fits = self.fitting(most);
             return Err(Error::Memory { what: self.tool.name(), needed, limit: most, is_given: limit.is_some(), fits });
+        }
+        // The small pieces of a small call fit into the heaps that are there.
+        let reserved = match reserved {
+            _ if needed < SMALL => reserved.min(SMALL),
+            _ if self.is_clarabel => 2 * reserved,
+            _ => reserved,
+        };
+        let asked = with_margin(needed).saturating_add(reserved);
+        if (needed >= SMALL || reserved > 0) && !is_granted(asked) {
+            let left = available().min(asked);
+            let fits = self.fitting(share_of(left.saturating_sub(reserved)));
+            return Err(Error::Memory { what: self.tool.name(), needed: asked, limit: left, is_given: false, fits });
         }
         Ok(most)
     }

@@ -14,6 +14,7 @@ mod threads;
 pub use demand::Demand;
 pub use free::available;
 pub use model::Tool;
+pub(crate) use threads::room_for_threads;
 
 use crate::{Error, Result};
 
@@ -32,12 +33,16 @@ const THREAD: usize = 3 << 20;
 
 /// What a call may take when no limit was given: [`SHARE`] of what is free; no bound for what is [`SMALL`].
 #[must_use]
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 pub fn share_of_free(needed: usize) -> usize {
     if needed < SMALL {
         return usize::MAX;
     }
-    (SHARE * available() as f64) as usize
+    share_of(available())
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+fn share_of(bytes: usize) -> usize {
+    (SHARE * bytes as f64) as usize
 }
 
 /// Refuses a call when not even the threads and small arrays of any call fit.
@@ -46,7 +51,8 @@ pub fn share_of_free(needed: usize) -> usize {
 /// [`Error::Memory`].
 pub fn floor(what: &'static str) -> Result<()> {
     // Not asked of the pool of threads: asking starts it, and panics where the system gives no thread.
-    let needed = FLOOR + THREAD * (1 + crate::threads::available());
+    let threads = crate::threads::available().min(room_for_threads().unwrap_or(usize::MAX));
+    let needed = FLOOR + THREAD * (1 + threads);
     if is_granted(needed) {
         return Ok(());
     }

@@ -29,10 +29,14 @@ pub enum Tool {
     Interpolate,
     /// Both with a quadratic energy.
     Quadratic,
-    /// [`crate::tools::vibration_modes`].
+    /// [`crate::tools::vibration_modes`]: a column for each mode.
     Modes,
+    /// The same with a quadratic energy.
+    QuadraticModes,
     /// [`crate::tools::segment`].
     Segment,
+    /// [`crate::tools::parts`].
+    Parts,
     /// [`crate::tools::fill_holes`].
     FillHoles,
     /// [`crate::remesh::remesh`].
@@ -55,7 +59,7 @@ pub(super) struct Cost {
 
 impl Tool {
     /// Every tool by the name that users call it by.
-    pub const ALL: [(&'static str, Self); 20] = [
+    pub const ALL: [(&'static str, Self); 22] = [
         ("mesh", Self::Mesh),
         ("report", Self::Report),
         ("hessian", Self::Hessian),
@@ -69,7 +73,9 @@ impl Tool {
         ("denoise_quadratic", Self::Quadratic),
         ("interpolate_quadratic", Self::Quadratic),
         ("vibration_modes", Self::Modes),
+        ("vibration_modes_quadratic", Self::QuadraticModes),
         ("segment", Self::Segment),
+        ("parts", Self::Parts),
         ("fill_holes", Self::FillHoles),
         ("remesh", Self::Remesh),
         ("diffusion_curves", Self::DiffusionCurves),
@@ -77,6 +83,11 @@ impl Tool {
         ("trace_curves", Self::Curves),
         ("smooth_curves", Self::Curves),
     ];
+
+    /// Whether columns are kept as they are; otherwise they are computed with in rows of 1, 2, 4, 8 or 16, which fill vector registers.
+    pub(super) const fn has_single_columns(self) -> bool {
+        matches!(self, Self::Modes | Self::QuadraticModes)
+    }
 
     /// The name in errors.
     #[must_use]
@@ -86,7 +97,7 @@ impl Tool {
 
     /// Whether a linear system is solved in it.
     pub(super) const fn solves(self) -> bool {
-        self.cost().logarithmic > 0.0 || matches!(self, Self::FillHoles)
+        self.cost().logarithmic > 0.0 || matches!(self, Self::FillHoles | Self::Parts)
     }
 
     pub(super) const fn cost(self) -> Cost {
@@ -102,8 +113,10 @@ impl Tool {
             Self::Denoise => (250.0, 113.0, 115.0),
             Self::Interpolate => (20.0, 140.0, 115.0),
             Self::Quadratic => (670.0, 101.0, 24.0),
-            Self::Modes => (1500.0, 68.0, 0.0),
+            Self::Modes => (1500.0, 68.0, 40.0),
+            Self::QuadraticModes => (830.0, 62.0, 30.0),
             Self::Segment => (2400.0, 75.0, 0.0),
+            Self::Parts => (520.0, 0.0, 0.0),
             Self::FillHoles => (2500.0, 0.0, 0.0),
             Self::Remesh => (350.0, 0.0, 0.0),
             Self::DiffusionCurves => (1400.0, 160.0, 0.0),
@@ -116,6 +129,9 @@ impl Tool {
 
 /// Bytes that Clarabel takes for a face and for a column of values, with the factorization of its larger matrix.
 pub(super) const CLARABEL: Cost = Cost { face: 4600.0, logarithmic: 100.0, column: 7200.0 };
+
+/// Parts are divided on so many faces or clusters of them at most, which take so many bytes each.
+pub(super) const DIVIDED: (f64, f64) = (4500.0, 1300.0);
 
 /// Bytes for a vertex without faces, in every array that has an entry for each vertex: where a linear system is solved, and
 /// elsewhere.

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::Mesh;
+use crate::memory::Tool;
 use crate::unit::Unit;
 use crate::Result;
 
@@ -23,11 +24,13 @@ impl Mesh {
     /// The mesh measured in `unit`. Vertices without faces are at the origin where they would be no numbers.
     ///
     /// # Errors
-    /// None in the mesh's own [`Mesh::unit`]; in others those of a mesh whose lengths are no numbers.
+    /// [`crate::Error::Memory`] where a copy does not fit; in another unit than the mesh's own [`Mesh::unit`] those of a mesh whose
+    /// lengths are no numbers.
     pub fn measured(&self, unit: Unit) -> Result<Cow<'_, Self>> {
         if unit.is_one() {
             return Ok(Cow::Borrowed(self));
         }
+        self.demand(Tool::Mesh).admit(None)?;
         let measured = |row: &[f64; 3]| row.map(|x| unit.measure(x));
         let Some(positions) = self.positions() else {
             let lengths = self.edge_lengths().iter().map(measured).collect();

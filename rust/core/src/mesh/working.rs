@@ -4,10 +4,11 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-use crate::error::MeshError;
+use crate::memory::Tool;
 use crate::mesh::orientation::turned_over;
 use crate::mesh::vector::{add, sub, Point};
 use crate::mesh::{flipped_faces, EdgeKind, Mesh, Weld};
+use crate::Result;
 
 /// A coordinate of all vertices that is so many times as large as the range that they take is measured from one of them: below,
 /// subtracting squares of it loses no more than the last digits.
@@ -29,8 +30,9 @@ impl<'a> Working<'a> {
     /// where that changes nothing.
     ///
     /// # Errors
-    /// None on a mesh that exists.
-    pub fn new(mesh: &'a Mesh) -> Result<Self, MeshError> {
+    /// [`crate::Error::Memory`] where a copy does not fit.
+    pub fn new(mesh: &'a Mesh) -> Result<Self> {
+        mesh.demand(Tool::Mesh).admit(None)?;
         let weld = mesh.positions().and_then(|positions| Weld::of_seams(mesh.connectivity(), positions, None));
         Self::of(mesh, weld)
     }
@@ -38,12 +40,13 @@ impl<'a> Working<'a> {
     /// The same with the vertices as they are, for functions on them, which may differ between the sides of a seam.
     ///
     /// # Errors
-    /// None on a mesh that exists.
-    pub fn unwelded(mesh: &'a Mesh) -> Result<Self, MeshError> {
+    /// [`crate::Error::Memory`] where a copy does not fit.
+    pub fn unwelded(mesh: &'a Mesh) -> Result<Self> {
+        mesh.demand(Tool::Mesh).admit(None)?;
         Self::of(mesh, None)
     }
 
-    fn of(mesh: &'a Mesh, weld: Option<Weld>) -> Result<Self, MeshError> {
+    fn of(mesh: &'a Mesh, weld: Option<Weld>) -> Result<Self> {
         let origin = mesh.positions().map_or([0.0; 3], far_origin);
         let mut working = Self { mesh: Cow::Borrowed(mesh), original: mesh, weld, flipped: None, origin };
         if let (true, Some(positions)) = (working.weld.is_some() || origin != [0.0; 3], mesh.positions()) {

@@ -59,7 +59,9 @@ pub struct Modes {
 pub fn vibration_modes(mesh: &Mesh, count: usize, options: &ModeOptions, progress: &Progress) -> Result<Modes> {
     let settings = Settings { announce: false, ..options.solve.settings()? };
     options.energy.check_solver(options.solve.solver)?;
-    mesh.demand(Tool::Modes).with_columns(1, options.solve.solver.is_clarabel()).admit(options.solve.memory_limit)?;
+    let tool = if options.energy.kind.is_quadratic() { Tool::QuadraticModes } else { Tool::Modes };
+    let n_columns = count.min(mesh.connectivity().n_vertices());
+    mesh.demand(tool).with_columns(n_columns, options.solve.solver.is_clarabel()).admit(options.solve.memory_limit)?;
     let length = mesh.unit();
     let measured = mesh.measured(length)?;
     let (mesh, form) = options.energy.on(&measured)?;

@@ -102,10 +102,11 @@ pub fn fill_holes(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) 
     Ok(filled)
 }
 
-/// What filling all holes of a mesh takes: that of the longest, since they follow each other.
+/// What filling holes takes of which the longest has `longest` edges, since they follow each other; without it, all of the mesh.
 #[must_use]
-pub fn filling_demand(mesh: &Mesh) -> Demand {
-    demand(mesh, boundary_loops(mesh.connectivity()).iter().map(Vec::len).max().unwrap_or(0))
+pub fn filling_demand(mesh: &Mesh, longest: Option<usize>) -> Demand {
+    let of_all = || boundary_loops(mesh.connectivity()).iter().map(Vec::len).max().unwrap_or(0);
+    demand(mesh, longest.unwrap_or_else(of_all))
 }
 
 /// What a patch in a rim of so many edges takes: it has as many faces as a disk with that rim has, up to the bound for all patches.

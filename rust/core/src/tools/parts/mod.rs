@@ -25,6 +25,7 @@ mod tighten;
 
 pub use options::PartsOptions;
 
+use crate::memory::Tool;
 use crate::mesh::Mesh;
 use crate::progress::{Progress, Report};
 use crate::solve::Status;
@@ -60,7 +61,10 @@ pub struct Parts {
 /// shape or range, [`crate::Error::Cancelled`], and the errors of the eigenproblems.
 pub fn parts(mesh: &Mesh, options: &PartsOptions, progress: &Progress) -> Result<Parts> {
     options.check(mesh)?;
-    options.solve().run(|| found(mesh, options, progress))
+    options.solve().run(|| {
+        mesh.demand(Tool::Parts).admit(None)?;
+        found(mesh, options, progress)
+    })
 }
 
 fn found(mesh: &Mesh, options: &PartsOptions, progress: &Progress) -> Result<Parts> {
