@@ -33,7 +33,7 @@ def reason_too_large(obj: bpy.types.Object, call: str) -> str | None:
 
 
 def reason_too_long(obj: bpy.types.Object, mesh: ridgeform.Mesh, longest: int) -> str | None:
-    """Why filling holes of which the longest has so many edges would not fit into memory; `None` if it would."""
+    """Why filling holes, the longest of so many edges, would not fit into memory; `None` if it would."""
     free = SHARE * ridgeform.memory_available()
     needed = ridgeform.memory_estimate("fill_holes", mesh, longest=longest)
     if needed <= free:

@@ -43,6 +43,7 @@ CALLS = [
     "denoise",
     "interpolate clarabel",
     "segment",
+    "parts",
     "remesh",
     "trace_curves",
 ]
@@ -108,6 +109,23 @@ def test_a_refused_call_can_be_made_on_what_is_said_to_fit():
         ridgeform.memory_estimate("nothing", (1, 1))
     with pytest.raises(ridgeform.ArgumentError, match="mesh: expected a Mesh or its numbers"):
         ridgeform.memory_estimate("stylize", 7)
+
+
+def test_a_long_hole_and_many_modes_take_more():
+    mesh = ridgeform.Mesh(*shapes.grid())
+    said = [ridgeform.memory_estimate("fill_holes", mesh, longest=n) for n in (4, 400)]
+    assert said[1] > 100 * said[0]
+    few, many = (ridgeform.memory_estimate("vibration_modes", mesh, columns=n) for n in (3, 300))
+    assert many > 2 * few
+    ridgeform.vibration_modes(mesh, 3, energy="l2_hessian", memory_limit=few)
+    with pytest.raises(ridgeform.MemoryLimitError, match="vibration_modes: needs about"):
+        ridgeform.vibration_modes(mesh, mesh.n_vertices, memory_limit=few)
+
+
+@pytest.mark.parametrize("count", [2**40, 2**62])
+def test_more_modes_than_vertices_are_an_error_at_once(count):
+    with pytest.raises(ridgeform.ArgumentError, match=f"count: is {count}; ask for 1 to"):
+        ridgeform.vibration_modes(ridgeform.Mesh(*shapes.grid()), count)
 
 
 @pytest.mark.parametrize("n_vertices", [2**31, 2**40, 2**62])

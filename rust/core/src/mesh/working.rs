@@ -201,14 +201,14 @@ fn far_origin(positions: &[Point]) -> Point {
 }
 
 /// The mesh with some faces turned over.
-fn turned(mesh: &Mesh, flipped: &[bool]) -> Result<Mesh, MeshError> {
+fn turned(mesh: &Mesh, flipped: &[bool]) -> Result<Mesh> {
     let faces = turned_over(mesh.connectivity().faces(), flipped);
     match mesh.positions() {
-        Some(positions) => Mesh::new(positions.to_vec(), faces),
+        Some(positions) => Ok(Mesh::new(positions.to_vec(), faces)?),
         None => {
             let swap = |(&[a, b, c], &flip): (&[f64; 3], &bool)| if flip { [a, c, b] } else { [a, b, c] };
             let lengths = mesh.edge_lengths().iter().zip(flipped).map(swap).collect();
-            Mesh::from_edge_lengths(faces, lengths, Some(mesh.connectivity().n_vertices()))
+            Ok(Mesh::from_edge_lengths(faces, lengths, Some(mesh.connectivity().n_vertices()))?)
         }
     }
 }
