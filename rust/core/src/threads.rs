@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
 use crate::error::ThreadsError;
+pub use crate::memory::processors as available;
 use crate::{memory, Error, Result};
 
 /// The process whose global pool is used, 0 before the first call.
@@ -36,12 +37,6 @@ pub fn in_this_process<T: Send>(work: impl FnOnce() -> Result<T> + Send) -> Resu
 /// What `work` returns, or [`ThreadsError`] when the system gives no thread.
 pub fn on<T: Send>(n: usize, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
     pool(n.min(available()))?.install(work)
-}
-
-/// The threads that run at once on this machine, as far as this process may use it.
-#[must_use]
-pub fn available() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 /// A pool of `n` threads, or of as many as have room, or of one where the system does not give so many.

@@ -14,6 +14,7 @@ mod threads;
 pub use demand::Demand;
 pub use free::available;
 pub use model::Tool;
+pub use threads::processors;
 pub(crate) use threads::room_for_threads;
 
 use crate::{Error, Result};
@@ -51,7 +52,7 @@ fn share_of(bytes: usize) -> usize {
 /// [`Error::Memory`].
 pub fn floor(what: &'static str) -> Result<()> {
     // Not asked of the pool of threads: asking starts it, and panics where the system gives no thread.
-    let threads = crate::threads::available().min(room_for_threads().unwrap_or(usize::MAX));
+    let threads = processors().min(room_for_threads().unwrap_or(usize::MAX));
     let needed = FLOOR + THREAD * (1 + threads);
     if is_granted(needed) {
         return Ok(());

@@ -26,6 +26,12 @@ const HEAP: usize = 64 << 20;
 /// Rows of the product that makes faer take its buffer.
 const ROWS: usize = 64;
 
+/// The threads that run at once on this machine, as far as this process may use it.
+#[must_use]
+pub fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
 /// How many threads a call may have where address space is limited, at least one: what they keep is half of what is left at
 /// most. `None` without a limit.
 pub(crate) fn room_for_threads() -> Option<usize> {
