@@ -59,7 +59,8 @@ pub(super) fn move_one(region: &mut Region, v: u32, goal: Point) -> f64 {
 
 /// Whether a face that had this area vector and quality is still in order.
 fn is_sound(corners: [Point; 3], area: Point, shape: f64) -> bool {
-    !(norm(area) > 0.0 && is_turned(corners, area)) && !is_thinned(quality(corners), KEPT * shape)
+    let turned = norm(area) > 0.0 && is_turned(corners, area);
+    !turned && !is_thinned(quality(corners), KEPT * shape)
 }
 
 /// Whether face `f` and a neighbor fold the surface more than before; `was` gives the area vectors of then.

@@ -89,7 +89,7 @@ impl Merging {
 /// What speaks against one part instead of two: the evidence for the cut, whose price is in units of the limit,
 /// times the pairs of points that it parts, over the square of the whole area.
 fn loss(a: Side, b: Side, price: f64) -> f64 {
-    -a.area * b.area * price.max(f64::MIN_POSITIVE).min(f64::MAX).ln()
+    -a.area * b.area * price.clamp(f64::MIN_POSITIVE, f64::MAX).ln()
 }
 
 fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
