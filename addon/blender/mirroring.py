@@ -32,6 +32,15 @@ class Mirror:
         return places @ self.matrix[:3, :3].T + self.matrix[:3, 3]
 
 
+@dataclass(frozen=True)
+class Plane:
+    """A mirror's plane: its normal (3,), its offset along it, and which vertices (k,) bool lie on it."""
+
+    normal: np.ndarray
+    offset: float
+    is_on: np.ndarray
+
+
 @dataclass
 class Images:
     """A mesh of k vertices and l triangles with its images, the mesh's own first."""
@@ -56,6 +65,8 @@ class Images:
     """Projections (p, 3, 3) of movements onto what mirrors let a vertex do; the first lets it do all."""
     pin: np.ndarray
     """Which of them each vertex (K,) has; images have the first."""
+    planes: list["Plane"]
+    """The planes of the mirrors that were used."""
 
     @property
     def is_pinned(self) -> np.ndarray:
@@ -152,7 +163,17 @@ class _Work:
             self.chart,
             pins,
             full,
+            [self._plane(bit, mirror) for bit, mirror in enumerate(self.used)],
         )
+
+    def _plane(self, bit: int, mirror: Mirror) -> Plane:
+        """Where a reflection leaves points alone: (1 - R) x = t, whose rows differ in size only."""
+        out, sizes, across = np.linalg.svd(np.eye(3) - mirror.matrix[:3, :3])
+        normal = across[0]
+        for value in (0.0, 1.0, -1.0):
+            normal[np.abs(normal - value) < EXACT] = value
+        offset = float(out[:, 0] @ mirror.matrix[:3, 3] / sizes[0])
+        return Plane(normal, offset, self.on >> bit & 1 > 0)
 
     def _projection(self, mirrors: int) -> np.ndarray:
         """The projection (3, 3) onto the directions that all mirrors of a set of bits leave alone."""

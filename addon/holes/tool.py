@@ -11,6 +11,7 @@ import numpy as np
 import ridgeform
 
 from ..blender import mesh_io
+from ..blender.mirroring import Images
 from ..blender.overlay import Overlay
 from ..blender.refusals import RefusedError
 from ..blender.welding import Weld
@@ -19,6 +20,7 @@ from ..framework.preflight import reason_too_long
 from ..framework.run import Part, Run, counted, meshes_phrase
 from ..framework.surface import welded
 from .append import append
+from .clipping import Pieces
 from .extension import Extension, Source, extend
 from .reading import picked_edges, read_source, reference_coordinates
 from .settings import hole_options, ridge_mask
@@ -74,16 +76,11 @@ class HoleFilling(Run):
         weld, triangles = welded(obj, coordinates, whole=True)
         try:
             mesh = ridgeform.Mesh(weld.places(coordinates), weld.triangles)
-            holes, across = own_holes(ridgeform.find_holes(mesh), weld)
+            holes = own_holes(ridgeform.find_holes(mesh), weld)
         except ridgeform.RidgeformError as error:
             raise RefusedError(f'"{obj.name}": {error}') from error
-        if across:
-            weld.notes.append(
-                f"{counted(across, 'hole')} skipped (across the plane of the Mirror modifier: apply it first)"
-            )
         if not holes:
-            why = f": {weld.notes[-1]}" if across else ""
-            raise RefusedError(f'"{obj.name}" has no holes{why}')
+            raise RefusedError(f'"{obj.name}" has no holes')
         if self._in_edit_mode:
             holes = _picked(holes, weld.vertex[picked_edges(obj.data)], len(weld.first))
             if not holes:
@@ -97,7 +94,9 @@ class HoleFilling(Run):
         reason = reason_too_long(obj, mesh, max(map(len, loops)))
         if reason is not None:
             raise RefusedError(reason)
-        source = read_source(obj.data, coordinates, triangles, weld, np.concatenate(loops))
+        rims = np.concatenate(loops)
+        rims = rims if weld.images is None else rims[rims < weld.images.n_vertices]
+        source = read_source(obj.data, coordinates, triangles, weld, rims)
         part = HolePart(
             obj, Task(obj.name, None), len(coordinates), weld.notes + reasons, source=source, loops=loops
         )
@@ -172,19 +171,16 @@ class HoleFilling(Run):
         )
 
 
-def own_holes(holes: Sequence[ridgeform.Hole], weld: Weld) -> tuple[list[ridgeform.Hole], int]:
-    """Those of the holes that lie on the mesh itself, and how many there are partly on its images."""
+def own_holes(holes: Sequence[ridgeform.Hole], weld: Weld) -> list[ridgeform.Hole]:
+    """Those of the holes that lie on the mesh itself, at least in part, and not on its images alone."""
     if weld.images is None:
-        return list(holes), 0
+        return list(holes)
     n_own, is_pinned = weld.images.n_vertices, weld.images.is_pinned
-    own, across = [], 0
-    for hole in holes:
-        is_own = hole.vertices < n_own
-        if is_own.all():
-            own.append(hole)
-        elif (is_own & ~is_pinned[hole.vertices]).any():
-            across += 1
-    return own, across
+
+    def is_own(vertices: np.ndarray) -> bool:
+        return bool((vertices < n_own).all() or ((vertices < n_own) & ~is_pinned[vertices]).any())
+
+    return [hole for hole in holes if is_own(hole.vertices)]
 
 
 def _same_hole(vertices: np.ndarray, others: np.ndarray) -> bool:
@@ -244,15 +240,34 @@ def patch_of(filled: ridgeform.Filled, source: Source) -> Patch:
     """The new part of a filled mesh, in the vertices of the mesh before its split seams were joined."""
     weld, n = source.weld, len(source.coordinates)
     n_welded = len(weld.first)
-    triangles = _unwelded(filled.new_faces, source)
-    ridges = filled.ridges
+    pieces = Pieces(
+        weld.places(source.coordinates),
+        filled.new_vertices,
+        filled.new_faces,
+        filled.new_patch,
+        filled.ridges,
+    )
+    if weld.images is not None:
+        _keep_own_side(pieces, weld.images)
+    ridges = pieces.ridges
     old = weld.first[np.minimum(ridges, n_welded - 1)]
     return Patch(
-        filled.new_vertices,
-        triangles,
-        filled.new_patch,
+        pieces.points,
+        _unwelded(pieces.triangles, source),
+        pieces.hole,
         np.where(ridges < n_welded, old, ridges - n_welded + n),
     )
+
+
+def _keep_own_side(pieces: Pieces, images: Images) -> None:
+    """Cut the patches of holes across the planes of mirrors there."""
+    own = pieces.places[: images.n_vertices]
+    for plane in images.planes:
+        side = np.sign(float((own @ plane.normal - plane.offset).sum())) or 1.0
+        is_on = np.zeros(len(pieces.places), bool)
+        is_on[: images.n_vertices] = plane.is_on
+        pieces.cut(side * plane.normal, side * plane.offset, is_on)
+    pieces.compact()
 
 
 def _unwelded(new: np.ndarray, source: Source) -> np.ndarray:

@@ -274,6 +274,54 @@ def test_a_hole_that_touches_the_seam_in_a_vertex_is_filled():
     assert last_summary()[0]["holes"] == 1 and open_edges(obj) == 0
 
 
+@pytest.mark.parametrize(
+    ("axes", "place"), [("X", [0.0, 0.4, 0.9]), ("X", [0.0, -1.0, 0.0]), ("XY", [0, 0, 1])]
+)
+@pytest.mark.parametrize("shape", ["AUTO", "SHARP", "FLAT"])
+def test_a_hole_across_the_plane_gets_its_own_side_of_a_patch(axes, place, shape):
+    obj, _ = half_ball(axes)
+    remove_faces(obj, np.linalg.norm(centers(obj) - place, axis=1) < 0.35)
+    before = kit.coordinates(obj)
+    assert open_edges(obj) > 0
+    bpy.ops.ridgeform.fill_holes(shape=shape)
+    assert last_summary()[0]["holes"] == 1
+    made = kit.coordinates(obj)[len(before) :]
+    assert open_edges(obj) == 0
+    for axis in axes:
+        column = "XYZ".index(axis)
+        assert made[:, column].min() == 0.0 and (made[:, column] == 0.0).sum() > 2
+    sizes = np.array([face.area for face in obj.data.polygons])
+    assert sizes.min() > 0.0
+
+
+def test_holes_across_and_beside_the_plane_at_once():
+    obj, _ = half_ball()
+    middle = centers(obj)
+    beside = np.linalg.norm(middle - [0.8, 0.4, 0.3], axis=1) < 0.2
+    remove_faces(obj, beside | (np.linalg.norm(middle - [0.0, 0.0, 1.0], axis=1) < 0.3))
+    bpy.ops.ridgeform.fill_holes()
+    assert last_summary()[0]["holes"] == 2 and open_edges(obj) == 0
+
+
+def test_a_patch_is_cut_along_a_plane():
+    clipping = __import__("bl_ext.user_default.ridgeform.holes.clipping", fromlist=["Pieces"])
+    corners = np.array([[1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [-1.0, -1.0, 0.0]])
+    pieces = clipping.Pieces(
+        corners,
+        np.empty((0, 3)),
+        np.array([[0, 1, 2], [0, 2, 3]]),
+        np.array([0, 0]),
+        np.array([[0, 2], [2, 3]]),
+    )
+    pieces.cut(np.array([1.0, 0.0, 0.0]), 0.0, np.zeros(4, bool))
+    pieces.compact()
+    full = np.concatenate([corners, pieces.points])[pieces.triangles]
+    assert (full[:, :, 0] >= 0.0).all()
+    areas = np.linalg.norm(np.cross(full[:, 1] - full[:, 0], full[:, 2] - full[:, 0]), axis=1) / 2
+    assert areas.sum() == pytest.approx(2.0) and len(pieces.points) == 3
+    assert len(pieces.ridges) == 1 and pieces.ridges[0].min() == 0
+
+
 def test_segments_go_on_across_the_plane():
     bpy.ops.mesh.primitive_cube_add()
     obj = bpy.context.object
