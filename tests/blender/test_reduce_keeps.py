@@ -10,7 +10,7 @@ from bl_ext.user_default.ridgeform.framework import job
 from bl_ext.user_default.ridgeform.stylize import curves, reduction, simplify
 from bl_ext.user_default.ridgeform.stylize.collapse import Fans
 from known_shapes import shapes
-from test_mirror import half_ball, open_edges
+from mirror_kit import half_ball, open_edges
 
 N = 24
 
