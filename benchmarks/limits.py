@@ -2,7 +2,8 @@
 
 Each call runs in a child that was forked after the arrays were made and then capped (`RLIMIT_AS`, what
 `ulimit -v` sets), from the smallest cap up; once it has come to a result it is not run under larger ones.
-What computes for longer than `--seconds` of processor time is asked to finish early.
+What computes for longer than `--seconds` of processor time is asked to finish early. What was measured is
+kept in `limits.json`, and another run adds what is missing or was ended for its time.
 
     python benchmarks/limits.py [--write] [--sizes 10000 100000] [--caps 0.25 0.5] [--call NAME] [--again]
 """
@@ -30,7 +31,7 @@ CAPS = [0.25, 0.5, 1.0, 2.0, 4.0, 8.0]
 SECONDS = 10
 """Processor time until a call is asked to finish early."""
 PATIENCE = 12
-"""So many times as long by the clock, and a child is ended: it is the time that is missing, not memory."""
+"""So many times as long by the clock, and a child is ended: time is missing, not memory."""
 
 REFUSALS = ("MemoryLimitError", "MemoryError", "SolveError: memory")
 
@@ -115,7 +116,8 @@ def main() -> None:
     records = Records(RECORDS)
     for size in options.sizes:
         for call in options.call or CALLS:
-            if str(size) in records.of.get(call, {}) and not options.again:
+            before = records.of.get(call, {}).get(str(size))
+            if before is not None and before[-1][1] != "time" and not options.again:
                 continue
             found = under_caps(call, mesh_for(call, size), options.caps, options.seconds)
             records.keep(call, size, found)
