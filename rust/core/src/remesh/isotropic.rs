@@ -111,12 +111,14 @@ fn in_its_unit(mesh: &Mesh, options: &RemeshOptions, progress: &Progress) -> Res
     Ok(Remeshed { vertices, faces, origin, iterations, edge_length })
 }
 
-/// Refuses what does not fit into memory: as many faces as the mesh has, or as the length asks for.
+/// Refuses what does not fit into memory where the length asks for more faces than the mesh has.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 fn admit(mesh: &Mesh, area: f64, edge_length: f64) -> Result<()> {
     let wanted = (area / (EQUILATERAL * edge_length * edge_length)) as usize;
-    let n_faces = mesh.connectivity().n_faces().max(wanted);
-    Demand { n_faces, ..mesh.demand(Tool::Remesh) }.admit(None)?;
+    // As many as there are were asked for before anything was taken.
+    if wanted > mesh.connectivity().n_faces() {
+        Demand { n_faces: wanted, ..mesh.demand(Tool::Remesh) }.admit(None)?;
+    }
     Ok(())
 }
 
