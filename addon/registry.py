@@ -5,12 +5,23 @@ from importlib import import_module
 
 import bpy
 
-from .framework import batch, bound, former, menus, modal, presets, sidebar, tool_operator
+from .framework import (
+    batch,
+    bound,
+    former,
+    manual,
+    menus,
+    modal,
+    preferences,
+    presets,
+    sidebar,
+    tool_operator,
+)
 
 NAMES = (
     "stylize",
-    "segments",
     "holes",
+    "segments",
     "attributes",
     "diffusion",
 )
@@ -22,15 +33,24 @@ TOOLS = [tool for feature in FEATURES for tool in feature.tools]
 
 def _classes() -> list[type]:
     """All classes in the order of their registration, made once."""
-    made = [presets.RIDGEFORM_OT_shipped_preset, *bound.OPERATORS]
+    made = [
+        presets.RIDGEFORM_OT_shipped_preset,
+        *bound.OPERATORS,
+        menus.RIDGEFORM_MT_tools,
+        preferences.RIDGEFORM_OT_save_defaults,
+    ]
+    groups = set()
     for feature in FEATURES:
         made += feature.operators
         for tool in feature.tools:
             made.append(tool_operator.operator_class(tool))
             if tool.presets is not None:
                 made += presets.preset_classes(tool)
+            if tool.group and tool.group not in groups:
+                groups.add(tool.group)
+                made.append(sidebar.group_panel(tool.group))
             made += [GROUPS[tool.scene_property], *sidebar.panel_classes(tool)]
-    return made
+    return [*made, preferences.preferences_class(TOOLS, GROUPS)]
 
 
 GROUPS = {tool.scene_property: sidebar.group_class(tool) for tool in TOOLS}
@@ -43,6 +63,7 @@ def register() -> None:
     bound.register()
     presets.offer(TOOLS)
     former.register(TOOLS)
+    preferences.register(TOOLS)
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     for name, group in GROUPS.items():
@@ -51,6 +72,7 @@ def register() -> None:
         if feature.register is not None:
             feature.register()
     menus.register(FEATURES)
+    manual.register(TOOLS)
     batch.register(TOOLS)
 
 
@@ -58,8 +80,10 @@ def unregister() -> None:
     """Take everything out of Blender again; a job that runs is cancelled first."""
     bound.unregister()
     modal.unregister()
+    preferences.unregister()
     former.unregister()
     batch.unregister()
+    manual.unregister()
     menus.unregister()
     for feature in reversed(FEATURES):
         if feature.unregister is not None:

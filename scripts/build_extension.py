@@ -15,6 +15,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import help_pages
 from build_wheel import build_wheel
 from notices import NOTICES, extension_notices
 from setup_env import environments
@@ -92,6 +93,7 @@ def stage(wheels: list[Path], targets: list[str]) -> None:
     for wheel in wheels:
         shutil.copy2(wheel, STAGE / "wheels")
     (STAGE / NOTICES.name).write_text(extension_notices(wheels), encoding="utf-8")
+    help_pages.write_help(STAGE / "help")
     names = sorted({f"./wheels/{wheel.name}" for wheel in wheels})
     manifest = STAGE / "blender_manifest.toml"
     text = manifest.read_text(encoding="utf-8")
@@ -129,7 +131,9 @@ def build_extension(wheels_folder: Path | None = None) -> list[Path]:
     targets = sorted({target_of(wheel) for wheel in own})
     wheels = own + [wheel for target in targets for wheel in bundled_wheels(target)]
     stamp = STATE / "extension.stamp"
-    wanted = digest([*files_in(ROOT / "addon"), NOTICES, *wheels, Path(__file__)], version())
+    pages = sorted((ROOT / "docs").glob("manual*.md"))
+    scripts = [Path(__file__), Path(help_pages.__file__)]
+    wanted = digest([*files_in(ROOT / "addon"), NOTICES, *pages, *wheels, *scripts], version())
     built = sorted(EXTENSION.glob("*.zip"))
     if is_current(stamp, wanted) and built:
         return built

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Denoise, interpolate and show attributes; vibration modes."""
 
+from ..framework.sidebar import ATTRIBUTES
 from ..framework.tool import Feature, Tool
 from .denoise import Denoising
 from .interpolate import Interpolation
@@ -25,6 +26,8 @@ FEATURE = Feature(
             run=Denoising,
             settings=DenoiseSettings,
             key="denoise",
+            page="manual_attributes",
+            group=ATTRIBUTES,
             presets=DENOISE_PRESETS,
         ),
         Tool(
@@ -36,6 +39,8 @@ FEATURE = Feature(
             run=Interpolation,
             settings=InterpolateSettings,
             key="interpolate",
+            page="manual_attributes",
+            group=ATTRIBUTES,
             presets=INTERPOLATE_PRESETS,
         ),
         Tool(
@@ -47,6 +52,8 @@ FEATURE = Feature(
             run=VibrationModes,
             settings=ModesSettings,
             key="modes",
+            page="manual_attributes",
+            group=ATTRIBUTES,
         ),
     ),
     operators=(RIDGEFORM_OT_show_attribute,),

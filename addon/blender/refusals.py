@@ -9,6 +9,10 @@ class RefusedError(Exception):
     """Something of the modeler's that cannot be worked on; the message says why, and what to do about it."""
 
 
+class NothingToDoError(RefusedError):
+    """Something that is as it should be already: no fault of anybody's."""
+
+
 class AttributeRefusedError(RefusedError):
     """An attribute that cannot be used."""
 

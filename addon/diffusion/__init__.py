@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Diffusion curves in Blender: colors in, curve objects out and in again, colors and drawings out."""
 
+from ..framework.sidebar import ATTRIBUTES
 from ..framework.tool import Feature, Tool
 from . import operator
 from .coloring import RIDGEFORM_OT_color_diffusion_curves
@@ -17,6 +18,8 @@ FEATURE = Feature(
             run=DiffusionCurves,
             settings=DiffusionSettings,
             key="diffusion",
+            page="manual_diffusion_curves",
+            group=ATTRIBUTES,
             draw_more=operator.draw_buttons,
         ),
     ),

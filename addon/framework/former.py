@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Settings that scenes and presets of versions before have, and others have taken the place of.
 
-Panels keep such a property, hidden: a preset that sets it sets what took its place, and so does a scene that
-has it when it is opened. Operators keep it as well, for scripts that name it.
+Panels keep such a property, hidden. Where a preset or an opened scene has set it, it is unset, and what took
+its place is set. Operators keep it as well, for scripts that name it.
+
+Not by a function that Blender calls when it is set: Blender 4.2 as a module keeps that until the end,
+and then crashes.
 """
 
 from collections.abc import Sequence
@@ -18,10 +21,7 @@ _tools: list[Tool] = []
 
 def properties_of(settings: type[Settings]) -> dict[str, object]:
     """The annotations of the hidden properties for a property group."""
-    return {
-        name: bpy.props.BoolProperty(name=name, options={"HIDDEN"}, update=_taker(name))
-        for name in settings.former
-    }
+    return {name: bpy.props.BoolProperty(name=name, options={"HIDDEN"}) for name in settings.former}
 
 
 def given_properties_of(settings: type[Settings]) -> dict[str, object]:
@@ -31,52 +31,46 @@ def given_properties_of(settings: type[Settings]) -> dict[str, object]:
     }
 
 
-def take_given(operator: bpy.types.Operator, settings: type[Settings]) -> None:
-    """Set what took the place of the properties that a call of an operator has named."""
+def take_given(group: bpy.types.bpy_struct, settings: type[Settings]) -> None:
+    """Set what took the place of the properties that a panel, or a call of an operator, was given."""
     for name in settings.former:
-        if operator.properties.is_property_set(name):
-            _take(operator.properties, settings, name, given=True)
-            operator.properties.property_unset(name)
-
-
-def _taker(name: str) -> object:
-    def take(group: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
-        tool = next((tool for tool in _tools if _is_of(group, tool)), None)
-        if tool is not None:
-            _take(group, tool.settings, name, given=False)
-
-    return take
-
-
-def _is_of(group: bpy.types.PropertyGroup, tool: Tool) -> bool:
-    return group.id_data.bl_rna.identifier == "Scene" and group == getattr(group.id_data, tool.scene_property)
-
-
-def _take(group: bpy.types.PropertyGroup, settings: type[Settings], name: str, given: bool) -> None:
-    """Set what took the place of a property; if `given`, not those that have a value already."""
-    for other, value in settings.former[name][getattr(group, name)].items():
-        if not (given and group.is_property_set(other)):
-            setattr(group, other, value)
+        if not group.is_property_set(name):
+            continue
+        first, *others = settings.former[name][getattr(group, name)].items()
+        setattr(group, *first)
+        for other, value in others:
+            # Only where it was left at what was the default then.
+            if not group.is_property_set(other):
+                setattr(group, other, value)
+        group.property_unset(name)
 
 
 @persistent
-def _take_all(*_arguments: object) -> None:
+def take_all(*_arguments: object) -> None:
+    """Do so in the panels of all scenes."""
     for scene in bpy.data.scenes:
         for tool in _tools:
-            group = getattr(scene, tool.scene_property)
-            for name in tool.settings.former:
-                if group.is_property_set(name):
-                    _take(group, tool.settings, name, given=True)
-                    group.property_unset(name)
+            take_given(getattr(scene, tool.scene_property), tool.settings)
+
+
+def is_due(group: bpy.types.PropertyGroup, settings: type[Settings]) -> bool:
+    """Whether a panel has been given such a property."""
+    return any(group.is_property_set(name) for name in settings.former)
+
+
+def take_soon() -> None:
+    """Do so when Blender has drawn: while it draws nothing may be set."""
+    if not bpy.app.timers.is_registered(take_all):
+        bpy.app.timers.register(take_all)
 
 
 def register(tools: Sequence[Tool]) -> None:
     """Look through every scene that is opened."""
     _tools[:] = [tool for tool in tools if tool.settings.former]
-    bpy.app.handlers.load_post.append(_take_all)
+    bpy.app.handlers.load_post.append(take_all)
 
 
 def unregister() -> None:
     """Look no longer."""
-    bpy.app.handlers.load_post.remove(_take_all)
+    bpy.app.handlers.load_post.remove(take_all)
     _tools.clear()

@@ -108,6 +108,7 @@ class Job:
 
 
 _last_summary: list[dict[str, object]] = []
+_is_shown = False
 
 
 def last_summary() -> list[dict[str, object]]:
@@ -119,6 +120,19 @@ def last_summary() -> list[dict[str, object]]:
     return [dict(entry) for entry in _last_summary]
 
 
+def shown_summary() -> list[dict[str, object]]:
+    """The same, as long as what was done is there: nothing after an undo step or in another file."""
+    return last_summary() if _is_shown else []
+
+
 def store_summary(entries: Sequence[dict[str, object]]) -> None:
     """Make this the answer of `last_summary`."""
+    global _is_shown  # noqa: PLW0603
     _last_summary[:] = [dict(entry) for entry in entries]
+    _is_shown = True
+
+
+def hide_summary() -> None:
+    """Say that what was done may no longer be there."""
+    global _is_shown  # noqa: PLW0603
+    _is_shown = False

@@ -10,6 +10,7 @@ from bpy.app.handlers import persistent
 
 from ..blender.mesh_state import ChangedError
 from ..blender.refusals import RefusedError
+from .job import hide_summary
 from .pacing import Estimate, Throttle, status_line
 from .run import Run
 
@@ -266,6 +267,7 @@ def _abort_all(*_arguments: object) -> None:
         abort(run)
     for call in when_aborted:
         call()
+    hide_summary()
 
 
 @persistent

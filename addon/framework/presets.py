@@ -46,6 +46,8 @@ class RIDGEFORM_OT_shipped_preset(bpy.types.Operator):  # noqa: N801
         settings = getattr(context.scene, tool.scene_property)
         for name, value in tool.preset_values(self.preset).items():
             setattr(settings, name, value)
+        # As Blender does it for presets that are files.
+        getattr(bpy.types, tool.presets_menu).bl_label = self.preset
         return {"FINISHED"}
 
 
@@ -65,6 +67,8 @@ class _PresetList:
         for name in tool.presets:
             entry = column.operator(RIDGEFORM_OT_shipped_preset.bl_idname, text=name)
             entry.tool, entry.preset = tool.name, name
+        entry = column.operator("ridgeform.save_defaults", icon="PREFERENCES")
+        entry.tool = tool.name
         folders = bpy.utils.preset_paths(preset_folder(tool))
         self.path_menu(
             # Without any folder Blender would say that paths are missing.
@@ -93,7 +97,7 @@ class _AddPreset(AddPresetBase):
 def preset_classes(tool: Tool) -> list[type]:
     """The menu, the operator that adds and removes, and the popover of a tool's presets."""
     label = f"{tool.panel_label} Presets"
-    menu = f"RIDGEFORM_MT_{tool.key}_presets"
+    menu = tool.presets_menu
     listed = {"__module__": __name__, "bl_label": label, "tool": tool}
     # Blender gives what it runs the class of the popover, too: it changes the label.
     popover = listed | {"bl_space_type": "PROPERTIES", "bl_region_type": "HEADER"}

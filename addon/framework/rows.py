@@ -25,18 +25,6 @@ def draw_section(
             draw_setting(column, settings, name, setting, obj)
 
 
-def draw_all(
-    layout: bpy.types.UILayout,
-    settings: object,
-    declared: type[Settings],
-    obj: bpy.types.Object | None,
-) -> None:
-    """Draw the rows of all sections, one after the other."""
-    split(layout)
-    for section in ("", *sections_of(declared)):
-        draw_section(layout, settings, declared, section, obj)
-
-
 def draw_setting(
     layout: bpy.types.UILayout,
     settings: object,

@@ -65,11 +65,12 @@ class Run(ABC):
         self.settings = settings
         self.skipped = list(skipped)
         self.parts: list[Part] = []
+        self._refusal: RefusedError | None = None
         self._in_edit_mode = bpy.context.mode == "EDIT_MESH"
         with mesh_io.object_mode() if self.in_object_mode else contextlib.nullcontext():
             self._prepare_all(objects)
         if not self.parts:
-            raise RefusedError(self.skipped[-1] if self.skipped else "Select a mesh object")
+            raise self._refusal or RefusedError(self.skipped[-1] if self.skipped else "Select a mesh object")
         for part in self.parts:
             part.state = MeshState(part.object)
         self.job = Job([part.task for part in self.parts])
@@ -91,6 +92,7 @@ class Run(ABC):
                 self.parts.append(self.prepare(obj))
             except RefusedError as refusal:
                 self.skipped.append(str(refusal))
+                self._refusal = refusal
 
     @abstractmethod
     def prepare(self, obj: bpy.types.Object) -> Part:

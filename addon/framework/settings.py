@@ -129,7 +129,7 @@ class Settings:
     declared: Mapping[str, Setting] = {}
     """All settings by name: those of the bases first, in their order."""
     former: Mapping[str, Mapping[bool, Mapping[str, object]]] = {}
-    """Check boxes of versions before, and what each of their values sets now."""
+    """Check boxes of versions before, and what each of their values sets now: the first always."""
 
     def __init_subclass__(cls, **arguments: object) -> None:
         """Collect what is declared."""

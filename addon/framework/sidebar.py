@@ -5,13 +5,15 @@ from typing import ClassVar
 
 import bpy
 
-from . import bound, former, job, rows
+from . import bound, former, job, manual, rows
 from .run import NO_RESULT
 from .settings import properties_of
 from .tool import Tool
 
 LAST_RUN_LINES = 4
 """Meshes of the last run that a panel says something about."""
+ATTRIBUTES = "Attributes and Curves"
+"""The panel that the tools on attributes are in."""
 LARGE = 1.4
 """Height of the button of a prominent tool."""
 
@@ -26,9 +28,21 @@ class _ToolPanel:
     section = ""
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the rows of the section; the panel itself also has the button, and what the last run did."""
+        """Draw the panel. Blender would call what is raised here again with every redraw."""
+        try:
+            self.draw_all(context)
+        except Exception as error:
+            self.layout.label(text=f"{type(error).__name__}: {error}", icon="ERROR")
+
+    def draw_all(self, context: bpy.types.Context) -> None:
+        """Draw the rows of the section; the panel itself also has presets, button, and what a run did."""
         tool, layout = self.tool, rows.split(self.layout)
         settings = getattr(context.scene, tool.scene_property)
+        if former.is_due(settings, tool.settings):
+            former.take_soon()
+        if not self.section and tool.presets is not None:
+            # Its label is the preset that was chosen last.
+            layout.menu(tool.presets_menu, text=getattr(bpy.types, tool.presets_menu).bl_label, icon="PRESET")
         rows.draw_section(layout, settings, tool.settings, self.section, context.object)
         if self.section:
             return
@@ -50,8 +64,10 @@ def draw_last_run(layout: bpy.types.UILayout, tool: Tool) -> None:
     column = layout.column(align=True)
     done = [
         entry
-        for entry in job.last_summary()
-        if entry["tool"] == tool.run.name and entry["status"] not in NO_RESULT
+        for entry in job.shown_summary()
+        if entry["tool"] == tool.run.name
+        and entry["status"] not in NO_RESULT
+        and entry["name"] in bpy.data.objects
     ]
     for entry in done[:LAST_RUN_LINES]:
         for line, text in enumerate(tool.run.lines(entry)):
@@ -77,8 +93,9 @@ def panel_classes(tool: Tool) -> list[type]:
     options = {"bl_label": tool.panel_label, "tool": tool}
     if not tool.prominent:
         options["bl_options"] = {"DEFAULT_CLOSED"}
-    if tool.presets is not None:
-        options["draw_header_preset"] = _draw_presets_button
+    if tool.group:
+        options["bl_parent_id"] = _group_idname(tool.group)
+    options["draw_header_preset"] = _draw_header_buttons
     classes = [_made(name, (_ToolPanel, bpy.types.Panel), tool.description, **options)]
     for section in rows.sections_of(tool.settings):
         classes.append(
@@ -96,9 +113,37 @@ def panel_classes(tool: Tool) -> list[type]:
     return classes
 
 
-def _draw_presets_button(self: bpy.types.Panel, _context: bpy.types.Context) -> None:
+def group_panel(label: str) -> type:
+    """The closed panel that panels of several tools are in."""
+    return _made(
+        _group_idname(label),
+        (_GroupPanel, bpy.types.Panel),
+        label,
+        bl_label=label,
+        bl_options={"DEFAULT_CLOSED"},
+    )
+
+
+def _group_idname(label: str) -> str:
+    return f"RIDGEFORM_PT_{label.lower().replace(' ', '_')}"
+
+
+class _GroupPanel:
+    """Mixin for a panel that has nothing but other panels."""
+
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Ridgeform"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draw nothing."""
+
+
+def _draw_header_buttons(self: bpy.types.Panel, _context: bpy.types.Context) -> None:
     self.layout.emboss = "NONE"
-    self.layout.popover(panel=f"RIDGEFORM_PT_{self.tool.key}_presets", icon="PRESET", text="")
+    manual.draw_button(self.layout, self.tool)
+    if self.tool.presets is not None:
+        self.layout.popover(panel=f"RIDGEFORM_PT_{self.tool.key}_presets", icon="PRESET", text="")
 
 
 def _made(name: str, bases: tuple[type, ...], doc: str, **own: object) -> type:

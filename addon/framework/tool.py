@@ -31,6 +31,14 @@ class Tool:
     """Whether the panel is open at first and its button large."""
     open_sections: Sequence[str] = ()
     """The subpanels that are open at first."""
+    page: str = "manual"
+    """The page of the manual."""
+    quick: Sequence[str] = ()
+    """The settings that a redo takes no time for, however long a run takes."""
+    group: str = ""
+    """The panel that its panel is a part of, with those of other tools; none if empty."""
+    finds: str = ""
+    """Words in its menu entry by which the search finds it as well."""
     stays_bound: bool = False
     """Whether its panel stays bound to the last result: changed settings start again from the original."""
     presets: Mapping[str, Mapping[str, object]] | None = None
@@ -58,6 +66,16 @@ class Tool:
     def panel_label(self) -> str:
         """What the panel is called."""
         return self.title or self.label
+
+    @property
+    def menu_text(self) -> str:
+        """What its menu entry is called."""
+        return f"{self.label} ({self.finds})" if self.finds else self.label
+
+    @property
+    def presets_menu(self) -> str:
+        """The identifier of the menu of its presets."""
+        return f"RIDGEFORM_MT_{self.key}_presets"
 
     def preset_values(self, name: str) -> dict[str, object]:
         """All that a shipped preset sets."""

@@ -8,12 +8,16 @@ import bpy
 from bpy.props import BoolProperty
 
 from ..blender import mesh_io, selection
-from ..blender.refusals import RefusedError
+from ..blender.refusals import NothingToDoError, RefusedError
 from . import bound, former, rows
+from .job import shown_summary
 from .modal import ModalRun
 from .run import Run
 from .settings import properties_of, setting_names, values_of
 from .tool import Tool
+
+QUICK = 0.5
+"""Seconds that Blender may stand still: a redo is done while it waits."""
 
 
 class ToolOperator(ModalRun):
@@ -54,7 +58,7 @@ class ToolOperator(ModalRun):
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Run while Blender goes on drawing, with the panel's values for all that is not given."""
         bound.release()
-        former.take_given(self, self.tool.settings)
+        former.take_given(self.properties, self.tool.settings)
         self._ask_panel(context)
         run = self._prepared(context)
         if run is not None:
@@ -90,12 +94,21 @@ class ToolOperator(ModalRun):
         return outcome
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the redo panel."""
-        rows.draw_all(self.layout, self, self.tool.settings, context.object)
+        """Draw the redo panel: the main rows, where a redo takes no time that one would notice."""
+        layout, tool = rows.split(self.layout), self.tool
+        seconds = sum(entry["seconds"] for entry in shown_summary() if entry["tool"] == tool.run.name)
+        if seconds <= QUICK:
+            rows.draw_section(layout, self, tool.settings, "", context.object)
+            return
+        for name in tool.quick:
+            rows.draw_setting(layout, self, name, tool.settings.declared[name], context.object)
+        text = f"Took {seconds:.1f} s: change the settings in the sidebar (N)"
+        self.layout.label(text=text, icon="INFO")
 
     def _ask_panel(self, context: bpy.types.Context) -> None:
         """Take the panel's values for all that is not given, and give it the others: they are one set."""
         panel = getattr(context.scene, self.tool.scene_property)
+        former.take_given(panel, self.tool.settings)
         for name in setting_names(self.tool.settings):
             if self.properties.is_property_set(name, ghost=False) and not self.from_panel:
                 setattr(panel, name, getattr(self, name))
@@ -113,7 +126,7 @@ class ToolOperator(ModalRun):
     def _prepared(self, context: bpy.types.Context) -> Run | None:
         if self.from_panel:
             self._ask_panel(context)
-        former.take_given(self, self.tool.settings)
+        former.take_given(self.properties, self.tool.settings)
         chosen = selection.usable(selection.mesh_objects(context), self.tool.run.needs)
         self._painting = mesh_io.PAINTING.get(context.mode)
         if self._painting is not None:
@@ -123,7 +136,7 @@ class ToolOperator(ModalRun):
             # A plain object: a job reads it in a thread of its own, where Blender's must not be touched.
             return self.tool.run(chosen.objects, values_of(self.tool.settings, self), chosen.skipped)
         except RefusedError as refusal:
-            self.report({"ERROR"}, str(refusal))
+            self.report({"INFO"} if isinstance(refusal, NothingToDoError) else {"ERROR"}, str(refusal))
             return None
 
 
@@ -133,7 +146,7 @@ def operator_class(tool: Tool) -> type:
         "bl_idname": tool.idname,
         "bl_label": tool.label,
         "bl_description": tool.description,
-        "bl_options": {"REGISTER", "UNDO", "PRESET"},
+        "bl_options": {"REGISTER", "UNDO"},
         "tool": tool,
         "__annotations__": former.given_properties_of(tool.settings) | properties_of(tool.settings),
         "__module__": __name__,

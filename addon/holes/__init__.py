@@ -16,6 +16,8 @@ FEATURE = Feature(
             run=HoleFilling,
             settings=HoleSettings,
             key="fill_holes",
+            page="manual_holes",
+            finds="Repair",
             scene="ridgeform_holes",
             presets=PRESETS,
         ),

@@ -13,7 +13,7 @@ import ridgeform
 from ..blender import mesh_io
 from ..blender.mirroring import Images
 from ..blender.overlay import Overlay
-from ..blender.refusals import RefusedError
+from ..blender.refusals import NothingToDoError, RefusedError
 from ..blender.welding import Weld
 from ..framework.job import Task
 from ..framework.preflight import reason_too_long
@@ -80,7 +80,7 @@ class HoleFilling(Run):
         except ridgeform.RidgeformError as error:
             raise RefusedError(f'"{obj.name}": {error}') from error
         if not holes:
-            raise RefusedError(f'"{obj.name}" has no holes')
+            raise NothingToDoError(f'"{obj.name}" has no holes')
         if self._in_edit_mode:
             holes = _picked(holes, weld.vertex[picked_edges(obj.data)], len(weld.first))
             if not holes:

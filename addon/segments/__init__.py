@@ -21,6 +21,8 @@ FEATURE = Feature(
             run=Segmenting,
             settings=SegmentSettings,
             key="segment",
+            page="manual_segment",
+            quick=("use_count", "count"),
             presets=PRESETS,
             draw_more=draw_restore,
         ),

@@ -2,7 +2,7 @@
 """Stylize: the flow on each mesh, then what is made of the result."""
 
 from ..framework.tool import Feature, Tool
-from .settings import PRESETS, WHERE, StylizeSettings
+from .settings import PRESETS, StylizeSettings
 from .tool import Stylization
 
 FEATURE = Feature(
@@ -17,7 +17,7 @@ FEATURE = Feature(
             key="stylize",
             title="Stylize",
             prominent=True,
-            open_sections=(WHERE,),
+            finds="Planar, Low Poly",
             stays_bound=True,
             presets=PRESETS,
         ),

@@ -36,7 +36,6 @@ class Stylization(Run):
 
     name = "stylize"
     call = "stylize"
-    counted = "steps"
     in_object_mode = False
 
     def __init__(
@@ -131,6 +130,15 @@ class Stylization(Run):
             "status": str(result.status),
             "warnings": part.warnings + part.task.result.notes,
         }
+
+    @classmethod
+    def lines(cls, entry: dict[str, object]) -> list[str]:
+        """What the panel says of a mesh: facets, steps, movement."""
+        moved = f"moved {100.0 * entry['moved']:.2g} %"
+        return [
+            f"{entry['name']}: {counted(entry['facets'], 'facet')}",
+            f"{counted(entry['steps'], 'step')}, {moved}, {entry['seconds']:.1f} s",
+        ]
 
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """How many facets there are, how far the shape moved, and how long it took."""

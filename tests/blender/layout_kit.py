@@ -8,6 +8,7 @@ class Layout:
         """Begin empty."""
         self.rows: list[str] = []
         self.buttons: list[tuple[str, str]] = []
+        self.labels: list[str] = []
 
     def row(self, **_options: object) -> "Layout":
         """The same layout."""
@@ -22,6 +23,13 @@ class Layout:
     def prop_search(self, _settings: object, name: str, _data: object, _collection: str) -> None:
         """Take down a row with a search field."""
         self.rows.append(name)
+
+    def label(self, text: str = "", **_options: object) -> None:
+        """Take down a text."""
+        self.labels.append(text)
+
+    def menu(self, _idname: str, **_options: object) -> None:
+        """Menus are tested by themselves."""
 
     def operator(self, idname: str, text: str = "", **_options: object) -> "Layout":
         """Take down a button; its properties are set on the layout itself."""

@@ -77,13 +77,16 @@ def test_native_module_asks_for_no_newer_glibc_than_blender(package):
     assert max(map(int, asked)) <= 28
 
 
-def test_only_sources_license_manifest_and_wheels(package):
+def test_only_sources_license_manifest_manual_and_wheels(package):
     names = [name for name in package.namelist() if not name.endswith("/")]
     assert "LICENSE" in names
     odd = [
         name
         for name in names
-        if not re.search(r"\.(py|whl)$|^LICENSE$|^blender_manifest\.toml$|^THIRD-PARTY-NOTICES\.txt$", name)
+        if not re.search(
+            r"\.(py|whl)$|^LICENSE$|^blender_manifest\.toml$|^THIRD-PARTY-NOTICES\.txt$|^help/\w+\.html$",
+            name,
+        )
     ]
     assert not odd
 

@@ -1,8 +1,12 @@
 """Panel, menus, presets, command: all there when registered, all gone when unregistered."""
 
+from fnmatch import fnmatch
+from types import SimpleNamespace
+
 import addon_kit as kit
 import bpy
 import hole_kit
+import layout_kit
 import pytest
 from bl_ext.user_default import ridgeform as addon
 from bl_ext.user_default.ridgeform.attributes.settings import (
@@ -50,6 +54,10 @@ CLASSES = (
     "RIDGEFORM_PT_stylize",
     "RIDGEFORM_PT_stylize_where",
     "RIDGEFORM_PT_stylize_last_steps",
+    "RIDGEFORM_PT_attributes_and_curves",
+    "RIDGEFORM_MT_tools",
+    "RIDGEFORM_OT_apply_result",
+    "RIDGEFORM_OT_change_result",
     "RIDGEFORM_PT_stylize_expert",
     "RIDGEFORM_PT_stylize_presets",
     "RIDGEFORM_PT_denoise_presets",
@@ -78,7 +86,7 @@ TOOLS = {
 }
 PRESETS = {tool.name: list(tool.presets or ()) for tool in addon.registry.TOOLS}
 MENUS = ("VIEW3D_MT_object", "VIEW3D_MT_edit_mesh", "TOPBAR_MT_file_export")
-HANDLERS = ("load_pre", "load_post", "undo_pre", "redo_pre")
+HANDLERS = {"load_pre": 1, "load_post": 2, "undo_pre": 1, "redo_pre": 1, "save_pre": 1}
 
 
 def trace():
@@ -100,7 +108,7 @@ def test_registering_and_unregistering_leave_nothing():
     assert gone == {
         "classes": set(),
         "menus": [count - 1 for count in there["menus"]],
-        "handlers": [count - 1 for count in there["handlers"]],
+        "handlers": [count - own for count, own in zip(there["handlers"], HANDLERS.values(), strict=True)],
         "scene": [False] * len(TOOLS),
     }
     addon.register()
@@ -211,8 +219,99 @@ def test_buttons_of_the_attribute_panels_take_their_settings():
 
 
 @pytest.mark.parametrize("tool", list(TOOLS))
-def test_operator_is_undoable_and_takes_presets(tool):
-    assert {"REGISTER", "UNDO", "PRESET"} <= getattr(bpy.types, f"RIDGEFORM_OT_{tool}").bl_options
+def test_operator_is_undoable(tool):
+    # Presets are those of the panel: there is one set of values.
+    assert getattr(bpy.types, f"RIDGEFORM_OT_{tool}").bl_options == {"REGISTER", "UNDO"}
+
+
+STYLIZE = next(tool for tool in addon.registry.TOOLS if tool.name == "stylize")
+
+
+def drawn(cls, **own):
+    """What a panel, a menu or an operator draws."""
+    drawing = SimpleNamespace(layout=layout_kit.Layout(), **own)
+    drawing.draw_all = lambda context: cls.draw_all(drawing, context)
+    cls.draw(drawing, bpy.context)
+    return drawing.layout
+
+
+def test_the_menu_says_what_the_search_finds():
+    texts = " ".join(text for _, text in drawn(bpy.types.RIDGEFORM_MT_tools).buttons).lower()
+    assert bpy.types.RIDGEFORM_MT_tools.bl_label == "Ridgeform"
+    for word in ("low poly", "planar", "repair", "stylize", "segment", "redraw"):
+        assert word in texts
+
+
+def test_the_line_on_the_last_run_follows_undo_and_deletion():
+    def labels():
+        panel = drawn(bpy.types.RIDGEFORM_PT_stylize, tool=STYLIZE, section="")
+        return [text for text in panel.labels if "facet" in text]
+
+    bpy.context.preferences.edit.use_global_undo = True
+    obj = kit.bumpy_box()
+    bpy.ops.ed.undo_push(message="made")
+    bpy.ops.ridgeform.stylize(steps=2)
+    bpy.ops.ed.undo_push(message="stylized")
+    assert labels()[0].startswith("Box: ")
+    obj.name = "Renamed"
+    assert labels() == []
+    obj.name = "Box"
+    assert labels()
+    bpy.ops.ed.undo()
+    assert labels() == []
+    assert job.last_summary()[0]["steps"] == 2
+
+
+def test_a_redo_that_takes_long_is_not_offered():
+    kit.bumpy_box()
+    bpy.ops.ridgeform.stylize(steps=2)
+    own = vars(default_settings()) | {"tool": STYLIZE}
+    operator = bpy.types.RIDGEFORM_OT_stylize
+    assert drawn(operator, **own).rows == ["finish", "steps", "strength", "sharpness"]
+    job.store_summary([entry | {"seconds": 0.6} for entry in job.last_summary()])
+    panel = drawn(operator, **own)
+    assert panel.rows == []
+    assert panel.labels == ["Took 0.6 s: change the settings in the sidebar (N)"]
+
+
+def test_saved_defaults_are_those_of_scenes_that_do_not_say_otherwise(tmp_path):
+    panel = bpy.context.scene.ridgeform_stylize
+    panel.strength = 0.875
+    saved = addon.framework.preferences.current().ridgeform_stylize
+    try:
+        assert bpy.ops.ridgeform.save_defaults(tool="stylize") == {"FINISHED"}
+        panel.strength = 0.25
+        path = str(tmp_path / "scene.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+        kit.empty_scene()
+        assert bpy.context.scene.ridgeform_stylize.strength == 0.875
+        bpy.ops.wm.open_mainfile(filepath=path)
+        assert bpy.context.scene.ridgeform_stylize.strength == 0.25
+        kit.bumpy_box()
+    finally:
+        for name in setting_names(StylizeSettings):
+            saved.property_unset(name)
+    kit.empty_scene()
+    assert bpy.context.scene.ridgeform_stylize.strength == 0.5
+
+
+def test_every_tool_is_looked_up_in_its_page_of_the_manual():
+    manual = addon.framework.manual
+    prefix, entries = manual.manual_map()
+    assert prefix.startswith("file://")
+    for tool in addon.registry.TOOLS:
+        page = next(page for pattern, page in entries if fnmatch(f"bpy.ops.ridgeform.{tool.name}", pattern))
+        text = (manual.PAGES / page).read_text(encoding="utf-8")
+        assert tool.label in text
+        assert manual.address_of(tool).endswith(page)
+    assert manual.manual_map in bpy.utils._manual_map
+
+
+def test_nothing_comes_out_of_a_panel():
+    broken = SimpleNamespace(settings=None, presets=None, scene_property="none")
+    panel = drawn(bpy.types.RIDGEFORM_PT_stylize, tool=broken, section="")
+    assert panel.labels[0].startswith("AttributeError: ")
+    assert drawn(bpy.types.RIDGEFORM_PT_stylize, tool=STYLIZE, section="").rows
 
 
 def test_wrong_wheel_is_refused(monkeypatch):
