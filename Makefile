@@ -83,7 +83,7 @@ fuzz-sequences:
 	$(RUN) scripts/fuzz_sequences.py $(or $(MINUTES),10) --write
 
 fuzz:
-	$(RUN) scripts/fuzz.py $(or $(MINUTES),10)
+	$(RUN) scripts/fuzz.py $(or $(MINUTES),10) $(ARGS)
 
 bench-parts:
 	$(RUN) benchmarks/parts.py $(DATA) $(ARGS)

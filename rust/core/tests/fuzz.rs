@@ -1,7 +1,7 @@
 //! Structured fuzzing: every tool on meshes that nobody modeled, and what holds of every answer.
 //!
 //! A call follows from its seed alone. The kept seeds of `fuzz_seeds.txt` come first, then fixed ones; with
-//! `RIDGEFORM_FUZZ_SECONDS` set, for so long ones that no run had before. `RIDGEFORM_FUZZ_SEED` repeats one.
+//! `RIDGEFORM_FUZZ_SECONDS` set, for so long ones that no run had before. `RIDGEFORM_FUZZ_CALL` repeats one.
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
 #[path = "fuzz_answers/mod.rs"]
@@ -98,7 +98,7 @@ const SUITE: usize = 600;
 #[test]
 fn every_answer_is_a_number_near_what_went_in() {
     let given = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
-    if let Some(seed) = given("RIDGEFORM_FUZZ_SEED") {
+    if let Some(seed) = given("RIDGEFORM_FUZZ_CALL") {
         println!("core: seed {seed}: {:?}", call(seed));
         return;
     }

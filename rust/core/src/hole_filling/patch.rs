@@ -53,9 +53,15 @@ pub(super) fn refined(
         .map(|i| options.edge_length.map_or(rim_size(i), |length| length.max(rim_size(i))))
         .chain(flat.extra.iter().map(|_| typical))
         .collect();
+    // Sizes that grow by as much for every unit of distance, from the nearest corner as from any other: means of them would be
+    // those of the middle of the hole a third of the way from there to the rim, and leave needles all around.
+    let grown = |sizes: [f64; 3], far: [f64; 3]| {
+        sizes.iter().zip(far).map(|(size, far)| size + growth * far).fold(f64::INFINITY, f64::min)
+    };
     let size_between = |sizes: [f64; 3], far: [f64; 3]| match options.edge_length {
-        Some(length) => length + growth * far.iter().copied().fold(f64::INFINITY, f64::min),
-        None => (sizes.iter().sum::<f64>() + growth * far.iter().sum::<f64>()) / 3.0,
+        _ if growth > 0.0 => grown(sizes, far),
+        Some(length) => length,
+        None => sizes.iter().sum::<f64>() / 3.0,
     };
     let most = budget::patch_faces(options.max_faces, n);
     refine(&mut mesh, &mut sizes, size_between, most, progress)?;

@@ -129,13 +129,19 @@ fn bend_after(mesh: &EditableMesh, vertices: &[u32], position: Point) -> f64 {
             .filter(|pair| is_outer(pair) || matches!(mesh.edge(pair.0, pair.1), Edge::Border(..)))
             .find_map(|(t, h)| mesh.normal_across(t, h))
     };
+    // Found by their directed edges, also around a hub with ten thousand faces.
+    let mut by_edge: Vec<([u32; 2], u32)> =
+        (0..).zip(&stay).flat_map(|(s, (_, then, _))| (0..3).map(move |k| ([then[k], then[(k + 1) % 3]], s))).collect();
+    by_edge.sort_unstable();
+    let area_at = |edge: [u32; 2]| {
+        let first = by_edge.partition_point(|&(other, _)| other < edge);
+        by_edge.get(first).filter(|(other, _)| *other == edge).map(|&(_, s)| stay[s as usize].2)
+    };
     let mut least = 1.0_f64;
     for (face, then, area) in &stay {
         for i in 0..3 {
             let (tail, head) = (then[i], then[(i + 1) % 3]);
-            let neighbor =
-                stay.iter().find(|(_, other, _)| (0..3).any(|k| other[k] == head && other[(k + 1) % 3] == tail));
-            let across = neighbor.map(|&(_, _, area)| area).or_else(|| beyond(face[i], face[(i + 1) % 3]));
+            let across = area_at([head, tail]).or_else(|| beyond(face[i], face[(i + 1) % 3]));
             if let Some(across) = across {
                 least = least.min(cosine(across, *area));
             }
