@@ -166,6 +166,23 @@ def test_several_holes_at_once():
     assert sorted({*filled.patch}) == [-1, 0, 1, 2]
 
 
+@pytest.mark.parametrize(
+    ("bend", "radius", "place"), [(138, 0.4, 0), (142, 0.3, 0.05), (146, 0.5, 0), (150, 0.4, 0)]
+)
+def test_ridges_of_wedges_come_back(bend, radius, place):
+    half = np.radians(bend) / 2
+    flat, faces = shapes.grid(24, 24)
+    across, along = (flat[:, :2] / 12 - 1).T
+    vertices = np.column_stack([across * np.cos(half), along, -np.abs(across) * np.sin(half)])
+    away = np.linalg.norm(vertices[faces].mean(axis=1) - [0, place, 0], axis=1)
+    mesh = ridgeform.Mesh(vertices, faces[away > radius])
+    loop = min(ridgeform.boundary_loops(mesh), key=len)
+    filled = ridgeform.fill_holes(mesh, loops=[loop])
+    assert filled.holes[0].shape == "sharp"
+    sides = np.array([[np.sin(half), 0, np.cos(half)], [-np.sin(half), 0, np.cos(half)]])
+    assert np.abs(filled.new_vertices @ sides.T).min(axis=1).max() < 1e-6
+
+
 def test_progress_shows_the_patch_and_can_stop_it(cancelled):
     mesh, _ = turned_cube(12, [1, 1, 0.1], 0.5)
     progress = ridgeform.Progress()

@@ -10,8 +10,9 @@ pub const TURNED: f64 = 0.5;
 /// Faces of less quality ([`crate::mesh::vector::quality`]) than this count as slivers: a triangle whose height is 0.09 of its longest edge.
 pub const SLIVER: f64 = 0.2;
 
-/// Faces whose normals make an angle of more than this cosine (137 degrees) fold the surface. Sharper ridges are rare.
-pub const FOLDED: f64 = -0.7374;
+/// Faces whose normals make an angle of more than this cosine (154 degrees) fold the surface. Ridges of 140 to 152 degrees are
+/// real: with a limit of 137 degrees, holes across them came back smooth.
+pub const FOLDED: f64 = -0.9;
 
 /// Whether a face of quality `new` is a sliver where one of quality `old` was none, or a thinner one.
 #[must_use]

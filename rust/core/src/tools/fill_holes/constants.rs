@@ -82,6 +82,10 @@ pub(super) const EVEN_ANGLE: f64 = 0.01;
 /// concave edge came back 0.055 off instead of exactly.
 pub(super) const KEPT: f64 = 0.75;
 
+/// Moves make no bend of more than this cosine (137 degrees) sharper. Below what counts as folded: flips and
+/// remeshing sharpen a ridge further.
+pub(super) const MOVED_BEND: f64 = -0.7374;
+
 // The parts around a hole.
 
 /// Faces count less the more rings they are away from the hole: a Gaussian of this width.

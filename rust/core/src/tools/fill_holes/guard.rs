@@ -1,9 +1,9 @@
 //! Moves that fold nothing: the vertices of faces that would turn over or become slivers move less far.
 
-use super::constants::KEPT;
+use super::constants::{KEPT, MOVED_BEND};
 use super::region::Region;
 use crate::mesh::vector::{area_vector, between, cosine, distance, norm, quality, Point};
-use crate::shape_guard::{farthest, is_thinned, is_turned, shorter, FOLDED};
+use crate::shape_guard::{farthest, is_thinned, is_turned, shorter};
 
 /// Moves the free vertices toward `goal` as far as the faces around them stay in order, and returns the longest move.
 pub(super) fn move_guarded(region: &mut Region, goal: &[Point]) -> f64 {
@@ -63,7 +63,7 @@ fn is_sound(corners: [Point; 3], area: Point, shape: f64) -> bool {
     !turned && !is_thinned(quality(corners), KEPT * shape)
 }
 
-/// Whether face `f` and a neighbor fold the surface more than before; `was` gives the area vectors of then.
+/// Whether face `f` and a neighbor bend the surface too much, and more than before; `was` gives the area vectors of then.
 fn folds(region: &Region, f: u32, face: [u32; 3], was: &dyn Fn(u32) -> Point) -> bool {
     let mesh = &region.mesh;
     let here = mesh.area_vector(f);
@@ -71,6 +71,6 @@ fn folds(region: &Region, f: u32, face: [u32; 3], was: &dyn Fn(u32) -> Point) ->
         let Some(wings) = mesh.wings(face[i], face[(i + 1) % 3]) else { return false };
         let other = if wings.faces[0] == f { wings.faces[1] } else { wings.faces[0] };
         let now = cosine(here, mesh.area_vector(other));
-        now < FOLDED && now < cosine(was(f), was(other))
+        now < MOVED_BEND && now < cosine(was(f), was(other))
     })
 }
