@@ -146,7 +146,7 @@ def main() -> None:
         sys.exit(WANTED if given.folder is None else f"{given.folder} holds no such shapes.\n{WANTED}")
     if given.site is None:
         build_wheel()
-    sys.path.insert(0, str(given.site or WHEEL_SITE))
+    sys.path[:0] = [str(given.site or WHEEL_SITE), str(ROOT)]
     records = []
     for path in [path for path in shapes if given.only in path.stem][:: given.every]:
         record = measure(path)
