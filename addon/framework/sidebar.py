@@ -52,7 +52,7 @@ class _ToolPanel:
             row.operator(tool.idname, icon=tool.icon).from_panel = True
         else:
             row.operator("ridgeform.apply_result", icon="CHECKMARK")
-            row.operator(tool.idname, text="Go On from Here", icon="PLAY").from_panel = True
+            row.operator(tool.idname, text="Go On", icon="PLAY").from_panel = True
             layout.label(text="A change starts from the original", icon="FILE_REFRESH")
         if tool.draw_more is not None:
             tool.draw_more(layout, settings)
