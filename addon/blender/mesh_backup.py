@@ -38,7 +38,9 @@ class MeshBackup:
             # The copy has made these agree with each other.
             for items, flags in zip(_elements(mesh), self._flags, strict=True):
                 for name, values in flags.items():
-                    items.foreach_set(name, values)
+                    # Newer versions make an attribute of what is set, even if nothing is hidden.
+                    if not np.array_equal(values, _flags(items)[name]):
+                        items.foreach_set(name, values)
         self._remove_keys()
         for name, values in self._marks.items():
             attribute = mesh.attributes.get(name)
