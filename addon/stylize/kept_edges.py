@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..blender.mesh_layers import MARKS, Layers, Triangulation
+from ..blender.mesh_layers import MARKS, Layer, Layers, Triangulation
 from ..blender.welding import Weld, connected_parts
 
 
@@ -100,11 +100,18 @@ def _materials(layers: Layers, faces: np.ndarray) -> np.ndarray:
     return np.zeros(len(faces), np.int64)
 
 
+def _is_mark(layer: Layer) -> bool:
+    """Whether edges carry a mark that stays: where most are sharp, that is flat shading, and no feature."""
+    if layer.name == "sharp_edge" and np.mean(layer.values) > 0.5:
+        return False
+    return layer.name in MARKS
+
+
 def _marks(old: Triangulation, layers: Layers, weld: Weld, halves: _Halves) -> tuple[np.ndarray, np.ndarray]:
     """The values (e, c) of marks on each edge, and the edge of the mesh (e,) that has them."""
     ends = np.sort(weld.vertex[old.edges], axis=1)
     keys = ends[:, 0].astype(np.int64) * halves.n_vertices + ends[:, 1]
-    kinds = [layer for layer in layers.attributes if layer.domain == "EDGE" and layer.name in MARKS]
+    kinds = [layer for layer in layers.attributes if layer.domain == "EDGE" and _is_mark(layer)]
     values = np.zeros((len(old.edges), sum(layer.values.shape[1] for layer in kinds)))
     if kinds:
         values = np.concatenate([layer.values for layer in kinds], axis=1).astype(np.float64)

@@ -48,4 +48,5 @@ def test_levels_of_detail(run):
     run("blender_levels_of_detail.py")
     levels = [len(bpy.data.objects[f"Box_LOD{level}"].data.polygons) for level in (1, 2, 3)]
     for found, ratio in zip(levels, (0.5, 0.25, 0.1), strict=True):
-        assert found == pytest.approx(ratio * triangles, rel=0.3, abs=8)
+        # The borders of the box's UV islands stay.
+        assert 0.95 * ratio * triangles <= found <= 1.5 * ratio * triangles

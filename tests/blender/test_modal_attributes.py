@@ -16,7 +16,7 @@ from bl_ext.user_default.ridgeform.attributes.settings import (
     ModesSettings,
 )
 from bl_ext.user_default.ridgeform.blender.attribute_names import SHOWN
-from bl_ext.user_default.ridgeform.framework import modal
+from bl_ext.user_default.ridgeform.framework import pacing
 from bl_ext.user_default.ridgeform.framework.settings import defaults_of
 from modal_kit import begin, event, poll_to_the_end
 
@@ -89,10 +89,13 @@ def test_enter_takes_what_is_reached():
 
 
 def test_status_bar_counts_iterations():
-    progress = SimpleNamespace(stage="solving", iteration=3, energy=1.5, gap=0.01, fraction=0.5)
-    task = SimpleNamespace(name="Box", progress=progress, counted="iteration")
-    line = modal.status_line(SimpleNamespace(current=task))
-    assert line == "Box: solving, iteration 3, energy 1.5, gap 0.01"
+    progress = SimpleNamespace(stage="solving", iteration=3)
+    task = SimpleNamespace(
+        name="Box", progress=progress, counted="iteration", stage="", started=True, most=None
+    )
+    estimate = SimpleNamespace(elapsed=4.2, remaining=75.0)
+    line = pacing.status_line(SimpleNamespace(current=task), estimate)
+    assert line == "Box: solving, iteration 3, 4 s elapsed, about 1 min 15 s left"
 
 
 def test_a_failed_run_is_an_error_and_writes_nothing():

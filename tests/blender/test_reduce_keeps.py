@@ -141,6 +141,18 @@ def test_marks_stay_where_they_are(name, value):
     assert len(places) < 0.35 * len(before)
 
 
+@pytest.mark.parametrize(("share", "stays"), [(1.0, False), (0.7, False), (0.1, True)])
+def test_edges_that_are_mostly_sharp_are_flat_shading(share, stays):
+    """As importers mark them where a file has a normal for each face."""
+    obj = sheet()
+    ends = mesh_io.edges(obj.data)
+    sharp = np.random.default_rng(5).random(len(ends)) < share
+    obj.data.edges.foreach_set("use_edge_sharp", sharp)
+    before = len(mesh_io.triangles(obj.data))
+    _, triangles = reduce(obj)
+    assert (len(triangles) > 0.35 * before) is stays
+
+
 def test_materials_keep_their_border():
     obj = sheet()
     for name in ("Field", "Road", "Pond"):
@@ -223,7 +235,7 @@ def test_what_cannot_be_reduced_is_said():
     assert "all of their vertices must stay" in job.last_summary()[0]["warnings"][-1]
     kit.empty_scene()
     obj = sheet()
-    obj.data.edges.foreach_set("use_edge_sharp", np.ones(len(obj.data.edges), bool))
+    obj.data.edges.foreach_set("use_seam", np.ones(len(obj.data.edges), bool))
     reduce(obj)
     assert "were asked for" in job.last_summary()[0]["warnings"][-1] or len(obj.data.polygons) == 2 * N * N
 
