@@ -29,6 +29,18 @@ def areas_of(vertices, faces, labels):
     return np.bincount(labels, 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1))
 
 
+def weights_around(faces, chosen, weight):
+    """Weights (m, 3) of edges: that on the border of the chosen faces (m,), and 1."""
+    weights = np.ones((len(faces), 3))
+    first, second, edges = segment_shapes.face_pairs(faces)
+    rim = {tuple(sorted(edge)) for edge in edges[chosen[first] != chosen[second]].tolist()}
+    for f, face in enumerate(faces.tolist()):
+        for i in range(3):
+            if tuple(sorted((face[(i + 1) % 3], face[(i + 2) % 3]))) in rim:
+                weights[f, i] = weight
+    return weights
+
+
 @pytest.fixture(scope="module")
 def ball():
     return limbs.ball_with_limbs(4)
@@ -84,13 +96,7 @@ def test_a_thumb_on_a_limb_goes_before_the_limb():
     plain = ridgeform.parts(ridgeform.Mesh(vertices, faces), n_parts=5)
     far = np.linalg.norm(vertices[faces].mean(axis=1), axis=1)
     tip = (truth == 0) & (far > far[truth == 0].max() - 0.15)
-    weights = np.ones((len(faces), 3))
-    first, second, edges = segment_shapes.face_pairs(faces)
-    rim = {tuple(sorted(edge)) for edge in edges[tip[first] != tip[second]].tolist()}
-    for f, face in enumerate(faces.tolist()):
-        for i in range(3):
-            if tuple(sorted((face[(i + 1) % 3], face[(i + 2) % 3]))) in rim:
-                weights[f, i] = 0.3
+    weights = weights_around(faces, tip, 0.3)
     thumbed = ridgeform.parts(ridgeform.Mesh(vertices, faces), edge_weights=weights)
     assert adjusted_rand_index(thumbed.labels_at(5), plain.labels) >= 0.95
 
@@ -215,13 +221,7 @@ def test_edges_that_are_borders_already_are_cut_along(ball):
     vertices, faces, truth = ball
     far = np.linalg.norm(vertices[faces].mean(axis=1), axis=1)
     tip = (truth == 1) & (far > 1.7)
-    weights = np.ones((len(faces), 3))
-    first, second, edges = segment_shapes.face_pairs(faces)
-    rim = {tuple(sorted(edge)) for edge in edges[tip[first] != tip[second]].tolist()}
-    for f, face in enumerate(faces.tolist()):
-        for i in range(3):
-            if tuple(sorted((face[(i + 1) % 3], face[(i + 2) % 3]))) in rim:
-                weights[f, i] = 0.0
+    weights = weights_around(faces, tip, 0.0)
     labels = ridgeform.parts(ridgeform.Mesh(vertices, faces), n_parts=2, edge_weights=weights).labels
     assert adjusted_rand_index(labels, tip.astype(int)) >= 0.99
 
