@@ -35,7 +35,14 @@ def _import_gltf(filepath: str) -> None:
 def _export_gltf(filepath: str) -> None:
     kind = "GLB" if filepath.lower().endswith(".glb") else "GLTF_SEPARATE"
     with _plain_image_names():
-        bpy.ops.export_scene.gltf(filepath=filepath, export_format=kind)
+        try:
+            bpy.ops.export_scene.gltf(filepath=filepath, export_format=kind)
+        except RuntimeError as error:
+            # The exporter of Blender 4.2 caches by places in memory, and after many files it takes one of the
+            # file before for its own now and then. It fails then, and has no such place the next time.
+            if "KeyError" not in str(error):
+                raise
+            bpy.ops.export_scene.gltf(filepath=filepath, export_format=kind)
 
 
 @contextlib.contextmanager
