@@ -5,7 +5,9 @@ Installing happens when pytest loads this file, so that test modules may import 
 `make test` names the zip in RIDGEFORM_EXTENSION; without it, the one built last is taken.
 """
 
+import atexit
 import os
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -17,6 +19,7 @@ PROFILE = empty_profile()
 import bpy  # noqa: E402
 import numpy as np  # noqa: E402
 
+EXIT_CODE = pytest.StashKey[int]()
 BUILT = Path(__file__).parents[2] / ".ridgeform/extension"
 
 
@@ -65,3 +68,23 @@ def add_mesh() -> Callable[..., bpy.types.Object]:
         return obj
 
     return add
+
+
+def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
+    """Keep the exit code for the end."""
+    session.config.stash[EXIT_CODE] = int(exitstatus)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """End as the batch command does, before Python takes itself apart.
+
+    Blender 4.2 as a module crashes in that where anything still refers to it, say a thread's last error, and
+    the exit code would be the crash's. That the extension itself leaves nothing behind, a Blender of its own
+    shows in `test_extension_install.py`.
+    """
+    if EXIT_CODE in config.stash:
+        atexit._run_exitfuncs()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(config.stash[EXIT_CODE])
