@@ -64,7 +64,8 @@ pub(super) fn settle(what: &'static str, multiplies: bool) -> Result<usize> {
             take();
         }
     }
-    Ok(HEAP)
+    // It maps two heaps at a time, to have one that is aligned.
+    Ok(2 * HEAP)
 }
 
 fn take() {
