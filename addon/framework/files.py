@@ -3,6 +3,7 @@
 
 import contextlib
 import re
+import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -37,12 +38,22 @@ def _export_gltf(filepath: str) -> None:
     with _plain_image_names():
         try:
             bpy.ops.export_scene.gltf(filepath=filepath, export_format=kind)
-        except RuntimeError as error:
-            # The exporter of Blender 4.2 caches by places in memory, and after many files it takes one of the
-            # file before for its own now and then. It fails then, and has no such place the next time.
-            if "KeyError" not in str(error):
-                raise
-            bpy.ops.export_scene.gltf(filepath=filepath, export_format=kind)
+        finally:
+            _forget_exported()
+
+
+def _forget_exported() -> None:
+    """Empty the caches of the glTF exporter.
+
+    They keep the settings of the last export, and these its objects. Blender 4.2 compares them with those of
+    the next one, crashing where the objects are gone by then.
+    """
+    modules = [module for name, module in sys.modules.items() if name.startswith("io_scene_gltf2.")]
+    for made in [value for module in modules for value in vars(module).values()]:
+        kept = getattr(made, "__wrapped__", None)
+        for name in ("__export_settings", "__cache"):
+            if hasattr(kept, name):
+                delattr(kept, name)
 
 
 @contextlib.contextmanager
