@@ -45,8 +45,8 @@ def _export_gltf(filepath: str) -> None:
 def _forget_exported() -> None:
     """Empty the caches of the glTF exporter.
 
-    They keep the settings of the last export, and these its objects. Blender 4.2 compares them with those of
-    the next one, crashing where the objects are gone by then.
+    They keep the settings of the last export, and these its objects, which are gone when Blender 4.2 compares
+    them with those of the next one. It still crashes now and then, where it sets the scene of the window.
     """
     modules = [module for name, module in sys.modules.items() if name.startswith("io_scene_gltf2.")]
     for made in [value for module in modules for value in vars(module).values()]:

@@ -224,7 +224,7 @@ def test_an_image_of_another_name_is_not_destroyed(tmp_path):
 
 
 def test_gltf_exports_leave_nothing_behind(tmp_path):
-    """Blender 4.2 crashed over the objects of an export that was long gone."""
+    """Blender 4.2 would compare objects of an export whose file is no longer open."""
     for number in range(3):
         scene()
         files.write_file(tmp_path / f"box{number}.glb")
