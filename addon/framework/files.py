@@ -3,7 +3,6 @@
 
 import contextlib
 import re
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -36,24 +35,7 @@ def _import_gltf(filepath: str) -> None:
 def _export_gltf(filepath: str) -> None:
     kind = "GLB" if filepath.lower().endswith(".glb") else "GLTF_SEPARATE"
     with _plain_image_names():
-        try:
-            bpy.ops.export_scene.gltf(filepath=filepath, export_format=kind)
-        finally:
-            _forget_exported()
-
-
-def _forget_exported() -> None:
-    """Empty the caches of the glTF exporter.
-
-    They keep the settings of the last export, and these its objects, which are gone when Blender 4.2 compares
-    them with those of the next one. It still crashes now and then, where it sets the scene of the window.
-    """
-    modules = [module for name, module in sys.modules.items() if name.startswith("io_scene_gltf2.")]
-    for made in [value for module in modules for value in vars(module).values()]:
-        kept = getattr(made, "__wrapped__", None)
-        for name in ("__export_settings", "__cache"):
-            if hasattr(kept, name):
-                delattr(kept, name)
+        bpy.ops.export_scene.gltf(filepath=filepath, export_format=kind)
 
 
 @contextlib.contextmanager
