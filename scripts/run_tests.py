@@ -22,11 +22,8 @@ def main(arguments: list[str]) -> None:
             {"PYTHONPATH": str(WHEEL_SITE)},
         )
         in_blender = {"RIDGEFORM_EXTENSION": str(extension), "PYTHONPATH": ""}
-        # In a process of its own: after an undo the glTF exporter of Blender 4.2 crashes now and then.
-        batch = sorted((ROOT / "tests/blender").glob("test_batch*.py"))
-        parts[f"batch command in Blender {PYTHONS[version]}"] = ([*pytest, *batch], in_blender)
         parts[f"extension in Blender {PYTHONS[version]}"] = (
-            [*pytest, "tests/blender", *(f"--ignore={path}" for path in batch)],
+            [*pytest, "tests/blender"],
             in_blender,
         )
     parts["Rust tests"] = (

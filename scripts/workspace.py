@@ -75,22 +75,11 @@ def run(
         stop(f"{what}: failed with exit code {code}")
 
 
-EXPORTER_CRASHES = 8
-"""So often the batch tests begin again: one run in two crashed on the machine where it was worst."""
-
-
 def run_all(parts: dict[str, tuple[list[str | Path], dict[str, str]]]) -> None:
     """Run all commands, each with an environment, even if some fail; stop at the end, naming those."""
     failed = []
     for what, (command, environment) in parts.items():
         code = _run(command, what, environment)
-        # The glTF exporter of Blender 4.2 crashes now and then where it sets the scene of the window,
-        # after many exports in one process. A test that fails is not run again.
-        for _ in range(EXPORTER_CRASHES if what.startswith("batch command") else 0):
-            if code >= 0:
-                break
-            print(f"   {what}: ended by signal {-code}, once more", flush=True)
-            code = _run(command, what, environment)
         if code:
             failed.append(what)
     if failed:

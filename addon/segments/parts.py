@@ -54,7 +54,7 @@ def _select_only(obj: bpy.types.Object) -> None:
 
 
 def _select_faces(mesh: bpy.types.Mesh, chosen: np.ndarray) -> None:
-    bpy.context.tool_settings.mesh_select_mode = (False, False, True)
+    bpy.context.scene.tool_settings.mesh_select_mode = (False, False, True)
     mesh.vertices.foreach_set("select", np.zeros(len(mesh.vertices), bool))
     mesh.edges.foreach_set("select", np.zeros(len(mesh.edges), bool))
     mesh.polygons.foreach_set("hide", np.zeros(len(mesh.polygons), bool))

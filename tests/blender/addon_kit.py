@@ -90,7 +90,7 @@ def select_only(obj: bpy.types.Object, mask: np.ndarray) -> None:
     obj.data.polygons.foreach_set("select", np.zeros(len(obj.data.polygons), bool))
     obj.data.edges.foreach_set("select", np.zeros(len(obj.data.edges), bool))
     obj.data.vertices.foreach_set("select", mask)
-    bpy.context.tool_settings.mesh_select_mode = (True, False, False)
+    bpy.context.scene.tool_settings.mesh_select_mode = (True, False, False)
     bpy.ops.object.mode_set(mode="EDIT")
 
 

@@ -110,7 +110,7 @@ def pick(obj, *edges):
     wanted = {frozenset(edge) for edge in edges}
     mesh.edges.foreach_set("select", [frozenset(edge.vertices) in wanted for edge in mesh.edges])
     mesh.vertices.foreach_set("select", np.isin(np.arange(len(mesh.vertices)), list(set().union(*wanted))))
-    bpy.context.tool_settings.mesh_select_mode = (False, True, False)
+    bpy.context.scene.tool_settings.mesh_select_mode = (False, True, False)
     bpy.ops.object.mode_set(mode="EDIT")
 
 

@@ -39,7 +39,7 @@ def test_it_ends_a_run_that_began_before(tool, change):
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.ops.mesh.select_all(action="SELECT")
     settings = {"known": "UNSELECTED"} if tool == "interpolate" else {}
-    bpy.context.tool_settings.mesh_select_mode = (True, False, False)
+    bpy.context.scene.tool_settings.mesh_select_mode = (True, False, False)
     if tool == "interpolate":
         bpy.ops.mesh.select_random(ratio=0.4, action="DESELECT")
     session = Session(tool, [obj], **settings)

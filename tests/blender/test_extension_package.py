@@ -18,6 +18,9 @@ REFUSED = {
     "subprocess": "starts other programs",
     "eval(": "runs text as code",
     "exec(": "runs text as code",
+    # Blender 4.2 then writes the scene into the context itself, and refers to it when it is gone:
+    # the glTF exporter crashes on the next file.
+    "context.tool_settings": "reads the tool settings of the context instead of those of the scene",
 }
 
 

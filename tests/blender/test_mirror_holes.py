@@ -12,7 +12,7 @@ def remove_faces(obj: bpy.types.Object, chosen: np.ndarray) -> None:
     kit.select_only(obj, np.zeros(len(obj.data.vertices), bool))
     bpy.ops.object.mode_set(mode="OBJECT")
     obj.data.polygons.foreach_set("select", chosen)
-    bpy.context.tool_settings.mesh_select_mode = (False, False, True)
+    bpy.context.scene.tool_settings.mesh_select_mode = (False, False, True)
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.ops.mesh.delete(type="FACE")
     bpy.ops.object.mode_set(mode="OBJECT")

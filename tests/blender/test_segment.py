@@ -47,7 +47,7 @@ def select_faces(obj, mask):
     obj.data.vertices.foreach_set("select", np.zeros(len(obj.data.vertices), bool))
     obj.data.edges.foreach_set("select", np.zeros(len(obj.data.edges), bool))
     obj.data.polygons.foreach_set("select", mask)
-    bpy.context.tool_settings.mesh_select_mode = (False, False, True)
+    bpy.context.scene.tool_settings.mesh_select_mode = (False, False, True)
     bpy.ops.object.mode_set(mode="EDIT")
 
 

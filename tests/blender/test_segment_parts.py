@@ -112,6 +112,13 @@ def test_parts_without_caps_stay_open_at_the_cuts():
     assert all(edges_open(item.data) > 0 for item in objects)
 
 
+@pytest.mark.usefixtures("ball")
+def test_making_objects_leaves_nothing_in_the_context():
+    """Blender 4.2 keeps the scene in it where its tool settings were read: the next glTF export crashed."""
+    bpy.ops.ridgeform.segment(kind="PARTS", outputs={"OBJECTS"})
+    assert bpy.context.id_data is None
+
+
 def test_what_parts_do_not_have_is_said(ball):
     obj, _ = ball
     bpy.ops.ridgeform.segment(kind="PARTS", outputs={"INDICATOR"})
@@ -124,7 +131,7 @@ def test_only_selected_faces_are_divided_in_edit_mode(ball):
     obj, truth = ball
     mask = truth != 2
     obj.data.polygons.foreach_set("select", mask)
-    bpy.context.tool_settings.mesh_select_mode = (False, False, True)
+    bpy.context.scene.tool_settings.mesh_select_mode = (False, False, True)
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.ops.ridgeform.segment(kind="PARTS")
     bpy.ops.object.mode_set(mode="OBJECT")
