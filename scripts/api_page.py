@@ -60,16 +60,15 @@ def entry_of(name: str, node: ast.stmt, thing: object, cells: dict[str, str]) ->
     if isinstance(node, ast.ClassDef):
         members = []
         for member in node.body:
-            if isinstance(member, ast.FunctionDef) and not member.name.startswith("_"):
-                about = (
-                    (inspect.getdoc(getattr(thing, member.name)) or "").replace("\n", " ").replace("|", "\\|")
-                )
-                kind = any(ast.unparse(d) == "property" for d in member.decorator_list)
-                shown = (
-                    member.name
-                    if kind
-                    else f"{member.name}({', '.join(a.arg for a in member.args.args[1:])})"
-                )
+            if isinstance(member, ast.AnnAssign):
+                called, shown = ast.unparse(member.target), ast.unparse(member.target)
+            elif isinstance(member, ast.FunctionDef):
+                called = member.name
+                shown = f"{called}({', '.join(a.arg for a in member.args.args[1:])})"
+            else:
+                continue
+            if not called.startswith("_"):
+                about = (inspect.getdoc(getattr(thing, called)) or "").replace("\n", " ").replace("|", "\\|")
                 members.append(f"| `{shown}` | {about} |")
         if members:
             parts.append("\n".join(["| member | |", "|---|---|", *members]))

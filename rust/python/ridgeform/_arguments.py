@@ -3,20 +3,21 @@
 import functools
 import re
 from collections.abc import Callable
+from typing import Any
 
 from .errors import ArgumentError
 
 NOTE = re.compile(r"while processing '(\w+)'")
 
 
-def named(function: Callable) -> Callable:
+def named(function: Callable[..., Any]) -> Callable[..., Any]:
     """`function`, with errors about the type of an argument that begin with its name, as all others do.
 
     Raises TypeError for a wrong type, ArgumentError for a whole number that no machine word holds.
     """
 
     @functools.wraps(function)
-    def call(*positional, **keywords):
+    def call(*positional: Any, **keywords: Any) -> Any:
         try:
             return function(*positional, **keywords)
         except (TypeError, OverflowError) as error:

@@ -30,70 +30,44 @@ class Mesh:
     def __new__(cls, vertices: ArrayLike, faces: ArrayLike) -> Self: ...
     @staticmethod
     def from_edge_lengths(faces: ArrayLike, lengths: ArrayLike, n_vertices: int | None = None) -> Mesh: ...
-    @property
-    def vertices(self) -> Floats | None: ...
-    @property
-    def faces(self) -> Indices: ...
-    @property
-    def edge_lengths(self) -> Floats: ...
-    @property
-    def n_vertices(self) -> int: ...
-    @property
-    def n_faces(self) -> int: ...
-    @property
-    def report(self) -> MeshReport: ...
+    vertices: Final[Floats | None]
+    faces: Final[Indices]
+    edge_lengths: Final[Floats]
+    n_vertices: Final[int]
+    n_faces: Final[int]
+    report: Final[MeshReport]
 
 @final
 class MeshReport:
-    @property
-    def n_components(self) -> int: ...
-    @property
-    def n_boundary_loops(self) -> int: ...
-    @property
-    def nonmanifold_edges(self) -> Indices: ...
-    @property
-    def inconsistent_edges(self) -> Indices: ...
-    @property
-    def flipped_faces(self) -> Indices: ...
-    @property
-    def nonmanifold_vertices(self) -> Indices: ...
-    @property
-    def degenerate_faces(self) -> Indices: ...
-    @property
-    def duplicate_faces(self) -> Indices: ...
-    @property
-    def unreferenced_vertices(self) -> Indices: ...
+    n_components: Final[int]
+    n_boundary_loops: Final[int]
+    nonmanifold_edges: Final[Indices]
+    inconsistent_edges: Final[Indices]
+    flipped_faces: Final[Indices]
+    nonmanifold_vertices: Final[Indices]
+    degenerate_faces: Final[Indices]
+    duplicate_faces: Final[Indices]
+    unreferenced_vertices: Final[Indices]
 
 @final
 class SparseMatrix:
-    @property
-    def shape(self) -> tuple[int, int]: ...
-    @property
-    def nnz(self) -> int: ...
-    @property
-    def indptr(self) -> Indices: ...
-    @property
-    def indices(self) -> Indices: ...
-    @property
-    def data(self) -> Floats: ...
+    shape: Final[tuple[int, int]]
+    nnz: Final[int]
+    indptr: Final[Indices]
+    indices: Final[Indices]
+    data: Final[Floats]
     def to_scipy(self) -> Any: ...
     def __matmul__(self, other: ArrayLike, /) -> Floats: ...
 
 @final
 class Progress:
     def __new__(cls) -> Self: ...
-    @property
-    def fraction(self) -> float: ...
-    @property
-    def stage(self) -> str: ...
-    @property
-    def iteration(self) -> int: ...
-    @property
-    def energy(self) -> float | None: ...
-    @property
-    def gap(self) -> float | None: ...
-    @property
-    def asked(self) -> int: ...
+    fraction: Final[float]
+    stage: Final[str]
+    iteration: Final[int]
+    energy: Final[float | None]
+    gap: Final[float | None]
+    asked: Final[int]
     def cancel(self) -> None: ...
     def finish(self) -> None: ...
     def snapshot(self) -> Floats | None: ...
@@ -102,191 +76,117 @@ class Progress:
 
 @final
 class Solution:
-    @property
-    def values(self) -> Floats: ...
-    @property
-    def objective(self) -> float: ...
-    @property
-    def gap(self) -> float: ...
-    @property
-    def iterations(self) -> int: ...
-    @property
-    def factorisations(self) -> int: ...
-    @property
-    def status(self) -> Literal["solved", "inaccurate", "stopped"]: ...
-    @property
-    def solver(self) -> str: ...
+    values: Final[Floats]
+    objective: Final[float]
+    gap: Final[float]
+    iterations: Final[int]
+    factorisations: Final[int]
+    status: Final[Literal["solved", "inaccurate", "stopped"]]
+    solver: Final[str]
 
 @final
 class Remeshed:
-    @property
-    def vertices(self) -> Floats: ...
-    @property
-    def faces(self) -> Indices: ...
-    @property
-    def origin(self) -> Indices: ...
-    @property
-    def edge_length(self) -> float: ...
-    @property
-    def iterations(self) -> int: ...
-    @property
-    def status(self) -> Literal["finished", "stopped"]: ...
+    vertices: Final[Floats]
+    faces: Final[Indices]
+    origin: Final[Indices]
+    edge_length: Final[float]
+    iterations: Final[int]
+    status: Final[Literal["finished", "stopped"]]
 
 @final
 class Segmentation:
-    @property
-    def labels(self) -> Indices: ...
-    @property
-    def n_segments(self) -> int: ...
-    @property
-    def indicator(self) -> Floats: ...
-    @property
-    def values(self) -> Floats: ...
-    @property
-    def boundary_edges(self) -> Indices: ...
-    @property
-    def noise(self) -> float: ...
-    @property
-    def fidelity(self) -> float: ...
-    @property
-    def epsilons(self) -> Floats: ...
-    @property
-    def alternations(self) -> int: ...
-    @property
-    def status(self) -> Literal["solved", "inaccurate", "stopped"]: ...
-    @property
-    def range(self) -> tuple[int, int]: ...
-    @property
-    def strengths(self) -> Floats: ...
+    labels: Final[Indices]
+    n_segments: Final[int]
+    indicator: Final[Floats]
+    values: Final[Floats]
+    boundary_edges: Final[Indices]
+    noise: Final[float]
+    fidelity: Final[float]
+    epsilons: Final[Floats]
+    alternations: Final[int]
+    status: Final[Literal["solved", "inaccurate", "stopped"]]
+    range: Final[tuple[int, int]]
+    strengths: Final[Floats]
     def labels_at(self, n_segments: int) -> Indices: ...
 
 @final
 class Parts:
-    @property
-    def labels(self) -> Indices: ...
-    @property
-    def n_parts(self) -> int: ...
-    @property
-    def boundary_edges(self) -> Indices: ...
-    @property
-    def status(self) -> Literal["solved", "stopped"]: ...
-    @property
-    def range(self) -> tuple[int, int]: ...
-    @property
-    def costs(self) -> Floats: ...
+    labels: Final[Indices]
+    n_parts: Final[int]
+    boundary_edges: Final[Indices]
+    status: Final[Literal["solved", "stopped"]]
+    range: Final[tuple[int, int]]
+    costs: Final[Floats]
     def labels_at(self, n_parts: int) -> Indices: ...
 
 @final
 class Stylized:
-    @property
-    def vertices(self) -> Floats: ...
-    @property
-    def energy(self) -> Floats: ...
-    @property
-    def gap(self) -> Floats: ...
-    @property
-    def solver_iterations(self) -> Indices: ...
-    @property
-    def iterations(self) -> int: ...
-    @property
-    def factorisations(self) -> int: ...
-    @property
-    def flat_share(self) -> Floats: ...
-    @property
-    def n_facets(self) -> int: ...
-    @property
-    def status(
-        self,
-    ) -> Literal[
-        "finished",
-        "reached",
-        "settled",
-        "inaccurate",
-        "converged",
-        "collapsed",
-        "diverged",
-        "stopped",
-    ]: ...
+    vertices: Final[Floats]
+    energy: Final[Floats]
+    gap: Final[Floats]
+    solver_iterations: Final[Indices]
+    iterations: Final[int]
+    factorisations: Final[int]
+    flat_share: Final[Floats]
+    n_facets: Final[int]
+    status: Final[
+        Literal[
+            "finished",
+            "reached",
+            "settled",
+            "inaccurate",
+            "converged",
+            "collapsed",
+            "diverged",
+            "stopped",
+        ]
+    ]
 
 @final
 class DiffusionCurves:
-    @property
-    def edges(self) -> Indices: ...
-    @property
-    def starts(self) -> Indices: ...
-    @property
-    def left(self) -> Floats: ...
-    @property
-    def right(self) -> Floats: ...
-    @property
-    def points(self) -> Indices: ...
-    @property
-    def point_colors(self) -> Floats: ...
-    @property
-    def colors(self) -> Floats: ...
-    @property
-    def corners(self) -> Floats: ...
-    @property
-    def sides(self) -> Indices: ...
-    @property
-    def labels(self) -> Indices: ...
-    @property
-    def error(self) -> float: ...
-    @property
-    def psnr(self) -> float: ...
-    @property
-    def n_numbers(self) -> int: ...
-    @property
-    def n_numbers_before(self) -> int: ...
-    @property
-    def polylines(self) -> list[Indices]: ...
+    edges: Final[Indices]
+    starts: Final[Indices]
+    left: Final[Floats]
+    right: Final[Floats]
+    points: Final[Indices]
+    point_colors: Final[Floats]
+    colors: Final[Floats]
+    corners: Final[Floats]
+    sides: Final[Indices]
+    labels: Final[Indices]
+    error: Final[float]
+    psnr: Final[float]
+    n_numbers: Final[int]
+    n_numbers_before: Final[int]
+    polylines: Final[list[Indices]]
 
 @final
 class Redrawn:
-    @property
-    def colors(self) -> Floats: ...
-    @property
-    def corners(self) -> Floats: ...
+    colors: Final[Floats]
+    corners: Final[Floats]
 
 @final
 class Filled:
-    @property
-    def vertices(self) -> Floats: ...
-    @property
-    def faces(self) -> Indices: ...
-    @property
-    def patch(self) -> Indices: ...
-    @property
-    def new_vertices(self) -> Floats: ...
-    @property
-    def new_faces(self) -> Indices: ...
-    @property
-    def new_patch(self) -> Indices: ...
-    @property
-    def holes(self) -> list[FilledHole]: ...
-    @property
-    def ridges(self) -> Indices: ...
-    @property
-    def status(self) -> Literal["converged", "finished", "stopped"]: ...
+    vertices: Final[Floats]
+    faces: Final[Indices]
+    patch: Final[Indices]
+    new_vertices: Final[Floats]
+    new_faces: Final[Indices]
+    new_patch: Final[Indices]
+    holes: Final[list[FilledHole]]
+    ridges: Final[Indices]
+    status: Final[Literal["converged", "finished", "stopped"]]
 
 @final
 class FilledHole:
-    @property
-    def boundary(self) -> Indices: ...
-    @property
-    def status(self) -> Literal["converged", "finished", "stopped", "refused"]: ...
-    @property
-    def reason(self) -> str | None: ...
-    @property
-    def shape(self) -> Literal["flat", "smooth", "sharp"] | None: ...
-    @property
-    def sharpness(self) -> float: ...
-    @property
-    def energy(self) -> tuple[float, float]: ...
-    @property
-    def gap(self) -> float: ...
-    @property
-    def iterations(self) -> int: ...
+    boundary: Final[Indices]
+    status: Final[Literal["converged", "finished", "stopped", "refused"]]
+    reason: Final[str | None]
+    shape: Final[Literal["flat", "smooth", "sharp"] | None]
+    sharpness: Final[float]
+    energy: Final[tuple[float, float]]
+    gap: Final[float]
+    iterations: Final[int]
 
 def hessian(mesh: Mesh, *, dual: Dual = "barycentric") -> SparseMatrix: ...
 def hessian_norm(mesh: Mesh, values: ArrayLike, *, dual: Dual = "barycentric") -> Floats: ...
@@ -305,12 +205,9 @@ def boundary_loops(mesh: Mesh) -> list[Indices]: ...
 
 @final
 class Hole:
-    @property
-    def vertices(self) -> Indices: ...
-    @property
-    def is_outer_border(self) -> bool: ...
-    @property
-    def refusal(self) -> str | None: ...
+    vertices: Final[Indices]
+    is_outer_border: Final[bool]
+    refusal: Final[str | None]
 
 def find_holes(mesh: Mesh) -> list[Hole]: ...
 def weld(
