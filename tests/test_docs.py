@@ -181,7 +181,7 @@ def test_every_name_in_the_index_of_equations_is_defined():
 def test_every_file_named_in_the_architecture_exists():
     text = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
     folders = [ROOT, *(ROOT / "rust/core/src" / name for name in ("", "linear", "solve")), ROOT / "addon"]
-    folders += [ROOT / "addon" / name for name in ("blender", "framework", "holes", "attributes")]
+    folders += [ROOT / "addon" / name for name in ("blender", "framework", "holes", "attributes", "overnight")]
     named = re.findall(r"`([\w./*]+(?:\.(?:py|rs|toml)|/))`", text)
     assert len(named) > 15
     for name in named:
@@ -191,7 +191,7 @@ def test_every_file_named_in_the_architecture_exists():
 def test_the_manual_names_every_field_of_the_command():
     """Settings and flags are known to Blender only: tests/blender/test_settings.py."""
     manual = "".join(path.read_text(encoding="utf-8") for path in sorted((ROOT / "docs").glob("manual*.md")))
-    command = (ROOT / "addon/framework/batch.py").read_text(encoding="utf-8")
+    command = (ROOT / "addon/overnight/one_file.py").read_text(encoding="utf-8")
     fields = re.findall(r'^        "(\w+)": (?:None|\[\]|str)', command, re.MULTILINE)
     assert len(fields) > 8
     for name in fields:

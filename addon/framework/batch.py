@@ -10,25 +10,20 @@ import contextlib
 import ctypes
 import json
 import os
+import shutil
 import sys
-import time
-import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import bpy
 
-from ..blender import selection
-from ..blender.refusals import RefusedError
+from ..overnight import driver, report, worker
+from ..overnight.one_file import Step
 from . import files, flags
-from .console import ProgressBar
-from .precision import rounding_notes
-from .run import NO_RESULT, Run
-from .targets import Ledger, Target, assign
+from .run import NO_RESULT
 from .tool import Tool
 
 COMMAND = "ridgeform"
-POLL_SECONDS = 0.05
 INTERRUPTED = 130
 
 
@@ -38,19 +33,23 @@ def main(arguments: Sequence[str]) -> int:
         options = parser().parse_args(arguments)
     except SystemExit as leaving:
         return int(leaving.code or 0)
-    tool = _tools[options.tool]
-    settings = flags.settings_from(options, tool.settings)
-    failed = False
+    steps = steps_of(options)
+    if worker.is_worker():
+        return driver.serve(options, steps)
     try:
         with _clean_output(options.json) as emit:
-            targets, ledger = assign(options.files, options.output, options.format)
-            for target in targets:
-                record = _one_file(target, tool.run, settings, ledger)
-                failed |= record["error"] is not None
-                emit(record, tool.run)
+            return driver.drive(options, steps, arguments, lambda record: emit(record, steps))
+    except driver.RefusalError as refusal:
+        print(f"{COMMAND}: error: {refusal}", file=sys.stderr)
+        return 2
     except KeyboardInterrupt:
         return INTERRUPTED
-    return 1 if failed else 0
+
+
+def steps_of(options: argparse.Namespace) -> list[Step]:
+    """The tools that parsed options ask for, each with its settings."""
+    tool = _tools[options.tool]
+    return [Step(tool, flags.settings_from(options, tool.settings))]
 
 
 def parser() -> argparse.ArgumentParser:
@@ -72,91 +71,67 @@ def _add_files(child: argparse.ArgumentParser) -> None:
         "--format", type=_suffix, choices=list(files.FORMATS), help="Write into the folder OUT in this format"
     )
     add("--json", action="store_true", help="Print one JSON record per file on standard output")
+    add(
+        "--jobs",
+        type=_count,
+        metavar="N",
+        help="Work on N files at once, each in a Blender process of its own: one that crashes costs its file",
+    )
+    add(
+        "--memory",
+        type=_positive,
+        metavar="GB",
+        help="With --jobs, what its processes may take together (what is free)",
+    )
+    add(
+        "--timeout",
+        type=_positive,
+        metavar="SECONDS",
+        help="Give a file up that takes longer; in a process of its own, as with --jobs 1",
+    )
+    add("--resume", action="store_true", help="Do only what a run before with the same options has not done")
+    add(
+        "--report",
+        type=_report,
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="Write a summary: .txt, .json, or .html with pictures before and after; may be repeated",
+    )
 
 
 def _suffix(text: str) -> str:
     return "." + text.lower().lstrip(".")
 
 
-def _one_file(target: Target, tool: type[Run], settings: object, ledger: Ledger) -> dict[str, object]:
-    record: dict[str, object] = {
-        "file": str(target.source),
-        "output": None,
-        "vertices": None,
-        "faces": None,
-        "energy_before": None,
-        "energy_after": None,
-        "gap": None,
-        "seconds": None,
-        "warnings": [],
-        "error": None,
-        "meshes": [],
-    }
-    begin = time.perf_counter()
-    try:
-        if target.error is not None:
-            raise files.FileError(f"{target.error}: choose another output")
-        run = _run_file(target.source, tool, settings, ledger)
-        files.write_file(target.path, ledger)
-        record |= _record_of(run) | {"output": str(target.path)}
-        if run.errors:
-            record["error"] = "; ".join(run.errors)
-    except (files.FileError, RefusedError) as error:
-        record["error"] = str(error)
-    except Exception as error:
-        # A fault of the program: the other files are still worth doing.
-        traceback.print_exc()
-        record["error"] = f"{type(error).__name__}: {error}"
-    record["seconds"] = round(time.perf_counter() - begin, 3)
-    return record
+def _count(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f'"{text}" is not a whole number of at least 1')
+    return int(text)
 
 
-def _run_file(source: Path, tool: type[Run], settings: object, ledger: Ledger) -> Run:
-    objects = files.read_file(source)
-    # A file of Blender's own has had single precision all along.
-    rounded = [] if source.suffix.lower() == ".blend" else rounding_notes(objects)
-    chosen = selection.usable(objects, tool.needs)
-    ledger.add_inputs(files.files_in_use())
-    run = tool(chosen.objects, settings, chosen.skipped)
-    run.job.start()
-    try:
-        with ProgressBar(source.name) as bar:
-            while run.job.is_running:
-                bar.show(run.job.fraction)
-                time.sleep(POLL_SECONDS)
-            bar.show(1.0)
-    except BaseException:
-        run.job.cancel()
-        raise
-    run.apply()
-    run.skipped += rounded
-    return run
+def _positive(text: str) -> float:
+    with contextlib.suppress(ValueError):
+        if 0.0 < float(text) < float("inf"):
+            return float(text)
+    raise argparse.ArgumentTypeError(f'"{text}" is not a positive number')
 
 
-def _record_of(run: Run) -> dict[str, object]:
-    done = [entry for entry in run.summary if entry["status"] not in NO_RESULT]
-    warnings = [f'"{entry["name"]}": {note}' for entry in run.summary for note in entry["warnings"]]
-    return {
-        "vertices": sum(entry["vertices"] for entry in done),
-        "faces": sum(entry["faces"] for entry in done),
-        "energy_before": _total(done, "energy_before"),
-        "energy_after": _total(done, "energy_after"),
-        "gap": max((entry["gap"] for entry in done if entry["gap"] is not None), default=None),
-        "warnings": warnings + run.skipped,
-        "meshes": run.summary,
-    }
+def _report(text: str) -> Path:
+    path = Path(text)
+    if path.suffix.lower() not in report.KINDS:
+        raise argparse.ArgumentTypeError(f'"{text}" does not end in {", ".join(report.KINDS)}')
+    return path
 
 
-def _total(entries: Sequence[dict[str, object]], key: str) -> float | None:
-    values = [entry[key] for entry in entries]
-    return None if None in values else sum(values)
+Emit = Callable[[dict[str, object], Sequence[Step]], None]
 
 
 @contextlib.contextmanager
-def _clean_output(as_json: bool) -> Iterator[object]:
+def _clean_output(as_json: bool) -> Iterator[Emit]:
     """Give a function that prints a record; with JSON, what Blender prints goes to standard error."""
     if not as_json:
-        yield lambda record, tool: print(_sentence(record, tool), flush=True)
+        yield lambda record, steps: print(_sentence(record, steps), flush=True)
         return
     flush_output()
     saved = os.dup(1)
@@ -167,7 +142,9 @@ def _clean_output(as_json: bool) -> Iterator[object]:
             contextlib.redirect_stdout(sys.stderr),
             os.fdopen(os.dup(saved), "w", encoding="utf-8") as stream,
         ):
-            yield lambda record, _tool: print(json.dumps(record, ensure_ascii=False), file=stream, flush=True)
+            yield lambda record, _steps: print(
+                json.dumps(record, ensure_ascii=False), file=stream, flush=True
+            )
     finally:
         flush_output()
         os.dup2(saved, 1)
@@ -180,7 +157,7 @@ def flush_output() -> None:
     ctypes.CDLL("ucrtbase" if os.name == "nt" else None).fflush(None)
 
 
-def _sentence(record: dict[str, object], tool: type[Run]) -> str:
+def _sentence(record: dict[str, object], steps: Sequence[Step]) -> str:
     if record["error"] is not None:
         return f"{record['file']}: failed: {record['error']}"
     notes = "".join(f"\n  note: {note}" for note in record["warnings"])
@@ -191,8 +168,26 @@ def _sentence(record: dict[str, object], tool: type[Run]) -> str:
         parts.append(f"energy {before}{record['energy_after']:.4g}")
     if record["gap"] is not None:
         parts.append(f"gap {record['gap']:.1g}")
-    parts += tool.phrases([entry for entry in record["meshes"] if entry["status"] not in NO_RESULT])
-    return f"{where}: {', '.join(parts)}, {record['seconds']:.1f} s{notes}"
+    done = [entry for entry in record["meshes"] if entry["status"] not in NO_RESULT]
+    for name, run in {step.tool.run.name: step.tool.run for step in steps}.items():
+        entries = [entry for entry in done if entry["tool"] == name]
+        parts += run.phrases(entries) if entries else []
+    again = "done before, " if record["resumed"] else ""
+    return f"{where}: {again}{', '.join(parts)}, {record['seconds']:.1f} s{notes}"
+
+
+def run_as_module() -> None:
+    """Run the command line of this process, and end it: Blender as a module."""
+    # The registry imports this module.
+    from .. import registry  # noqa: PLC0415
+
+    offer(registry.TOOLS)
+    code = main(sys.argv[1:])
+    sys.stdout.flush()
+    sys.stderr.flush()
+    # bpy 4.2 crashes when Python shuts down after its glTF add-on was used, which would hide the exit code.
+    shutil.rmtree(bpy.app.tempdir, ignore_errors=True)
+    os._exit(code)
 
 
 _command = None

@@ -4,6 +4,7 @@
 Files are told apart by what they are, not by what they are called: links, letter case and `..` count.
 """
 
+import contextlib
 import itertools
 import re
 import unicodedata
@@ -39,7 +40,7 @@ class Ledger:
         """Take all sources and the files that they need."""
         self._names: dict[Hashable, str] = {}
         for source in sources:
-            for path in (source, *_needed(source)):
+            for path in (source, *needed_files(source)):
                 self._names.setdefault(identity(path), f"{path} is an input and would be overwritten")
 
     def reason_against(self, path: Path) -> str | None:
@@ -54,6 +55,10 @@ class Ledger:
     def add_output(self, path: Path) -> None:
         """Take a file that was written, or that will be."""
         self._names.setdefault(identity(path), f"{path} is already the output of another file")
+
+    def installing(self, _made: object) -> contextlib.AbstractContextManager[None]:
+        """What goes around files being put in place: nothing."""
+        return contextlib.nullcontext()
 
 
 def assign(sources: Sequence[Path], out: Path, suffix: str | None) -> tuple[list[Target], Ledger]:
@@ -109,7 +114,7 @@ def _folds_case(folder: Path) -> bool:
     return False
 
 
-def _needed(source: Path) -> list[Path]:
+def needed_files(source: Path) -> list[Path]:
     """The files that a source names and that would be read with it."""
     pattern = NEEDED.get(source.suffix.lower())
     if pattern is None:

@@ -6,6 +6,7 @@ What is there already stays as it is until the new file is whole and on the disk
 
 import contextlib
 import filecmp
+import hashlib
 import os
 import re
 import secrets
@@ -32,6 +33,9 @@ class Protected(Protocol):
     def add_output(self, path: Path) -> None:
         """Take note of a file that was written."""
 
+    def installing(self, made: Sequence[tuple[Path, Path]]) -> contextlib.AbstractContextManager[None]:
+        """What goes around files (written, final) being put in place."""
+
 
 def write_whole(
     path: Path, export: Callable[[str], object], several: bool, protected: Protected | None = None
@@ -56,7 +60,8 @@ def write_whole(
                 check_image(file)
         for file, _ in made:
             flush(file)
-        _install(_needed(made, protected), protected)
+        with contextlib.nullcontext() if protected is None else protected.installing(made):
+            _install(_needed(made, protected), protected)
 
 
 def write_text(path: Path, text: str) -> None:
@@ -65,6 +70,12 @@ def write_text(path: Path, text: str) -> None:
         hidden.write_text(text, encoding="utf-8")
         flush(hidden)
         os.replace(hidden, path)
+
+
+def sweep(path: Path) -> None:
+    """Remove what a process that was ended has left beside a file that it was about to write."""
+    for left in path.parent.glob(f"{_hidden_stem(path)}*"):
+        _remove(left)
 
 
 def flush(path: Path) -> None:
@@ -80,7 +91,7 @@ def _hidden_place(path: Path, several: bool) -> Iterator[Path]:
     Beside it, because paths to other files may be stored relative to the file that names them, and since only
     there it can be put in place in one step.
     """
-    hidden = path.parent / f".ridgeform-{secrets.token_hex(6)}"
+    hidden = path.parent / (_hidden_stem(path) + secrets.token_hex(6))
     try:
         if several:
             hidden.mkdir()
@@ -90,10 +101,19 @@ def _hidden_place(path: Path, several: bool) -> Iterator[Path]:
             hidden.unlink()
         yield hidden / path.name if several else hidden.with_suffix(path.suffix)
     finally:
-        shutil.rmtree(hidden, ignore_errors=True)
         with contextlib.suppress(OSError):
             for left in path.parent.glob(f"{hidden.name}*"):
-                left.unlink(missing_ok=True)
+                _remove(left)
+
+
+def _hidden_stem(path: Path) -> str:
+    """How the names of what is written for a file begin; plain, whatever the file is called."""
+    return f".ridgeform-{hashlib.sha256(os.fsencode(path.name)).hexdigest()[:8]}-"
+
+
+def _remove(left: Path) -> None:
+    with contextlib.suppress(OSError):
+        shutil.rmtree(left) if left.is_dir() else left.unlink(missing_ok=True)
 
 
 def _check(hidden: Path) -> None:

@@ -1,0 +1,54 @@
+"""Files for the tests of batches, and how batches are run."""
+
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import addon_kit as kit
+from bl_ext.user_default.ridgeform.framework import batch, files
+from bl_ext.user_default.ridgeform.overnight import worker
+
+STEPS = ("--steps", "1")
+
+
+def boxes(folder, count, suffix=".ply"):
+    """Some boxes with noise, each in a file."""
+    folder.mkdir(exist_ok=True)
+    paths = [folder / f"box{number}{suffix}" for number in range(count)]
+    for number, path in enumerate(paths):
+        kit.empty_scene()
+        kit.bumpy_box(seed=number)
+        files.write_file(path)
+    return paths
+
+
+def run(capfd, tool, *arguments):
+    """Exit code and records of a command with JSON, by the name of the input."""
+    batch.flush_output()
+    capfd.readouterr()
+    code = batch.main([tool, *map(str, arguments), "--json"])
+    records = [json.loads(line) for line in capfd.readouterr().out.splitlines()]
+    return code, {Path(record["file"]).name: record for record in records}
+
+
+def start(*arguments):
+    """The command in a process of its own."""
+    code = worker.MODULE.format(paths=sys.path, name=worker.__name__)
+    command = [sys.executable, "-c", code, *map(str, arguments)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+def until(condition, seconds=120.0):
+    """Wait until something holds."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "it never came to that"
+        time.sleep(0.02)
+
+
+def state_of(folder):
+    """What tells whether a file was written again, by its name: nothing may be left over beside them."""
+    assert [path.name for path in folder.iterdir() if path.name.startswith(".")] == []
+    return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns) for path in folder.iterdir()}
