@@ -32,7 +32,8 @@ PATIENCE = 1800
 
 def batch(python: Path, extension: Path, seed: int, stem: Path) -> tuple[dict[str, int], str]:
     """How much was done in a batch; what went wrong, or nothing."""
-    log, counts, trail = (stem.with_suffix(suffix) for suffix in (".log", ".json", ".trail"))
+    # Not with_suffix: the stem ends in a version and a seed, which would go.
+    log, counts, trail = (stem.with_name(stem.name + suffix) for suffix in (".log", ".json", ".trail"))
     environment = os.environ | {
         "RIDGEFORM_EXTENSION": str(extension),
         "PYTHONPATH": "",
