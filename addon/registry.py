@@ -17,6 +17,7 @@ from .framework import (
     sidebar,
     tool_operator,
 )
+from .overnight import recipe_operators
 
 NAMES = (
     "stylize",
@@ -50,6 +51,7 @@ def _classes() -> list[type]:
                 groups.add(tool.group)
                 made.append(sidebar.group_panel(tool.group))
             made += [GROUPS[tool.scene_property], *sidebar.panel_classes(tool)]
+    made += recipe_operators.classes(TOOLS)
     return [*made, preferences.preferences_class(TOOLS, GROUPS)]
 
 

@@ -17,13 +17,15 @@ from pathlib import Path
 
 import bpy
 
-from ..overnight import driver, report, worker
+from ..overnight import driver, recipe, report, worker
 from ..overnight.one_file import Step
 from . import files, flags
 from .run import NO_RESULT
 from .tool import Tool
 
 COMMAND = "ridgeform"
+RUN = "run"
+"""The word for recipes in place of a tool."""
 INTERRUPTED = 130
 
 
@@ -33,7 +35,11 @@ def main(arguments: Sequence[str]) -> int:
         options = parser().parse_args(arguments)
     except SystemExit as leaving:
         return int(leaving.code or 0)
-    steps = steps_of(options)
+    try:
+        steps = steps_of(options)
+    except recipe.RecipeError as error:
+        print(f"{COMMAND}: error: {error}", file=sys.stderr)
+        return 2
     if worker.is_worker():
         return driver.serve(options, steps)
     try:
@@ -47,7 +53,9 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def steps_of(options: argparse.Namespace) -> list[Step]:
-    """The tools that parsed options ask for, each with its settings."""
+    """The tools that parsed options ask for, each with its settings; `RecipeError`."""
+    if options.tool == RUN:
+        return recipe.read(options.recipe, _tools)
     tool = _tools[options.tool]
     return [Step(tool, flags.settings_from(options, tool.settings))]
 
@@ -60,6 +68,12 @@ def parser() -> argparse.ArgumentParser:
         child = tools.add_parser(name, help=tool.description, description=tool.description)
         _add_files(child)
         flags.add_flags(child, tool.settings)
+    text = "Several tools in a row, as a recipe says"
+    child = tools.add_parser(RUN, help=text, description=text)
+    child.add_argument(
+        "recipe", type=Path, metavar="RECIPE", help="A TOML file with a [[step]] for each tool"
+    )
+    _add_files(child)
     return made
 
 

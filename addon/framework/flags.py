@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 
 import bpy.props
+import numpy as np
 
 from .settings import Setting, Settings, defaults_of
 
@@ -133,3 +134,46 @@ def _is_angle(setting: Setting) -> bool:
 
 def _escaped(text: str) -> str:
     return text.replace("%", "%%")
+
+
+def takes(setting: Setting, word: str) -> str:
+    """What is written after a flag: nothing (`"on"`), a `"number"`, a `"word"`, or several `"words"`."""
+    if word in setting.switches or setting.make is bpy.props.BoolProperty:
+        return "on"
+    if setting.items or setting.make is bpy.props.StringProperty:
+        return "words" if isinstance(setting.default, set) else "word"
+    return "number"
+
+
+def given_flags(values: object, settings: type[Settings]) -> dict[str, object]:
+    """The flags, with what is written after them, that give all of a tool's settings that count.
+
+    The inverse of `settings_from`, but for settings that depend on one that is off.
+    """
+    given: dict[str, object] = {}
+    for name, setting in settings.declared.items():
+        value = getattr(values, name)
+        given |= {word: True for word, identifier in setting.switches.items() if identifier == value}
+        word = flag_of(name, setting)
+        if word is None:
+            continue
+        if setting.implies:
+            if all(getattr(values, other) == implied for other, implied in setting.implies.items()):
+                given[word] = _written(setting, value)
+        elif _written(setting, value) != _written(setting, setting.default):
+            given[word] = _written(setting, value)
+    return given
+
+
+def _written(setting: Setting, value: object) -> object:
+    """A value as it is written after its flag: a boolean one has nothing, which is `True`."""
+    if isinstance(value, bool):
+        return value != setting.default
+    if isinstance(value, set):
+        return sorted(_word(item) for item in value) or ["none"]
+    if isinstance(value, str):
+        return _word(value) if setting.items else value
+    if isinstance(value, float):
+        # Blender has single precision: the shortest number that it takes for this one.
+        return float(str(np.float32(math.degrees(value) if _is_angle(setting) else value)))
+    return value

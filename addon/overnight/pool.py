@@ -101,6 +101,7 @@ class Pool:
                 "key": self._key.hex(),
                 "number": self._started,
                 "memory": self._memory,
+                "plan": self._plan.journal.key,
             }
             threads = max(1, available_threads() // self._jobs)
             process = worker.start(self._arguments, address, threads)

@@ -58,6 +58,9 @@ def is_worker() -> bool:
 def serve(targets: Sequence[Target], plan: Plan) -> int:
     """Do what the other process asks for, until it is gone or asks for no more."""
     given = json.loads(os.environ[VARIABLE])
+    if plan.journal.key != given["plan"]:
+        print("ridgeform: the recipe was changed while the batch was running", file=sys.stderr)
+        return 1
     limit_memory(given["memory"])
     with Client(given["address"], authkey=bytes.fromhex(given["key"])) as boss:
         boss.send_bytes(json.dumps(given["number"]).encode())
