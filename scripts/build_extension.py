@@ -9,6 +9,7 @@ The wheels of requirements-extension.txt are added for every Python and platform
 
 import argparse
 import json
+import os
 import platform
 import shutil
 import subprocess
@@ -98,6 +99,11 @@ def stage(wheels: list[Path], targets: list[str]) -> None:
     manifest = STAGE / "blender_manifest.toml"
     text = manifest.read_text(encoding="utf-8")
     # A list of plain strings is written the same in JSON and in TOML.
+    address = website()
+    if address is None:
+        text = text.replace('website = "@WEBSITE@"\n', "")
+    else:
+        text = text.replace("@WEBSITE@", address)
     for gap, filling in (("VERSION", version()), ("PLATFORMS", targets), ("WHEELS", names)):
         if f'"@{gap}@"' not in text:
             stop(f'addon/blender_manifest.toml has no "@{gap}@" to fill in')
@@ -105,6 +111,12 @@ def stage(wheels: list[Path], targets: list[str]) -> None:
             f'"@{gap}@"', json.dumps(filling, indent=4 if isinstance(filling, list) else None)
         )
     manifest.write_text(text, encoding="utf-8")
+
+
+def website() -> str | None:
+    """The address of the repository that builds this in its workflows; `None` elsewhere."""
+    server, name = os.environ.get("GITHUB_SERVER_URL"), os.environ.get("GITHUB_REPOSITORY")
+    return f"{server}/{name}" if server and name else None
 
 
 def blender_tools() -> list[tuple[Path, Path, Path]]:
@@ -133,7 +145,9 @@ def build_extension(wheels_folder: Path | None = None) -> list[Path]:
     stamp = STATE / "extension.stamp"
     pages = sorted((ROOT / "docs").glob("manual*.md"))
     scripts = [Path(__file__), Path(help_pages.__file__)]
-    wanted = digest([*files_in(ROOT / "addon"), NOTICES, *pages, *wheels, *scripts], version())
+    wanted = digest(
+        [*files_in(ROOT / "addon"), NOTICES, *pages, *wheels, *scripts], version(), website() or ""
+    )
     built = sorted(EXTENSION.glob("*.zip"))
     if is_current(stamp, wanted) and built:
         return built

@@ -7,6 +7,7 @@ from ..framework.settings import (
     Settings,
     boolean,
     choice,
+    chosen,
     data_name,
     factor,
     integer,
@@ -312,5 +313,5 @@ def energy_options(settings: object) -> dict[str, object]:
         "delaunay": settings.delaunay and settings.energy not in EXTRINSIC,
         "solver": "auto" if settings.energy in QUADRATIC else settings.solver,
         "tolerance": settings.tolerance,
-        "max_iterations": settings.max_iterations or None,
+        "max_iterations": chosen(settings, "max_iterations"),
     }

@@ -205,10 +205,10 @@ def edges_of(faces: np.ndarray) -> np.ndarray:
     return np.unique(np.sort(ends, axis=1), axis=0).astype(np.int32)
 
 
-def replace_faces(obj: bpy.types.Object, points: np.ndarray, faces: np.ndarray, layers: Layers) -> None:
+def replace_faces(obj: bpy.types.Object, points: np.ndarray, faces: np.ndarray, layers: Layers) -> np.ndarray:
     """Give the mesh of an object new points (p, 3), triangles (q, 3) and layers; its materials stay.
 
-    Edge values are in the order of `edges_of(faces)`.
+    Edge values are in the order of `edges_of(faces)`; returned is the row there (k,) of each edge.
     """
     mesh = obj.data
     mesh.clear_geometry()
@@ -228,8 +228,10 @@ def replace_faces(obj: bpy.types.Object, points: np.ndarray, faces: np.ndarray, 
         attribute.data.foreach_set(ATTRIBUTE_KINDS[layer.data_type][0], np.ascontiguousarray(values).ravel())
     _write_groups(obj, layers.groups, layers.active["group"])
     set_active_layers(mesh, layers.active)
-    mesh.validate()
+    if mesh.validate():
+        edge_rows = _edge_rows(mesh, edges_of(faces))
     mesh.update()
+    return edge_rows
 
 
 def _edge_rows(mesh: bpy.types.Mesh, ends: np.ndarray) -> np.ndarray:

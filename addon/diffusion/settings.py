@@ -60,9 +60,12 @@ class DiffusionSettings(Settings):
     )
     count: integer(
         "Count",
-        "Number of regions to find. 0 finds as many as the colors call for",
-        default=0,
+        "Number of regions to find",
+        default=8,
         min=0,
+        soft_min=1,
+        optional=False,
+        otherwise="as many are found as the colors call for",
         soft_max=64,
         active=_finds_regions,
     )

@@ -15,6 +15,7 @@ from ..blender.refusals import RefusedError
 from ..blender.selection import Needs
 from ..framework.job import Task
 from ..framework.run import Part, Run, counted, meshes_phrase
+from ..framework.settings import chosen
 from ..framework.surface import Surface, surface_of
 from . import curves_io, drawing
 from .layout import curve_points
@@ -68,7 +69,7 @@ class DiffusionCurves(Run):
         faces = mesh_io.triangle_faces(obj.data)[surface.weld.rows]
         if settings.regions == "COLORS":
             regions = {
-                "n_regions": settings.count or None,
+                "n_regions": chosen(settings, "count"),
                 "min_faces": settings.least_faces,
                 "face_groups": faces,
             }

@@ -16,7 +16,7 @@ import bpy
 from ..blender.mesh_state import ChangedError
 from ..blender.refusals import RefusedError
 from . import modal
-from .modal import ModalRun
+from .modal import STOP_SECONDS, ModalRun
 from .run import Run
 from .settings import values_of
 from .tool import Tool
@@ -196,9 +196,10 @@ class ChangingRun(ModalRun):
             raise ChangedError("The scene of the panel is gone")
         panel = values_of(_bound.tool.settings, _bound.panel)
         rests, _bound.seen = panel == _bound.seen, panel
-        if panel == run.settings or not rests:
+        if not (run.job.is_canceled or (rests and panel != run.settings)):
             return run
-        run.job.cancel()
+        if not run.job.cancel(0.0 if run.job.is_canceled else STOP_SECONDS):
+            return run
         run.rewind()
         return self._made(run.before, panel)
 

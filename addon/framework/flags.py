@@ -51,7 +51,7 @@ def flags_of(name: str, setting: Setting) -> list[str]:
 def default_text(setting: Setting) -> str:
     """The default in words of the command line; empty where none counts unless the flag is given."""
     value = setting.default
-    if isinstance(value, bool) or setting.implies:
+    if isinstance(value, bool) or setting.implies or setting.optional is False:
         return ""
     if isinstance(value, set):
         return ", ".join(_word(item) for item in sorted(value))

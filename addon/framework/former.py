@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Settings that scenes and presets of versions before have, and others have taken the place of.
+"""Settings that scenes and presets of versions before have, and others have taken the place of or come with.
 
 Panels keep such a property, hidden. Where a preset or an opened scene has set it, it is unset, and what took
 its place is set. Operators keep it as well, for scripts that name it.
@@ -32,7 +32,10 @@ def given_properties_of(settings: type[Settings]) -> dict[str, object]:
 
 
 def take_given(group: bpy.types.bpy_struct, settings: type[Settings]) -> None:
-    """Set what took the place of the properties that a panel, or a call of an operator, was given."""
+    """Set what took the place of the properties that a panel, or a call of an operator, was given.
+
+    And what follows from them.
+    """
     for name in settings.former:
         if not group.is_property_set(name):
             continue
@@ -43,6 +46,18 @@ def take_given(group: bpy.types.bpy_struct, settings: type[Settings]) -> None:
             if not group.is_property_set(other):
                 setattr(group, other, value)
         group.property_unset(name)
+    for name in _following(group, settings):
+        other, of = settings.follows[name]
+        setattr(group, name, of(getattr(group, other)))
+
+
+def _following(group: bpy.types.bpy_struct, settings: type[Settings]) -> list[str]:
+    """The settings that follow from one that was given, and were not given themselves."""
+
+    def is_given(name: str) -> bool:
+        return group.is_property_set(name, ghost=False)
+
+    return [name for name, (other, _) in settings.follows.items() if is_given(other) and not is_given(name)]
 
 
 @persistent
@@ -54,8 +69,8 @@ def take_all(*_arguments: object) -> None:
 
 
 def is_due(group: bpy.types.PropertyGroup, settings: type[Settings]) -> bool:
-    """Whether a panel has been given such a property."""
-    return any(group.is_property_set(name) for name in settings.former)
+    """Whether a panel has been given such a property, or something follows from one that it was given."""
+    return any(group.is_property_set(name) for name in settings.former) or bool(_following(group, settings))
 
 
 def take_soon() -> None:
@@ -66,7 +81,7 @@ def take_soon() -> None:
 
 def register(tools: Sequence[Tool]) -> None:
     """Look through every scene that is opened."""
-    _tools[:] = [tool for tool in tools if tool.settings.former]
+    _tools[:] = [tool for tool in tools if tool.settings.former or tool.settings.follows]
     bpy.app.handlers.load_post.append(take_all)
 
 

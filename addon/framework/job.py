@@ -57,6 +57,8 @@ class Job:
         self.tasks = list(tasks)
         self._thread: threading.Thread | None = None
         self._stop = threading.Event()
+        self.is_canceled = False
+        """Whether no result is wanted any more."""
 
     def run(self) -> None:
         """Run all tasks in this thread."""
@@ -93,18 +95,20 @@ class Job:
         for task in self.tasks:
             task.progress.finish()
 
-    def cancel(self) -> None:
-        """Ask the running task to stop without a result, and wait until it has."""
+    def cancel(self, wait: float | None = None) -> bool:
+        """Ask the running task to stop without a result; whether it has, after at most `wait` seconds."""
+        self.is_canceled = True
         self._stop.set()
         for task in self.tasks:
             task.cancelled = True
             task.progress.cancel()
-        self.join()
+        return self.join(wait)
 
-    def join(self) -> None:
-        """Wait for the thread to end."""
+    def join(self, wait: float | None = None) -> bool:
+        """Wait for the thread to end, for at most so many seconds; whether it has."""
         if self._thread is not None:
-            self._thread.join()
+            self._thread.join(wait)
+        return not self.is_running
 
 
 _last_summary: list[dict[str, object]] = []

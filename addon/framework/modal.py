@@ -15,6 +15,8 @@ from .pacing import Estimate, Throttle, status_line
 from .run import Run
 
 POLL_SECONDS = 0.05
+STOP_SECONDS = 0.1
+"""How long Blender waits for a job to stop before it goes on drawing: on large meshes it can take seconds."""
 CURSOR_RANGE = 1000
 NAVIGATION = {
     "MIDDLEMOUSE",
@@ -125,8 +127,8 @@ class ModalRun:
 
     def _start(self, run: Run) -> None:
         self._run = run
-        self._keeping = False
-        self._shown = ""
+        self._keeping = self._leaving = False
+        self._shown = ("", "", "")
         self._estimate, self._throttle = Estimate(), Throttle(POLL_SECONDS)
         _running.append(run)
         run.job.start()
@@ -153,7 +155,11 @@ class ModalRun:
     def _handle(self, context: bpy.types.Context, run: Run, action: str) -> set[str]:
         if action == "navigate":
             return {"PASS_THROUGH"}
-        if action == "cancel":
+        if action == "cancel" or self._leaving:
+            self._leaving = True
+            if not run.job.cancel(0.0 if action == "poll" else STOP_SECONDS):
+                self._show(context)
+                return {"RUNNING_MODAL"}
             self._close(context)
             left = abort(run)
             self.report({"WARNING"} if left else {"INFO"}, "; ".join([self.said_of_cancel(left), *left]))
@@ -162,7 +168,7 @@ class ModalRun:
             self._keeping = True
             run.job.finish()
         if action == "poll":
-            if not run.job.is_running:
+            if not (run.job.is_running or run.job.is_canceled):
                 self._close(context)
                 outcome = self.finished(context, run)
                 _running.remove(run)
@@ -173,7 +179,7 @@ class ModalRun:
                 _running.remove(run)
                 self._start(again)
                 return {"RUNNING_MODAL"}
-            if self._throttle.is_due():
+            if self._throttle.is_due() and not run.job.is_canceled:
                 begin = self._throttle.now()
                 if run.show():
                     self._throttle.began(begin)
@@ -214,17 +220,18 @@ class ModalRun:
         fraction, line = self._estimate.fraction, status_line(job, self._estimate)
         percent = f"{100 * fraction:.0f} %   " if fraction else ""
         header = f"Ridgeform  {percent}{line}"
-        if header == self._shown:
+        esc = "Canceling" if self._leaving else "Cancel"
+        enter = "Finishing this step" if self._keeping else "Keep the result so far"
+        if (header, esc, enter) == self._shown:
             # Every change is drawn, and that takes time.
             return
-        self._shown = header
+        self._shown = (header, esc, enter)
         context.window_manager.progress_update(int(CURSOR_RANGE * fraction))
-        hint = "Finishing this step" if self._keeping else "Keep the result so far"
 
         def draw(header: bpy.types.Header, _context: bpy.types.Context) -> None:
             row = header.layout.row(align=True)
-            row.label(text="Cancel", icon="EVENT_ESC")
-            row.label(text=hint, icon="EVENT_RETURN")
+            row.label(text=esc, icon="EVENT_ESC")
+            row.label(text=enter, icon="EVENT_RETURN")
             row.label(text=line)
 
         if context.workspace is not None:

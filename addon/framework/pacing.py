@@ -54,28 +54,33 @@ class Estimate:
 
 
 class Throttle:
-    """When to draw, such that drawing takes its share of the time and no more, as measured."""
+    """When to draw, such that drawing takes its share of the time and no more, as measured.
+
+    Blender draws what was changed several times, to smooth its edges. So all counts by which the calls come
+    later than they should, from one drawing to the next.
+    """
 
     def __init__(self, interval: float, clock: Clock = time.monotonic) -> None:
         """Begin; `interval` is what passes between two calls when nothing is drawn."""
         self._clock = clock
         self._interval = interval
-        self._next = clock()
         self._began: float | None = None
+        self._called = 0.0
+        self._cost = 0.0
 
     def is_due(self) -> bool:
         """Whether to draw now; call it first whenever there is time to."""
         now = self._clock()
-        if self._began is not None:
-            # What was drawn comes to the screen after we have returned, so it is over by now.
-            cost = max(now - self._began - self._interval, 0.0)
-            self._next = now + cost * (1.0 / SHARE - 1.0)
-            self._began = None
-        return now >= self._next
+        if self._began is None:
+            return True
+        self._cost += max(now - self._called - self._interval, 0.0)
+        self._called = now
+        return now - self._began >= self._cost / SHARE
 
     def began(self, when: float) -> None:
         """Something was drawn, from this time on."""
-        self._began = when
+        self._began = self._called = when
+        self._cost = 0.0
 
     def now(self) -> float:
         """The time."""

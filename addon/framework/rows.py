@@ -3,7 +3,7 @@
 
 import bpy
 
-from .settings import VERTEX_GROUP, Setting, Settings
+from .settings import VERTEX_GROUP, Setting, Settings, switch_of
 
 
 def sections_of(settings: type[Settings]) -> list[str]:
@@ -32,9 +32,19 @@ def draw_setting(
     setting: Setting,
     obj: bpy.types.Object | None,
 ) -> None:
-    """Draw one row; vertex groups have one only where there is a mesh to have them."""
+    """Draw one row, an optional number with its check box; vertex groups only where a mesh can have them."""
+    is_active = setting.active is None or setting.active(settings)
+    is_slider = setting.keywords.get("subtype") == "FACTOR"
+    if setting.optional is not None:
+        row = layout.row(align=True, heading=setting.label)
+        row.active = is_active
+        row.prop(settings, switch_of(name), text="")
+        value = row.row(align=True)
+        value.active = is_active and getattr(settings, switch_of(name))
+        value.prop(settings, name, text="", slider=is_slider)
+        return
     row = layout.row(align=True)
-    row.active = setting.active is None or setting.active(settings)
+    row.active = is_active
     if setting.metavar == VERTEX_GROUP:
         if obj is not None and obj.type == "MESH":
             row.prop_search(settings, name, obj, "vertex_groups")
@@ -43,7 +53,7 @@ def draw_setting(
     elif "ENUM_FLAG" in setting.keywords.get("options", ()):
         row.column().prop(settings, name)
     else:
-        row.prop(settings, name, slider=setting.keywords.get("subtype") == "FACTOR")
+        row.prop(settings, name, slider=is_slider)
 
 
 def split(layout: bpy.types.UILayout) -> bpy.types.UILayout:

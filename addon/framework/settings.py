@@ -46,6 +46,10 @@ class Setting:
     """Flags without a value, for a choice: which identifier each stands for."""
     implies: Mapping[str, object] = field(default_factory=dict)
     """The other settings that its flag also sets."""
+    optional: bool | None = None
+    """For a number: whether a check box beside it, `use_<name>`, is on at first; `None` without one."""
+    otherwise: str = ""
+    """What happens where the check box is off, for its tooltip."""
 
     @property
     def label(self) -> str:
@@ -123,6 +127,29 @@ def vertex_group(name: str, description: str, **more: object) -> Setting:
     return data_name(name, description, metavar=VERTEX_GROUP, **more)
 
 
+def switch_of(name: str) -> str:
+    """The name of the check box of an optional number."""
+    return f"use_{name}"
+
+
+def chosen(settings: object, name: str) -> float | None:
+    """The value of an optional number; `None` where its check box is off, and for 0."""
+    return (getattr(settings, name) or None) if getattr(settings, switch_of(name)) else None
+
+
+def _with_switches(own: Mapping[str, Setting]) -> dict[str, Setting]:
+    """Declared settings, with the check boxes of those that are optional before them."""
+    made: dict[str, Setting] = {}
+    for name, setting in own.items():
+        if setting.optional is not None:
+            text = f"Set {setting.label}. Otherwise {setting.otherwise}"
+            box = boolean(setting.label, text, default=setting.optional, flag=None)
+            # Drawn in the row of the number.
+            made[switch_of(name)] = box.but(section=setting.section, shown=lambda _settings: False)
+        made[name] = setting
+    return made
+
+
 class Settings:
     """Base of the classes of settings, which collects what they declare."""
 
@@ -130,15 +157,25 @@ class Settings:
     """All settings by name: those of the bases first, in their order."""
     former: Mapping[str, Mapping[bool, Mapping[str, object]]] = {}
     """Check boxes of versions before, and what each of their values sets now: the first always."""
+    follows: Mapping[str, tuple[str, Callable[[object], object]]] = {}
+    """Settings that, where they are not given, follow from one that is: its name, and how."""
 
     def __init_subclass__(cls, **arguments: object) -> None:
         """Collect what is declared."""
         super().__init_subclass__(**arguments)
-        own = {name: made for name, made in inspect.get_annotations(cls).items() if isinstance(made, Setting)}
+        own = _with_switches(
+            {name: made for name, made in inspect.get_annotations(cls).items() if isinstance(made, Setting)}
+        )
         inherited: dict[str, Setting] = {}
         for base in cls.__bases__:
             inherited |= getattr(base, "declared", {})
         cls.declared = {name: made for name, made in inherited.items() if name not in own} | own
+        # A number that is given counts: so it was before there were check boxes, and 0 stood for none.
+        cls.follows = {
+            switch_of(name): (name, lambda value: value > 0)
+            for name, made in cls.declared.items()
+            if made.optional is not None
+        } | dict(cls.follows)
 
 
 def properties_of(settings: type[Settings]) -> dict[str, object]:
@@ -170,4 +207,10 @@ def defaults_of(settings: type[Settings], **changes: object) -> SimpleNamespace:
     unknown = sorted(set(changes) - set(settings.declared))
     if unknown:
         raise TypeError(f"There is no setting {', '.join(unknown)}.")
-    return SimpleNamespace(**({name: made.default for name, made in settings.declared.items()} | changes))
+    followed = {
+        name: of(changes[other])
+        for name, (other, of) in settings.follows.items()
+        if other in changes and name not in changes
+    }
+    defaults = {name: made.default for name, made in settings.declared.items()}
+    return SimpleNamespace(**(defaults | followed | changes))

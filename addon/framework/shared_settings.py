@@ -79,10 +79,13 @@ SOLVER = choice(
 )
 MAX_ITERATIONS = integer(
     "Iterations",
-    "Maximum number of solver iterations. 0 leaves it to the solver",
-    default=0,
+    "Maximum number of solver iterations",
+    default=1000,
     min=0,
+    soft_min=1,
     section=EXPERT,
+    optional=False,
+    otherwise="it is left to the solver",
 )
 USE_FIDELITY = boolean(
     "Set Fidelity",

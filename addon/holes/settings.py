@@ -4,17 +4,20 @@
 import numpy as np
 
 from ..framework import shared_settings as shared
-from ..framework.settings import Settings, boolean, choice, factor, integer, number
+from ..framework.settings import Settings, boolean, choice, chosen, factor, integer, number
 
 
 class HoleSettings(Settings):
     """The settings of Fill Holes."""
 
     max_edges: integer(
-        "Largest Hole",
-        "Maximum number of edges around a hole for it to be filled. 0 fills holes of any size",
-        default=0,
+        "Maximum Edges",
+        "Maximum number of edges around a hole for it to be filled",
+        default=100,
         min=0,
+        soft_min=3,
+        optional=False,
+        otherwise="holes of any size are filled",
     )
     outer: boolean(
         "Outer Border",
@@ -47,10 +50,11 @@ class HoleSettings(Settings):
     )
     edge_length: number(
         "Edge Length",
-        "Length of the edges in the patch, in the units of the object. 0 uses the length of the edges around "
-        "the hole",
-        default=0.0,
+        "Length of the edges in the patch, in the units of the object",
+        default=0.1,
         min=0.0,
+        optional=False,
+        otherwise="it is that of the edges around the hole",
         subtype="DISTANCE",
         precision=4,
         metavar="LENGTH",
@@ -96,7 +100,7 @@ PRESETS = {
     "Automatic": {
         "shape": "AUTO",
         "sharpness": 0.5,
-        "edge_length": 0.0,
+        "use_edge_length": False,
         "material": "CONTINUE",
         "marks": set(),
         "iterations": 50,
@@ -112,7 +116,7 @@ PRESETS = {
 def hole_options(settings: object) -> dict[str, object]:
     """The arguments of `ridgeform.fill_holes` that the settings stand for, the same for every mesh."""
     return {
-        "edge_length": settings.edge_length or None,
+        "edge_length": chosen(settings, "edge_length"),
         "iterations": settings.iterations,
         "fidelity": settings.fidelity,
         "shape": settings.shape.lower(),

@@ -18,6 +18,7 @@ from ..blender.welding import Weld
 from ..framework.job import Task
 from ..framework.preflight import reason_too_long
 from ..framework.run import Part, Run, counted, meshes_phrase
+from ..framework.settings import chosen as value_of
 from ..framework.surface import welded
 from .append import append
 from .clipping import Pieces
@@ -202,13 +203,14 @@ def _chosen(
 ) -> tuple[list[ridgeform.Hole], list[str]]:
     """The holes to be filled, and why others are not, with how many of them there are."""
     outer = settings.outer or (picked and all(hole.is_outer_border for hole in holes))
+    most = value_of(settings, "max_edges")
     chosen, reasons = [], Counter()
     for hole in holes:
         size = len(hole.vertices)
         if hole.is_outer_border and not outer:
             reasons["it is the outer border of an open sheet"] += 1
-        elif settings.max_edges and size > settings.max_edges:
-            reasons[f"it has more than {settings.max_edges} edges"] += 1
+        elif most is not None and size > most:
+            reasons[f"it has more than {most} edges"] += 1
         elif hole.refusal is not None:
             reasons[hole.refusal] += 1
         else:

@@ -22,7 +22,7 @@ FEATURE = Feature(
             settings=SegmentSettings,
             key="segment",
             page="manual_segment",
-            quick=("use_count", "count"),
+            quick=("mode", "count"),
             presets=PRESETS,
             draw_more=draw_restore,
         ),

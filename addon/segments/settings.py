@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The settings of segmenting: what is segmented, how finely, and what is made of the segments."""
 
+from typing import ClassVar
+
+import numpy as np
+
 from ..blender.attribute_names import search_names
 from ..framework import shared_settings as shared
 from ..framework.settings import (
@@ -9,6 +13,7 @@ from ..framework.settings import (
     boolean,
     choice,
     choices,
+    chosen,
     data_name,
     factor,
     integer,
@@ -26,6 +31,31 @@ def of_parts(settings: object) -> bool:
     return settings.kind == "PARTS"
 
 
+def by_count(settings: object) -> bool:
+    """Whether the number of segments is chosen."""
+    return settings.mode == "COUNT"
+
+
+def by_angle(settings: object) -> bool:
+    """Whether the angle between faces says how many segments there are."""
+    return of_faces(settings) and settings.source == "SHAPE" and not by_count(settings)
+
+
+def by_weight(settings: object) -> bool:
+    """Whether the weight of the paper says so: on an attribute, where there are no angles."""
+    return of_faces(settings) and settings.source == "ATTRIBUTE" and not by_count(settings)
+
+
+BEND = 0.8
+"""The angle (radians) at which two faces of a shape become one segment is so many times the weight λ."""
+
+
+def weight_of(angle: float) -> float:
+    """The weight λ of the length of borders that an angle (radians) stands for."""
+    # Blender's angles have single precision.
+    return round(angle / BEND, 6)
+
+
 def _width(name: str, description: str, *, default: float) -> Setting:
     """A width of the bands around borders."""
     given = {"min": 1e-5, "max": 10.0, "precision": 4, "section": shared.EXPERT, "shown": of_faces}
@@ -35,6 +65,8 @@ def _width(name: str, description: str, *, default: float) -> Setting:
 class SegmentSettings(Settings):
     """The settings of segmenting."""
 
+    former: ClassVar = {"use_count": {True: {"mode": "COUNT"}, False: {"mode": "AUTO"}}}
+    follows: ClassVar = {"angle": ("length_weight", lambda weight: min(BEND * weight, np.pi))}
     kind: choice(
         "Kind",
         "What counts as a segment",
@@ -78,18 +110,40 @@ class SegmentSettings(Settings):
         implies={"source": "ATTRIBUTE"},
         shown=of_faces,
     )
+    mode: choice(
+        "Mode",
+        "What determines how many segments there are",
+        (
+            ("AUTO", "Automatic", "As many as there are, given an angle, a weight, or a coarseness"),
+            ("COUNT", "Count", "As many as you choose"),
+        ),
+        default="AUTO",
+        expand=True,
+        flag=None,
+    )
+    angle: number(
+        "Angle",
+        "Two faces of a shape become one segment if they meet at an edge bent by less than about this "
+        "angle. Larger angles give fewer segments",
+        default=BEND * 0.5,
+        min=np.radians(0.005),
+        max=np.pi,
+        soft_min=np.radians(2.0),
+        soft_max=np.radians(120.0),
+        subtype="ANGLE",
+        shown=by_angle,
+    )
     length_weight: number(
-        "Border Cost",
-        "What a border costs for its length (λ of the paper). Two parts of a shape become one segment if "
-        "they meet at an edge bent by less than about 0.8 times this value, in radians (0.5: 23°). Larger "
-        "values give fewer segments",
+        "Border Weight",
+        "What a border costs for its length (λ of the paper), where segments are found on an attribute. "
+        "Larger values give fewer segments",
         default=0.5,
         min=1e-4,
         max=1e4,
         soft_min=0.05,
         soft_max=3.0,
         precision=2,
-        shown=of_faces,
+        shown=by_weight,
     )
     coarseness: number(
         "Coarseness",
@@ -101,9 +155,8 @@ class SegmentSettings(Settings):
         soft_min=0.5,
         soft_max=4.0,
         precision=2,
-        shown=of_parts,
+        shown=lambda settings: of_parts(settings) and not by_count(settings),
     )
-    use_count: boolean("Set Number", "Choose the number of segments", flag=None)
     count: integer(
         "Segments",
         "Number of segments. The weakest borders are removed first, so that fewer segments are unions of "
@@ -112,9 +165,9 @@ class SegmentSettings(Settings):
         min=1,
         max=100_000,
         soft_max=100,
-        active=lambda settings: settings.use_count,
+        shown=by_count,
         flag="--segments",
-        implies={"use_count": True},
+        implies={"mode": "COUNT"},
     )
     outputs: choices(
         "Make",
@@ -188,10 +241,12 @@ class SegmentSettings(Settings):
     )
     min_faces: integer(
         "Minimum Faces",
-        "Segments with fewer triangles are merged with a neighbor. 0 uses as many as the noise of the mesh "
-        "calls for",
-        default=0,
+        "Segments with fewer triangles are merged with a neighbor",
+        default=20,
         min=0,
+        soft_min=1,
+        optional=False,
+        otherwise="it is as many as the noise of the mesh calls for",
         soft_max=200,
         section=shared.EXPERT,
         shown=of_faces,
@@ -259,14 +314,15 @@ class SegmentSettings(Settings):
 
 
 PRESETS = {
-    "Faces": {"kind": "FACES", "length_weight": 0.5},
-    "Parts": {"kind": "PARTS", "coarseness": 1.0, "use_count": False},
-    "Large Parts": {"kind": "FACES", "length_weight": 1.2},
-    "Details": {"kind": "FACES", "length_weight": 0.2},
+    "Faces": {"kind": "FACES", "length_weight": 0.5, "angle": BEND * 0.5},
+    "Parts": {"kind": "PARTS", "coarseness": 1.0, "mode": "AUTO"},
+    "Large Parts": {"kind": "FACES", "length_weight": 1.2, "angle": BEND * 1.2},
+    "Details": {"kind": "FACES", "length_weight": 0.2, "angle": BEND * 0.2},
     "Paper 2024": {
         "kind": "FACES",
         "method": "paper",
-        "use_count": False,
+        "mode": "AUTO",
+        "use_min_faces": True,
         "min_faces": 20,
         "use_fidelity": True,
         "fidelity": 1000.0,
@@ -286,16 +342,16 @@ def segment_options(settings: object) -> dict[str, object]:
     Without `n_segments`: any number is taken from the hierarchy of one result.
     """
     return {
-        "length_weight": settings.length_weight,
+        "length_weight": weight_of(settings.angle) if settings.source == "SHAPE" else settings.length_weight,
         "fidelity": settings.fidelity if settings.use_fidelity else None,
         "epsilon_start": settings.epsilon_start,
         "epsilon_end": settings.epsilon_end,
         "cut_threshold": settings.cut_threshold,
-        "min_faces": settings.min_faces or None,
+        "min_faces": chosen(settings, "min_faces"),
         "method": settings.method,
         "scale": settings.scale,
         "solver": settings.solver,
-        "max_iterations": settings.max_iterations or None,
+        "max_iterations": chosen(settings, "max_iterations"),
     }
 
 

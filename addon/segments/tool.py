@@ -27,7 +27,7 @@ from ..framework.surface import Surface, painted_ridges, surface_of
 from . import earlier, groups, layers, slots
 from .existing import border_weights
 from .parts import separate
-from .settings import of_parts, parts_options, segment_options
+from .settings import by_count, of_parts, parts_options, segment_options
 
 SUFFIX = "_sharpened"
 KEY_NAME = "Sharpened"
@@ -163,7 +163,7 @@ class Segmenting(Run):
     def _write_one(self, part: SegmentPart) -> None:
         mesh, found, outputs = part.object.data, part.task.result, self.settings.outputs
         labels = (
-            part.labels_at(self.settings.count) if self.settings.use_count else part.face_labels(found.labels)
+            part.labels_at(self.settings.count) if by_count(self.settings) else part.face_labels(found.labels)
         )
         part.n_segments = int(labels.max()) + 1
         part.warnings += self._notes(part)
@@ -193,7 +193,7 @@ class Segmenting(Run):
 
     def _notes(self, part: SegmentPart) -> list[str]:
         notes = []
-        if self.settings.use_count and part.n_segments != self.settings.count:
+        if by_count(self.settings) and part.n_segments != self.settings.count:
             fewest, most = part.possible()
             notes.append(f"{self.settings.count} segments were asked for, {fewest} to {most} are possible")
         if part.task.result.status == "inaccurate":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is made of a flow's result: coordinates, volume, fewer triangles, marks.
+"""What is made of a flow's result: coordinates, volume, fewer triangles, ridges.
 
 `finished` computes, without touching Blender's data; `write` writes.
 """
@@ -13,8 +13,9 @@ import ridgeform
 
 from ..blender import mesh_io
 from ..blender.welding import Weld
+from ..framework.settings import chosen
 from . import reduction
-from .ridges import dividing_angle, edge_angles
+from .ridges import Edges
 from .volume import keep_volume
 
 KEY_NAME = "Stylized"
@@ -35,6 +36,8 @@ class Source:
     """What its triangles are reduced from, if they are to be."""
     refusal: str | None = None
     """Why they will not be, although they are to be."""
+    edges: Edges | None = None
+    """Its edges, if ridges are to be marked."""
 
     def merged(self, vertices: np.ndarray) -> np.ndarray:
         """Coordinates (n, 3) float32 from welded vertices, with the old bits where none may move."""
@@ -58,6 +61,8 @@ class Finished:
     """The coordinates (n, 3) float32."""
     notes: list[str] = field(default_factory=list)
     reduced: reduction.Reduced | None = None
+    ridges: np.ndarray | None = None
+    """The edges (k,) bool to be marked, of a reduced mesh in the order of `Edges.of_triangles`."""
 
 
 def finished(
@@ -78,7 +83,17 @@ def finished(
         )
         made.notes.append(reduced if isinstance(reduced, str) else reduced.note)
         made.reduced = None if isinstance(reduced, str) else reduced
+    check()
+    if source.edges is not None:
+        made.ridges = _ridges(source, made, chosen(settings, "mark_angle"))
     return made
+
+
+def _ridges(source: Source, made: Finished, least: float | None) -> np.ndarray:
+    if made.reduced is not None:
+        points = made.reduced.points.astype(np.float32)
+        return Edges.of_triangles(made.reduced.faces).ridges(points, least)
+    return source.edges.ridges(made.coordinates, least) & source.free[source.edges.ends].all(axis=1)
 
 
 def write(obj: bpy.types.Object, source: Source, made: Finished, settings: object) -> None:
@@ -87,10 +102,12 @@ def write(obj: bpy.types.Object, source: Source, made: Finished, settings: objec
         mesh_io.add_shape_key(obj, made.coordinates, KEY_NAME)
     else:
         source.coordinates.write(made.coordinates)
+    ridges = made.ridges
     if made.reduced is not None:
-        reduction.write(obj, made.reduced)
-    if settings.marks:
-        _mark_ridges(obj, source.free, settings)
+        rows = reduction.write(obj, made.reduced)
+        ridges = None if ridges is None else ridges[rows]
+    if ridges is not None:
+        mesh_io.mark_edges(obj.data, ridges, settings.marks)
 
 
 def _keep_volume(source: Source, made: Finished) -> str | None:
@@ -120,18 +137,3 @@ def _note(result: ridgeform.Stylized, settings: object) -> str | None:
         notes["finished"] = f"all {steps} steps were done before its facets had settled: raise Steps"
     few = "hardly anything became flat: subdivide a coarse mesh, or raise Strength on a regular one"
     return notes.get(result.status, few if result.flat_share[-1] < FEW_FLAT else None)
-
-
-def _mark_ridges(obj: bpy.types.Object, free: np.ndarray, settings: object) -> None:
-    mesh_io.flush_edit_mode(obj)
-    ends = mesh_io.edges(obj.data)
-    coordinates = mesh_io.open_coordinates(obj).original
-    angles = edge_angles(coordinates, mesh_io.face_corners(obj.data), len(ends))
-    least = settings.mark_angle
-    if not settings.use_mark_angle:
-        lengths = np.linalg.norm(coordinates[ends[:, 0]] - coordinates[ends[:, 1]], axis=1)
-        least = dividing_angle(angles, lengths.astype(np.float64))
-    ridges = (angles >= 0) & (angles >= least)
-    if len(coordinates) == len(free):
-        ridges &= free[ends].all(axis=1)
-    mesh_io.mark_edges(obj.data, ridges, settings.marks)

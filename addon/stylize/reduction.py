@@ -132,9 +132,9 @@ def check(obj: bpy.types.Object, source: Reducible) -> None:
         )
 
 
-def write(obj: bpy.types.Object, reduced: Reduced) -> None:
-    """Give the mesh of an object its reduced faces."""
-    mesh_layers.replace_faces(obj, reduced.points, reduced.faces, reduced.layers)
+def write(obj: bpy.types.Object, reduced: Reduced) -> np.ndarray:
+    """Give the mesh of an object its reduced faces; the row of each edge (k,) as `replace_faces` has it."""
+    return mesh_layers.replace_faces(obj, reduced.points, reduced.faces, reduced.layers)
 
 
 def _losses(mesh: bpy.types.Mesh, triangles: np.ndarray) -> list[str]:

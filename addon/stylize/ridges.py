@@ -1,7 +1,37 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Finding the ridges: edges with a large angle between their two faces."""
 
+from dataclasses import dataclass
+
 import numpy as np
+
+
+@dataclass(frozen=True)
+class Edges:
+    """The edges of a mesh: their ends (k, 2), and of faces of any size what `edge_angles` takes."""
+
+    ends: np.ndarray
+    corners: tuple[np.ndarray, np.ndarray, np.ndarray]
+
+    @classmethod
+    def of_triangles(cls, faces: np.ndarray) -> "Edges":
+        """Those of triangles (q, 3), each once and in order."""
+        ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+        size = int(ends.max(initial=0)) + 1
+        keys, edge = np.unique(ends.astype(np.int64) @ [size, 1], return_inverse=True)
+        ends = np.stack(np.divmod(keys, size), axis=1).astype(np.int32)
+        return cls(ends, (np.arange(0, faces.size, 3), faces.ravel(), edge.reshape(-1)))
+
+    def ridges(self, coordinates: np.ndarray, least: float | None = None) -> np.ndarray:
+        """Which edges (k,) bool are bent by at least an angle (radians), or what parts them from the others.
+
+        `coordinates` (n, 3).
+        """
+        angles = edge_angles(coordinates, self.corners, len(self.ends))
+        if least is None:
+            lengths = np.linalg.norm(coordinates[self.ends[:, 0]] - coordinates[self.ends[:, 1]], axis=1)
+            least = dividing_angle(angles, lengths.astype(np.float64))
+        return (angles >= 0) & (angles >= least)
 
 
 def face_normals(coordinates: np.ndarray, starts: np.ndarray, vertices: np.ndarray) -> np.ndarray:

@@ -11,6 +11,7 @@ from ..framework.settings import (
     Settings,
     boolean,
     choice,
+    chosen,
     defaults_of,
     factor,
     integer,
@@ -19,7 +20,7 @@ from ..framework.settings import (
 )
 
 WHERE = "Where"
-LAST_STEPS = "Last Steps"
+FINISH_OPTIONS = "Finish Options"
 
 
 def movement_of(strength: float) -> float:
@@ -121,17 +122,9 @@ class StylizeSettings(Settings):
     keep_volume: boolean(
         "Keep Volume",
         "Scale the result so that it encloses the same volume as before. For closed meshes in Object Mode",
-        section=LAST_STEPS,
+        section=FINISH_OPTIONS,
     )
-    marks: shared.MARKS.but(section=LAST_STEPS, default={"SHARP"})
-    use_mark_angle: boolean(
-        "Set Ridge Angle",
-        "Choose the angle from which edges are marked. Otherwise it is the angle that separates the edges "
-        "inside facets from the ridges of this shape",
-        section=LAST_STEPS,
-        active=lambda settings: bool(settings.marks),
-        flag=None,
-    )
+    marks: shared.MARKS.but(section=FINISH_OPTIONS, default={"SHARP"})
     mark_angle: number(
         "Ridge Angle",
         "Minimum angle between the two faces of an edge for it to be marked as a ridge",
@@ -139,9 +132,10 @@ class StylizeSettings(Settings):
         min=0.0,
         max=np.pi,
         subtype="ANGLE",
-        section=LAST_STEPS,
-        active=lambda settings: bool(settings.marks) and settings.use_mark_angle,
-        implies={"use_mark_angle": True},
+        section=FINISH_OPTIONS,
+        active=lambda settings: bool(settings.marks),
+        optional=False,
+        otherwise="it is the angle that separates the edges inside facets from the ridges of this shape",
     )
     use_fidelity: shared.USE_FIDELITY
     fidelity: shared.fidelity(
@@ -176,12 +170,14 @@ class StylizeSettings(Settings):
     solver: shared.SOLVER
     tolerance: number(
         "Tolerance",
-        "Certified relative duality gap that each step must reach. 0 stops when nothing visible changes",
+        "Certified relative duality gap that each step must reach",
         default=1e-3,
         min=0.0,
         max=1.0,
         precision=6,
         section=shared.EXPERT,
+        optional=True,
+        otherwise="a step ends when nothing visible changes",
     )
     max_iterations: shared.MAX_ITERATIONS
 
@@ -223,6 +219,6 @@ def stylize_options(settings: object) -> dict[str, object]:
         "dual": settings.dual,
         "delaunay": settings.delaunay,
         "solver": settings.solver,
-        "tolerance": settings.tolerance or None,
-        "max_iterations": settings.max_iterations or None,
+        "tolerance": chosen(settings, "tolerance"),
+        "max_iterations": chosen(settings, "max_iterations"),
     }

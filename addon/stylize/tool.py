@@ -17,6 +17,7 @@ from ..framework.run import Part, Run, counted, meshes_phrase
 from ..framework.surface import group_weights, painted_ridges, welded
 from . import finish, recorded, reduction
 from .finish import Source
+from .ridges import Edges
 from .settings import stylize_options
 
 UNEVEN_SCALE = 1.1
@@ -32,7 +33,7 @@ class FlowPart(Part):
 
 
 class Stylization(Run):
-    """One run of stylize: the flow on each mesh, its steps shown as they are done, then the last steps."""
+    """One run of stylize: the flow on each mesh, its steps shown as they are done, then the finish."""
 
     name = "stylize"
     call = "stylize"
@@ -186,6 +187,8 @@ def _prepare(obj: bpy.types.Object, settings: object) -> FlowPart:
         source.refusal = reduction.reason_against(mesh, makes_key=settings.output == "SHAPE_KEY")
         if source.refusal is None:
             source.reducible = reduction.read(obj)
+    if settings.marks:
+        source.edges = Edges(mesh_io.edges(mesh), mesh_io.face_corners(mesh))
     del options["iterations"]
     flow = recorded.Flow(weld.places(vertices), weld.triangles, options)
     task = Task(obj.name, lambda _: None, most=settings.steps)

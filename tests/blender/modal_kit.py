@@ -111,6 +111,12 @@ def poll_to_the_end(operator, context):
     return outcome
 
 
+def leave(operator, context, key="ESC"):
+    """Cancel a run and wait until it has ended: what the operator returned then."""
+    outcome = operator.modal(context, event(key))
+    return poll_to_the_end(operator, context) if outcome == {"RUNNING_MODAL"} else outcome
+
+
 class Session:
     """A modal run of a tool."""
 
@@ -133,7 +139,9 @@ class Session:
         self.run.job._stop.set()
 
     def send(self, kind):
-        """Hand over an event."""
+        """Hand over an event; a run that is canceled comes to its end."""
+        if kind == "ESC":
+            return leave(self.operator, self.context)
         return self.operator.modal(self.context, event(kind))
 
     def finish(self):

@@ -1,5 +1,7 @@
 """The panel stays bound to the last result: changed settings start again from the original."""
 
+import threading
+
 import addon_kit as kit
 import bpy
 import modal_kit
@@ -163,7 +165,7 @@ def test_esc_goes_back_to_the_last_result_and_its_settings(finish):
     press(obj, finish=finish, reduce_ratio=0.5)
     before = state(obj)
     operator, context = changed(strength=0.9, finish="KEEP")
-    assert operator.modal(context, modal_kit.event("ESC")) == {"CANCELLED"}
+    assert modal_kit.leave(operator, context) == {"CANCELLED"}
     assert operator.reports[-1] == ("INFO", "Canceled: back to the last result")
     assert state(obj) == before
     assert (panel().strength, panel().finish) == (0.5, finish)
@@ -190,7 +192,7 @@ def test_other_events_stay_with_blender_meanwhile():
     press(open_box())
     operator, context = changed(strength=0.9)
     assert operator.modal(context, modal_kit.event("LEFTMOUSE")) == {"PASS_THROUGH"}
-    assert operator.modal(context, modal_kit.event("ESC")) == {"CANCELLED"}
+    assert modal_kit.leave(operator, context) == {"CANCELLED"}
 
 
 @pytest.mark.parametrize("change_by_hand", CHANGES, ids=lambda change: change.__name__)
@@ -282,3 +284,25 @@ def test_saving_while_it_runs_saves_no_half_of_a_result(tmp_path):
     assert state(obj) == before
     session.release()
     assert session.finish() == {"FINISHED"}
+
+
+def test_a_job_that_is_slow_to_stop_does_not_hold_a_change_up():
+    obj, other = open_box(), open_box("Other")
+    press(obj)
+    gate = threading.Event()
+    panel().strength = 0.9
+    assert looks()
+    operator, context = Changing(), modal_kit.FakeContext()
+    run = operator._again()
+    for task in run.job.tasks:
+        task.call = lambda _progress: gate.wait(modal_kit.PATIENCE)
+    assert operator.begin_modal(context, run) == {"RUNNING_MODAL"}
+    panel().strength = 0.3
+    for _ in range(4):
+        assert operator.modal(context, modal_kit.event("TIMER")) == {"RUNNING_MODAL"}
+    assert operator._run is run
+    gate.set()
+    assert modal_kit.poll_to_the_end(operator, context) == {"FINISHED"}
+    assert bound.current().values.strength == pytest.approx(0.3)
+    got = without_names(obj)
+    assert got == at_once(other, strength=0.3)

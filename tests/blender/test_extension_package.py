@@ -1,5 +1,6 @@
 """What is in the zip: all that Blender and the extensions platform ask for, nothing that they refuse."""
 
+import os
 import re
 import tomllib
 import zipfile
@@ -117,3 +118,8 @@ def test_every_source_names_its_license_and_breaks_no_rule(package):
         assert text.startswith("# SPDX-License-Identifier: GPL-3.0-or-later"), name
         for word, why in REFUSED.items():
             assert word not in text, f"{name} {why}"
+
+
+def test_the_website_is_the_repository_that_built_it(manifest):
+    server, name = os.environ.get("GITHUB_SERVER_URL"), os.environ.get("GITHUB_REPOSITORY")
+    assert manifest.get("website") == (f"{server}/{name}" if server and name else None)

@@ -53,7 +53,7 @@ CLASSES = (
     "RIDGEFORM_MT_interpolate_presets",
     "RIDGEFORM_PT_stylize",
     "RIDGEFORM_PT_stylize_where",
-    "RIDGEFORM_PT_stylize_last_steps",
+    "RIDGEFORM_PT_stylize_finish_options",
     "RIDGEFORM_PT_attributes_and_curves",
     "RIDGEFORM_MT_tools",
     "RIDGEFORM_OT_apply_result",

@@ -1,10 +1,14 @@
 """The modal run, without a window: events are handed to it one by one."""
 
 import re
+import threading
 import time
+from types import SimpleNamespace
 
 import addon_kit as kit
 import bpy
+import layout_kit
+import modal_kit
 import numpy as np
 import pytest
 from bl_ext.user_default.ridgeform.framework import job, modal, pacing
@@ -44,12 +48,56 @@ def test_cancel_restores_every_bit(key):
     values[0, 0] = -0.0
     kit.set_coordinates(obj, values)
     run, operator, context = start(obj)
-    assert operator.modal(context, event(key)) == {"CANCELLED"}
+    assert modal_kit.leave(operator, context, key) == {"CANCELLED"}
     assert kit.same_bits(kit.coordinates(obj), values)
     assert not run.job.is_running
     assert context.timers == 0
     assert context.status is None
     assert context.cursor[-1] == "end"
+
+
+def hold(run):
+    """Have the job of a run go on until the event that is returned, whatever it is asked to do."""
+    gate = threading.Event()
+    for task in run.job.tasks:
+        task.call = lambda _progress: gate.wait(PATIENCE)
+    return gate
+
+
+def test_a_job_that_is_slow_to_stop_does_not_hold_blender_up():
+    obj = kit.bumpy_box()
+    before = kit.coordinates(obj)
+    run = Stylization([obj], default_settings(steps=2))
+    gate = hold(run)
+    operator, context = begin(run)
+    labels = layout_kit.Layout()
+    for key in ("ESC", "TIMER", "ESC", "TIMER"):
+        assert operator.modal(context, event(key)) == {"RUNNING_MODAL"}
+    context.status(SimpleNamespace(layout=labels), None)
+    assert "Canceling" in labels.labels
+    assert modal.is_running()
+    gate.set()
+    assert poll_to_the_end(operator, context) == {"CANCELLED"}
+    assert operator.reports == [("INFO", "Canceled: everything is as it was")]
+    assert kit.same_bits(kit.coordinates(obj), before)
+    assert not modal.is_running()
+    assert context.timers == 0
+
+
+@pytest.mark.parametrize("redraws", [0, 1, 8])
+def test_drawing_takes_a_tenth_of_the_time_however_often_blender_draws(redraws):
+    now, poll, cost = [0.0], 0.05, 0.4
+    throttle = pacing.Throttle(poll, lambda: now[0])
+    shown, drawing, left = 0, 0.0, 0
+    while now[0] < 200.0:
+        if throttle.is_due():
+            throttle.began(throttle.now())
+            shown, left = shown + 1, redraws
+        if left:
+            left, drawing, now[0] = left - 1, drawing + cost, now[0] + cost
+        now[0] += poll
+    assert shown > (2 if redraws else 1000)
+    assert drawing <= 0.1 * now[0] + redraws * cost
 
 
 def test_cancel_in_edit_mode_restores_every_bit():
@@ -64,7 +112,7 @@ def test_cancel_in_edit_mode_restores_every_bit():
         time.sleep(0.005)
     obj.update_from_editmode()
     assert not np.array_equal(kit.coordinates(obj), before)
-    assert operator.modal(context, event("ESC")) == {"CANCELLED"}
+    assert modal_kit.leave(operator, context) == {"CANCELLED"}
     bpy.ops.object.mode_set(mode="OBJECT")
     assert kit.same_bits(kit.coordinates(obj), before)
 
@@ -102,7 +150,7 @@ def test_view_can_be_turned_meanwhile():
     _, operator, context = start(kit.bumpy_box())
     assert operator.modal(context, event("MIDDLEMOUSE")) == {"PASS_THROUGH"}
     assert operator.modal(context, event("G")) == {"RUNNING_MODAL"}
-    operator.modal(context, event("ESC"))
+    modal_kit.leave(operator, context)
 
 
 def test_status_bar_says_step_and_time():
@@ -110,7 +158,7 @@ def test_status_bar_says_step_and_time():
     line = pacing.status_line(run.job, operator._estimate)
     assert re.match(r"Box: \w+, step \d+ of at most 2000, \d+ s elapsed", line), line
     assert context.status is not None
-    operator.modal(context, event("ESC"))
+    modal_kit.leave(operator, context)
 
 
 def test_opening_a_file_stops_the_run():

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import addon_kit as kit
 import bpy
+import modal_kit
 import numpy as np
 import pytest
 from bl_ext.user_default.ridgeform.attributes.denoise import Denoising
@@ -54,7 +55,7 @@ def test_cancel_leaves_everything_as_it_was(tool):
     before = names(obj)
     run, operator, context = start(obj, tool)
     assert operator.modal(context, event("TIMER", "NOTHING")) == {"RUNNING_MODAL"}
-    assert operator.modal(context, event("ESC")) == {"CANCELLED"}
+    assert modal_kit.leave(operator, context) == {"CANCELLED"}
     assert not run.job.is_running
     assert names(obj) == before
     assert context.timers == 0

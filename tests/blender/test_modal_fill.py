@@ -3,6 +3,7 @@
 import addon_kit as kit
 import bpy
 import hole_kit
+import modal_kit
 import numpy as np
 import pytest
 from bl_ext.user_default.ridgeform.framework import job, modal
@@ -32,7 +33,7 @@ def test_cancel_leaves_every_bit_and_takes_the_preview_away():
     before = hole_kit.state(obj)
     run, operator, context = start(obj)
     assert hole_kit.state(obj) == before
-    assert operator.modal(context, event("ESC")) == {"CANCELLED"}
+    assert modal_kit.leave(operator, context) == {"CANCELLED"}
     assert hole_kit.state(obj) == before
     assert run._overlay.n_triangles == 0
     assert not run.job.is_running
@@ -62,7 +63,7 @@ def test_cancel_in_edit_mode():
     bpy.ops.object.mode_set(mode="EDIT")
     _, operator, context = start(obj)
     assert obj.mode == "EDIT"
-    assert operator.modal(context, event("ESC")) == {"CANCELLED"}
+    assert modal_kit.leave(operator, context) == {"CANCELLED"}
     bpy.ops.object.mode_set(mode="OBJECT")
     assert hole_kit.state(obj) == before
 

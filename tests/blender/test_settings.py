@@ -1,5 +1,6 @@
 """A setting is declared once: its property, row, preset entry, flag and the manual's words agree."""
 
+import itertools
 import json
 import math
 import os
@@ -14,7 +15,8 @@ import pytest
 from american_words import british_words
 from bl_ext.user_default.ridgeform import registry
 from bl_ext.user_default.ridgeform.framework import batch, flags, former, presets, rows
-from bl_ext.user_default.ridgeform.framework.settings import defaults_of, setting_names
+from bl_ext.user_default.ridgeform.framework.settings import chosen, defaults_of, setting_names, switch_of
+from bl_ext.user_default.ridgeform.segments.settings import SegmentSettings, segment_options
 
 ROOT = Path(__file__).parents[2]
 BEFORE = Path(__file__).with_name("version_0_1_0")
@@ -39,18 +41,26 @@ def panel_of(tool):
     return getattr(bpy.context.scene, tool.scene_property)
 
 
+def make_shown(settings, setting, tool):
+    """Rows that depend on choices are there for some of their items: choose these; whether there are any."""
+    made = {name: made for name, made in tool.settings.declared.items() if isinstance(made.default, str)}
+    choices = {name: [identifier for identifier, *_ in one.items] for name, one in made.items() if one.items}
+    for chosen_items in itertools.product(*choices.values()):
+        vars(settings).update(zip(choices, chosen_items, strict=True))
+        if setting.shown(settings):
+            return True
+    return False
+
+
 @every_tool
 def test_every_setting_has_a_row_in_its_section_once(tool, add_mesh):
     obj = add_mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
     settings = defaults_of(tool.settings)
     for name, setting in tool.settings.declared.items():
-        # Rows that depend on a choice are there for one of its items.
-        for other, made in tool.settings.declared.items():
-            if setting.shown is not None and made.items and not isinstance(made.default, set):
-                for identifier, *_ in made.items:
-                    setattr(settings, other, identifier)
-                    if setting.shown(settings):
-                        break
+        number = tool.settings.declared.get(name.removeprefix("use_"))
+        row = number if number is not None and number.optional is not None else setting
+        if row.shown is not None:
+            assert make_shown(settings, row, tool)
         drawn = layout_kit.Layout()
         rows.draw_section(drawn, settings, tool.settings, setting.section, obj)
         assert drawn.rows.count(name) == 1
@@ -86,8 +96,7 @@ def test_every_value_of_a_setting_can_be_given_on_the_command_line(tool):
         "show",
         "use_fidelity",
         "use_jumps",
-        "use_count",
-        "use_mark_angle",
+        "mode",
         "source",
         "display",
         "output",
@@ -95,7 +104,7 @@ def test_every_value_of_a_setting_can_be_given_on_the_command_line(tool):
     }
     for name, setting in tool.settings.declared.items():
         words = flags.flags_of(name, setting)
-        assert words or name in silent, name
+        assert words or name in silent or name in tool.settings.follows, name
         assert settings_of(tool.command)[name] == setting.default
         for word in words:
             value, expected = given(word, setting)
@@ -105,9 +114,14 @@ def test_every_value_of_a_setting_can_be_given_on_the_command_line(tool):
                 assert got[other] == implied
 
 
-def renamed(values):
+def renamed(values, tool):
     """Settings of the version before by the names that they have now."""
-    now = dict(values)
+    followed = {
+        name: of(values[other]) for name, (other, of) in tool.settings.follows.items() if other in values
+    }
+    now = followed | values
+    if "use_count" in tool.settings.former and "use_count" in now:
+        now["mode"] = "COUNT" if now.pop("use_count") else "AUTO"
     if "reduce" in now:
         # The default of the ratio was another one.
         now |= {"finish": "LOW_POLY" if now["reduce"] else "KEEP"} | {"reduce_ratio": 0.25} | now
@@ -121,13 +135,10 @@ def test_flags_of_the_version_before_mean_what_they_meant():
     for case in cases:
         arguments = case["arguments"]
         expected = {name: made.default for name, made in BY_COMMAND[arguments[0]].settings.declared.items()}
-        expected |= renamed(case["settings"])
+        expected |= renamed(case["settings"], BY_COMMAND[arguments[0]])
         got = settings_of(*arguments)
-        if "--mark-angle" in arguments:
-            # The angle came to be found from the shape unless one is given.
-            expected["use_mark_angle"] = True
         assert {name: plain(value) for name, value in got.items()} == {
-            name: sorted(value) if isinstance(value, set) else value for name, value in expected.items()
+            name: plain(value) for name, value in expected.items()
         }, arguments
 
 
@@ -174,7 +185,7 @@ def test_a_scene_of_the_version_before_keeps_its_settings():
     del saved["modes"]["coupling"]
     for key, values in saved.items():
         panel = panel_of(by_scene[key])
-        for name, value in renamed(values).items():
+        for name, value in renamed(values, by_scene[key]).items():
             assert plain(getattr(panel, name)) == value, (key, name)
 
 
@@ -209,6 +220,7 @@ def test_presets_of_the_version_before_load(tool, user_presets):
     assert bpy.ops.script.execute_preset(filepath=str(path), menu_idname=menu) == {"FINISHED"}
     panel = panel_of(tool)
     stored = dict(re.findall(r"^settings\.(\w+) = (.+)$", text, re.MULTILINE))
+    read = {name: eval(value) for name, value in stored.items()}
     assert set(stored) <= set(presets.stored_names(tool)) | set(tool.settings.former)
     for name, value in stored.items():
         assert repr(getattr(panel, name)) == value or getattr(panel, name) == eval(value)
@@ -217,6 +229,10 @@ def test_presets_of_the_version_before_load(tool, user_presets):
         former.take_all()
         assert (panel.finish, panel.reduce_ratio) == ("LOW_POLY", 0.1875)
         assert not panel.is_property_set("reduce")
+    former.take_all()
+    for name, (other, of) in tool.settings.follows.items():
+        if other in read and name not in read:
+            assert plain(getattr(panel, name)) == of(read[other]), name
 
 
 @pytest.mark.parametrize("tool", WITH_PRESETS, ids=[tool.key for tool in WITH_PRESETS])
@@ -319,6 +335,10 @@ def words_of_default(setting):
     value = setting.default
     if isinstance(value, bool):
         return {"on" if value else "off"}
+    if setting.optional is False:
+        return {"off"}
+    if setting.optional:
+        return {f"on, {flags.default_text(setting.but(implies={}))}"}
     if isinstance(value, set):
         return {", ".join(label for identifier, label, _ in setting.items if identifier in value)}
     if setting.items:
@@ -350,3 +370,54 @@ def test_the_defaults_in_the_tables_of_the_manual_are_those_of_the_settings(page
         assert any(default in words_of_default(made) for made in named), (label, default)
         found += 1
     assert found > 2
+
+
+OPTIONAL = [
+    (tool, name)
+    for tool in registry.TOOLS
+    for name, setting in tool.settings.declared.items()
+    if setting.optional is not None
+]
+
+
+@pytest.mark.parametrize(("tool", "name"), OPTIONAL, ids=[f"{tool.key}-{name}" for tool, name in OPTIONAL])
+def test_an_optional_number_has_a_check_box_in_its_row(tool, name):
+    setting, box = tool.settings.declared[name], tool.settings.declared[switch_of(name)]
+    assert (box.label, box.section) == (setting.label, setting.section)
+    assert box.default is setting.optional
+    assert setting.default > 0
+    layout = layout_kit.Layout()
+    rows.draw_setting(layout, defaults_of(tool.settings), name, setting, None)
+    assert layout.rows == [switch_of(name), name]
+    assert chosen(defaults_of(tool.settings), name) == (setting.default if setting.optional else None)
+    assert chosen(defaults_of(tool.settings, **{name: 3}), name) == 3
+    assert chosen(defaults_of(tool.settings, **{name: 0}), name) is None
+    assert chosen(defaults_of(tool.settings, **{name: 3, switch_of(name): False}), name) is None
+
+
+@pytest.mark.parametrize(("tool", "name"), OPTIONAL, ids=[f"{tool.key}-{name}" for tool, name in OPTIONAL])
+def test_a_number_that_is_given_to_a_panel_counts_until_its_check_box_says_otherwise(tool, name):
+    panel = panel_of(tool)
+    for value, counts in ((1, True), (0, False)):
+        for each in (name, switch_of(name)):
+            panel.property_unset(each)
+        assert not former.is_due(panel, tool.settings)
+        setattr(panel, name, value)
+        assert former.is_due(panel, tool.settings)
+        former.take_all()
+        assert getattr(panel, switch_of(name)) is counts
+        assert not former.is_due(panel, tool.settings)
+    setattr(panel, switch_of(name), False)
+    setattr(panel, name, 1)
+    former.take_all()
+    assert getattr(panel, switch_of(name)) is False
+
+
+def test_the_angle_of_segments_is_what_border_cost_stood_for():
+    options = segment_options(defaults_of(SegmentSettings))
+    assert options["length_weight"] == 0.5
+    for weight in (0.2, 0.5, 1.2):
+        settings = defaults_of(SegmentSettings, length_weight=weight)
+        assert segment_options(settings)["length_weight"] == pytest.approx(weight, abs=1e-6)
+        settings.angle, settings.source = 1.0, "ATTRIBUTE"
+        assert segment_options(settings)["length_weight"] == weight

@@ -1,4 +1,4 @@
-"""The optional last steps: volume, ridge marks, fewer triangles."""
+"""What is made of a result: volume, ridge marks, fewer triangles."""
 
 import addon_kit as kit
 import bpy
