@@ -23,6 +23,8 @@ REFUSED = {
     # the glTF exporter crashes on the next file.
     "context.tool_settings": "reads the tool settings of the context instead of those of the scene",
 }
+ALLOWED = {("overnight/", "subprocess")}
+"""The batch command starts Blender itself, where it is asked for processes side by side."""
 
 
 @pytest.fixture(scope="module")
@@ -117,7 +119,8 @@ def test_every_source_names_its_license_and_breaks_no_rule(package):
         text = package.read(name).decode()
         assert text.startswith("# SPDX-License-Identifier: GPL-3.0-or-later"), name
         for word, why in REFUSED.items():
-            assert word not in text, f"{name} {why}"
+            if not any(name.startswith(folder) and word == known for folder, known in ALLOWED):
+                assert word not in text, f"{name} {why}"
 
 
 def test_the_website_is_the_repository_that_built_it(manifest):
