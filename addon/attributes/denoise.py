@@ -11,11 +11,10 @@ from ..blender.attribute_io import PointValues
 from ..blender.refusals import RefusedError
 from ..blender.selection import Needs
 from ..framework.job import Task
-from ..framework.run import counted
 from ..framework.sources import as_argument, varying_means
 from ..framework.surface import Surface
 from .attribute_run import AttributePart, AttributeRun, Solved, energy_on
-from .jumps import cut, jumping
+from .jumps import cut, jumping, note_on
 from .settings import denoise_fidelity_of
 
 
@@ -43,12 +42,7 @@ class Denoising(AttributeRun):
                 raise RefusedError(f'"{source.name}" jumps everywhere on "{obj.name}": raise Jump')
             surface, joined = cut(surface, across)
             free &= joined
-            count = int(across[: weld.n_own].sum())
-            notes.append(
-                f"its values jump across {counted(count, 'triangle')}, and were kept apart there"
-                if count
-                else "its values jump nowhere (lower Jump to keep them apart)"
-            )
+            notes.append(note_on(across[: weld.n_own]))
         options = self.options
         if not free.all():
             options["fixed"] = ~free

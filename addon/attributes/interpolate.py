@@ -16,6 +16,7 @@ from ..framework.job import Task
 from ..framework.sources import as_argument, refuse_mixed, refuse_non_finite, varying
 from ..framework.surface import Surface
 from .attribute_run import AttributePart, AttributeRun, Solved, energy_on
+from .jumps import cut, jumping, note_on
 
 
 class Interpolation(AttributeRun):
@@ -37,11 +38,6 @@ class Interpolation(AttributeRun):
         weld = surface.weld
         count = weld.sum_of(known)
         given = count > 0
-        part = connected_parts(weld.triangles, len(weld.first))
-        idle = ~np.isin(part, part[given])
-        computed = ~given & ~idle
-        if not computed.any():
-            raise RefusedError(f'Every value of "{source.name}" of "{obj.name}" is known: {self._cure(True)}')
         columns = varying(source.values[known])
         if not columns.any():
             # One value everywhere is a problem like any other, and the wheel says how exact its answer is.
@@ -50,6 +46,20 @@ class Interpolation(AttributeRun):
         kept = np.where(known[:, None], source.values[:, columns], 0.0)
         sums = np.stack([weld.sum_of(column) for column in kept.T], axis=1)
         values = sums / np.maximum(count, 1.0)[:, None]
+        notes = []
+        triangles = weld.triangles
+        if self.settings.use_jumps:
+            across = jumping(triangles, values, self.settings.jump, given)
+            if across.all():
+                raise RefusedError(f'"{source.name}" jumps everywhere on "{obj.name}": raise Jump')
+            triangles = triangles[~across]
+            surface, _ = cut(surface, across)
+            notes.append(note_on(across[: weld.n_own]))
+        part = connected_parts(triangles, len(weld.first))
+        idle = ~np.isin(part, part[given])
+        computed = ~given & ~idle
+        if not computed.any():
+            raise RefusedError(f'Every value of "{source.name}" of "{obj.name}" is known: {self._cure(True)}')
         indices = np.flatnonzero(given | idle)
         call = partial(_interpolated, surface, indices, values[indices], self.options)
         made = AttributePart(
@@ -62,6 +72,7 @@ class Interpolation(AttributeRun):
             columns=columns,
             constants=source.values[np.argmax(known)],
         )
+        made.warnings += notes
         n_idle = len(np.unique(part[idle & np.isin(np.arange(len(part)), weld.triangles[: weld.n_own])]))
         if n_idle:
             made.warnings.append(f"{n_idle} connected parts without a known value stay as they are")

@@ -199,7 +199,7 @@ class JumpSettings(Settings):
     use_jumps: boolean(
         "Keep Jumps",
         "Keep values apart where they jump from one vertex to the next, as colors do at the border of what "
-        "was painted. Otherwise a jump is a steep slope, and is leveled",
+        "was painted. Otherwise a jump is a steep slope like any other",
         flag=None,
     )
     jump: factor(
@@ -238,7 +238,9 @@ class KnownSettings(AttributeName):
     )
 
 
-class InterpolateSettings(KnownSettings, ResultSettings, DisplaySettings, CoupledSettings, ExpertSettings):
+class InterpolateSettings(
+    KnownSettings, JumpSettings, ResultSettings, DisplaySettings, CoupledSettings, ExpertSettings
+):
     """The settings of interpolating."""
 
 

@@ -1,4 +1,4 @@
-"""Denoising values that jump: both sides stay apart, each as if the other was not there."""
+"""Denoising and interpolating values that jump: both sides stay apart, each as if the other was not there."""
 
 import addon_kit as kit
 import bpy
@@ -103,3 +103,57 @@ def test_jumps_everywhere_and_nowhere_are_said():
     assert "jump nowhere" in job.last_summary()[0]["warnings"][0]
     with pytest.raises(RuntimeError, match="jumps everywhere"):
         denoised(obj, use_jumps=True, jump=0.001)
+
+
+def interpolated(obj, unknown, **settings):
+    kit.select_only(obj, unknown)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    given = {"attribute": "Paint", "display": "NONE", "known": "UNSELECTED"} | settings
+    assert bpy.ops.ridgeform.interpolate_attribute(**given) == {"FINISHED"}
+    return attribute_io.read_values(obj, "Paint_interpolated").values
+
+
+@pytest.mark.parametrize("energy", ["l1_hessian", "l2_curved_hessian"])
+def test_what_is_filled_in_beside_a_jump_does_not_see_the_other_side(energy):
+    obj = sheet()
+    x, y, _ = kit.coordinates(obj).astype(float).T
+    side = x > 0.52
+    truth = np.where(side, 1.5 + 0.3 * y, 0.4 * y)[:, None]
+    paint(obj, truth, 0.0)
+    # One row of vertices is left of the right side, beside the jump.
+    hole = (x > 0.56) & (x < 0.8) & (np.abs(y - 0.5) < 0.2)
+    triangles = mesh_io.triangles(obj.data)
+    left = triangles[(side[triangles] == side[triangles][:, :1]).all(axis=1)]
+    known = np.flatnonzero(~hole)
+    mesh = ridgeform.Mesh(kit.coordinates(obj).astype(float), left)
+    noted = attribute_io.read_values(obj, "Paint").values[:, 0].astype(float)
+    options = {"energy": energy, "tolerance": float(np.float32(0.001))}
+    wanted = ridgeform.interpolate(mesh, known, noted[known], **options).values
+    values = interpolated(obj, hole, energy=energy, use_jumps=True)
+    assert np.array_equal(values[:, 0], wanted.astype(np.float32))
+    assert error(values[hole], truth[hole]) < 0.01
+    assert error(values[hole], truth[hole]) < 0.5 * error(
+        interpolated(obj, hole, energy=energy)[hole], truth[hole]
+    )
+
+
+def test_a_gap_across_a_jump_is_filled_from_both_sides():
+    obj = sheet()
+    x, y, _ = kit.coordinates(obj).astype(float).T
+    paint(obj, (x > 0.52).astype(float)[:, None], 0.0)
+    hole = np.hypot(x - 0.5, y - 0.5) < 0.15
+    values = interpolated(obj, hole, use_jumps=True)
+    assert np.isfinite(values).all()
+    assert values.min() > -0.1 and values.max() < 1.1
+    assert np.array_equal(values[~hole], attribute_io.read_values(obj, "Paint").values[~hole])
+
+
+def test_only_known_values_jump():
+    obj = sheet()
+    x, _, _ = kit.coordinates(obj).astype(float).T
+    truth = x[:, None].copy()
+    hole = np.hypot(*(kit.coordinates(obj)[:, :2].astype(float) - 0.5).T) < 0.2
+    truth[hole] = np.nan
+    paint(obj, truth, 0.0)
+    interpolated(obj, hole, use_jumps=True)
+    assert "jump nowhere" in job.last_summary()[0]["warnings"][0]
