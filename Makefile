@@ -2,7 +2,7 @@
 PYTHON ?= python3
 RUN = @$(PYTHON) scripts/setup_env.py
 
-.PHONY: help demo test test-all-blenders lint workflows notices advisories bench bench-holes bench-segments \
+.PHONY: help demo test test-all-blenders test-dask lint workflows notices advisories bench bench-holes bench-segments \
 	bench-memory bench-limits bench-growth bench-latency bench-files bench-parts fuzz fuzz-sequences \
 	extension wheel release sizes docs fixtures pictures gallery
 
@@ -10,6 +10,7 @@ help:
 	@echo "make demo        stylize a real scan in Blender, without a window: out/demo.png, out/demo.blend"
 	@echo "make test        all tests: Rust, the wheel, the extension in every Blender found"
 	@echo "make test-all-blenders  the extension in Blender 4.2, 4.5, 5.0, and 5.2; ZIP=file takes a built one"
+	@echo "make test-dask   batches on a Dask cluster of two workers, one of which is killed"
 	@echo "make lint        formatting and lints of Rust and Python"
 	@echo "make notices     write the licenses of all dependencies again: rust/THIRD-PARTY-NOTICES.txt"
 	@echo "make advisories  ask the database of known vulnerabilities about the dependencies; needs the network"
@@ -44,6 +45,9 @@ test:
 
 test-all-blenders:
 	$(RUN) scripts/test_all_blenders.py $(if $(ZIP),--zip $(ZIP)) $(ARGS)
+
+test-dask:
+	$(RUN) scripts/test_dask.py $(ARGS)
 
 lint:
 	$(RUN) scripts/lint.py

@@ -103,6 +103,7 @@ def _add_files(child: argparse.ArgumentParser) -> None:
         metavar="SECONDS",
         help="Give a file up that takes longer; in a process of its own, as with --jobs 1",
     )
+    add("--dask", metavar="ADDRESS", help="Work on the Dask cluster with this scheduler: tcp://host:8786")
     add("--resume", action="store_true", help="Do only what a run before with the same options has not done")
     add(
         "--report",

@@ -13,7 +13,7 @@ import ridgeform
 
 from ..framework.console import ProgressBar
 from ..framework.targets import Target, assign
-from . import report, worker
+from . import dask_cluster, report, worker
 from .journal import Journal
 from .one_file import Plan, Step, do_file
 from .pool import Pool, StartError, share_of_memory
@@ -40,6 +40,8 @@ def drive(
         raise RefusalError("--memory is divided among processes: give --jobs as well")
     if options.memory is not None and not worker.can_limit_memory():
         raise RefusalError("--memory can be kept to on Linux only: choose fewer --jobs instead")
+    if options.dask is not None and options.jobs is not None:
+        raise RefusalError("--dask has workers of its own: leave --jobs out")
     targets, plan = _planned(options, steps)
     if _needs_journal(options):
         plan = _with_journal(plan, options)
@@ -49,7 +51,7 @@ def drive(
             for index, record in found:
                 records[index] = record
                 emit(record)
-    except StartError as error:
+    except (StartError, dask_cluster.DaskError) as error:
         print(f"ridgeform: error: {error}", file=sys.stderr)
     finally:
         said = _summarize(options, targets, [records[index] for index in sorted(records)], plan, steps)
@@ -74,7 +76,7 @@ def _needs_journal(options: argparse.Namespace) -> bool:
 
 
 def _wants_journal(options: argparse.Namespace) -> bool:
-    return bool(options.resume or options.jobs or options.timeout or options.report)
+    return bool(options.resume or options.jobs or options.dask or options.timeout or options.report)
 
 
 def _journal(options: argparse.Namespace, steps: Sequence[Step]) -> Journal:
@@ -111,7 +113,7 @@ def _plan_with(plan: Plan, journal: Journal) -> Plan:
 def _all_records(
     targets: Sequence[Target], plan: Plan, options: argparse.Namespace, arguments: Sequence[str]
 ) -> Records:
-    if options.jobs is None and options.timeout is None:
+    if options.jobs is None and options.timeout is None and options.dask is None:
         for index, target in enumerate(targets):
             with ProgressBar(target.source.name) as bar:
                 record = do_file(target, plan, bar.show)
@@ -137,11 +139,16 @@ def _side_by_side(
     arguments: Sequence[str],
     left: Sequence[int],
 ) -> Records:
-    jobs = min(options.jobs or 1, len(left))
-    total = None if options.memory is None else int(1e9 * options.memory)
-    memory = share_of_memory(total, jobs)
-    pool = Pool(targets, plan, arguments, jobs=jobs, timeout=options.timeout, memory=memory)
-    with ProgressBar(f"{len(left)} files") as bar, contextlib.closing(pool.run(left)) as found:
+    if options.dask is not None:
+        made = dask_cluster.run(
+            targets, plan, arguments, indices=left, address=options.dask, timeout=options.timeout
+        )
+    else:
+        jobs = min(options.jobs or 1, len(left))
+        total = None if options.memory is None else int(1e9 * options.memory)
+        memory = share_of_memory(total, jobs)
+        made = Pool(targets, plan, arguments, jobs=jobs, timeout=options.timeout, memory=memory).run(left)
+    with ProgressBar(f"{len(left)} files") as bar, contextlib.closing(made) as found:
         for done, (index, record) in enumerate(found, 1):
             bar.show(done / len(left))
             yield index, record

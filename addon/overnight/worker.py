@@ -1,25 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A Blender process that works for another one: the same command line, started with an address to report to.
+"""A Blender process that works for another one: the same command line, started with an order.
 
-It has the plan and all targets from the command line, gets one number of a file after the other, and answers
-with records. When the other process is gone it stops before anything else is put in place.
+It has the plan and all targets from the command line, reads one number of a file after the other, and writes
+records. When the other process is gone it stops before anything else is put in place.
 """
 
 import json
 import os
-import subprocess
+import queue
 import sys
+import threading
 from collections.abc import Sequence
 from importlib import import_module
-from multiprocessing.connection import Client, Connection
 
 import bpy
 
 from ..framework.targets import Target
+from .helper import MARK, VARIABLE
 from .one_file import Plan, do_file
 
-VARIABLE = "RIDGEFORM_WORKER"
-"""The environment variable with the address, in JSON."""
 PACKAGE = __package__.rpartition(".")[0]
 MODULE = """import bpy, runpy, sys
 sys.path += [path for path in {paths!r} if path not in sys.path]
@@ -32,22 +31,17 @@ class AbandonedError(BaseException):
     """The process that a worker works for is gone, or has given up on it. No `Exception`, to end it all."""
 
 
-def start(arguments: Sequence[str], address: dict[str, object], threads: int) -> subprocess.Popen:
-    """Start a worker with a command line; `address` as `serve` wants it. `OSError`."""
-    environment = os.environ | {
-        VARIABLE: json.dumps(address),
-        "RAYON_NUM_THREADS": str(threads),
-    }
+def command(arguments: Sequence[str]) -> list[str]:
+    """How a worker with a command line is started, as this process was."""
     if bpy.app.binary_path:
-        command = [bpy.app.binary_path, "--command", "ridgeform", *arguments]
-    else:
-        paths = [os.path.abspath(path) for path in sys.path]
-        command = [sys.executable, "-c", MODULE.format(paths=paths, name=__name__), *arguments]
-    # In a group of its own, so that Ctrl-C reaches only who can tell it what to do.
-    apart = (
-        {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP} if os.name == "nt" else {"process_group": 0}
-    )
-    return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=2, env=environment, **apart)
+        return [bpy.app.binary_path, "--command", "ridgeform", *arguments]
+    paths = [os.path.abspath(path) for path in sys.path]
+    return [sys.executable, "-c", MODULE.format(paths=paths, name=__name__), *arguments]
+
+
+def order(plan: Plan, threads: int, memory: int | None) -> dict[str, object]:
+    """What a worker is told: how many threads and bytes it may take, and what plan it must find."""
+    return {"plan": plan.journal.key, "threads": threads, "memory": memory}
 
 
 def is_worker() -> bool:
@@ -59,31 +53,38 @@ def serve(targets: Sequence[Target], plan: Plan) -> int:
     """Do what the other process asks for, until it is gone or asks for no more."""
     given = json.loads(os.environ[VARIABLE])
     if plan.journal.key != given["plan"]:
-        print("ridgeform: the recipe was changed while the batch was running", file=sys.stderr)
+        print("ridgeform: not what the batch began with: was its recipe changed?", file=sys.stderr)
         return 1
     limit_memory(given["memory"])
-    with Client(given["address"], authkey=bytes.fromhex(given["key"])) as boss:
-        boss.send_bytes(json.dumps(given["number"]).encode())
+    # What Blender prints must not get among the messages.
+    sys.stdout.flush()
+    stream = os.fdopen(os.dup(1), "wb", buffering=0)
+    os.dup2(2, 1)
+    asked: queue.Queue[int | None] = queue.Queue()
+    gone = threading.Event()
 
-        def watch(_fraction: float) -> None:
-            if _is_closed(boss):
-                raise AbandonedError
+    def listen() -> None:
+        with os.fdopen(os.dup(0), "rb") as orders:
+            for line in orders:
+                asked.put(int(line))
+        gone.set()
+        asked.put(None)
 
-        try:
-            while True:
-                index = json.loads(boss.recv_bytes())
-                record = do_file(targets[index], plan, watch)
-                boss.send_bytes(json.dumps(record).encode())
-        except (EOFError, OSError, AbandonedError):
-            return 0
+    def watch(_fraction: float) -> None:
+        if gone.is_set():
+            raise AbandonedError
 
+    def say(message: object) -> None:
+        stream.write(MARK + json.dumps(message).encode() + b"\n")
 
-def _is_closed(boss: Connection) -> bool:
-    """Whether the other end is closed: it says nothing while a file is worked on."""
+    threading.Thread(target=listen, daemon=True, name="ridgeform orders").start()
     try:
-        return boss.poll(0)
-    except OSError:
-        return True
+        say(True)
+        while (index := asked.get()) is not None:
+            say(do_file(targets[index], plan, watch))
+    except (OSError, AbandonedError):
+        pass
+    return 0
 
 
 def limit_memory(more: int | None) -> None:

@@ -51,4 +51,10 @@ def until(condition, seconds=120.0):
 def state_of(folder):
     """What tells whether a file was written again, by its name: nothing may be left over beside them."""
     assert [path.name for path in folder.iterdir() if path.name.startswith(".")] == []
-    return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns) for path in folder.iterdir()}
+    return inodes(folder)
+
+
+def inodes(folder):
+    """The same while files are being written."""
+    found = (path for path in folder.iterdir() if not path.name.startswith("."))
+    return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns) for path in found}

@@ -16,7 +16,7 @@ import bpy
 import numpy as np
 import pytest
 from bl_ext.user_default.ridgeform.framework import batch, files
-from bl_ext.user_default.ridgeform.overnight import journal, locks, pool, thumbnails
+from bl_ext.user_default.ridgeform.overnight import helper, journal, locks, pool, thumbnails
 from known_shapes import shapes
 
 
@@ -39,7 +39,7 @@ def test_a_process_that_crashes_or_hangs_costs_its_file_only(tmp_path, capfd, mo
     look, ended = pool.Pool._look, {}
 
     def disturbed(self):
-        for one in list(self._workers.values()):
+        for one in list(self._helpers):
             if one.index is not None and len(ended) < 2 and one.process.pid not in ended:
                 kind = signal.SIGSTOP if ended else signal.SIGKILL
                 os.kill(one.process.pid, kind)
@@ -50,7 +50,7 @@ def test_a_process_that_crashes_or_hangs_costs_its_file_only(tmp_path, capfd, mo
         yield from look(self)
 
     monkeypatch.setattr(pool.Pool, "_look", disturbed)
-    monkeypatch.setattr(pool, "GRACE_SECONDS", 0.2)
+    monkeypatch.setattr(helper.Helper.end, "__defaults__", (0.2,))
     page = tmp_path / "page.html"
     options = (*batch_kit.STEPS, "--jobs", 2, "--timeout", 500, "--report", page)
     options += ("--report", tmp_path / "all.json", "--report", tmp_path / "short.txt")
@@ -107,7 +107,7 @@ def test_ctrl_c_ends_all_processes_and_leaves_what_resumes(tmp_path, capfd, monk
     look, seen = pool.Pool._look, []
 
     def interrupted(self):
-        seen[:] = [one.process.pid for one in self._workers.values()]
+        seen[:] = [one.process.pid for one in self._helpers]
         if entries(out):
             raise KeyboardInterrupt
         yield from look(self)

@@ -297,7 +297,17 @@ def pages():
 
 def test_the_manual_names_every_setting_and_every_flag():
     manual = "".join(pages().values())
-    options = {"--output", "--format", "--json", "--jobs", "--memory", "--timeout", "--resume", "--report"}
+    options = {
+        "--output",
+        "--format",
+        "--json",
+        "--jobs",
+        "--memory",
+        "--timeout",
+        "--resume",
+        "--report",
+        "--dask",
+    }
     for tool in registry.TOOLS:
         for name, setting in tool.settings.declared.items():
             assert setting.label in manual, f"the setting {setting.label} is not in the manual"

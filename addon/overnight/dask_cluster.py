@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files on the workers of a Dask cluster, each of which keeps a Blender process of its own.
+
+Dask hands a file of a worker that is gone to another one. The journal, in a folder that all see, makes sure
+that it is not done twice.
+"""
+
+import os
+import secrets
+import sys
+from collections.abc import Iterator, Sequence
+
+from ..framework.targets import Target
+from . import helper, worker
+from .one_file import Plan
+from .pool import lost
+
+CONNECT_SECONDS = 30.0
+
+
+class DaskError(Exception):
+    """A cluster that cannot be used; the message says why."""
+
+
+def run(
+    targets: Sequence[Target],
+    plan: Plan,
+    arguments: Sequence[str],
+    *,
+    indices: Sequence[int],
+    address: str,
+    timeout: float | None,
+) -> Iterator[tuple[int, dict[str, object]]]:
+    """The records of files as they are done, by the cluster of a scheduler. `DaskError`.
+
+    The workers must find Blender, or Python with `bpy`, and all files at the same paths as this process.
+    """
+    try:
+        import cloudpickle  # noqa: PLC0415
+        from distributed import Client, as_completed  # noqa: PLC0415
+    except ImportError as error:
+        raise DaskError(
+            f"--dask needs the package distributed in the Python of {sys.executable}: {error}"
+        ) from error
+    # The workers have neither `bpy` nor the add-on.
+    cloudpickle.register_pickle_by_value(helper)
+    command = worker.command(arguments)
+    # A worker takes as many files at once as it has threads.
+    order = worker.order(plan, 1, None)
+    try:
+        client = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise DaskError(f"there is no Dask scheduler at {address}: {error}") from error
+    try:
+        run_of = secrets.token_hex(8)
+        futures = {
+            client.submit(
+                helper.in_dask,
+                command,
+                order,
+                os.getcwd(),
+                index,
+                timeout,
+                key=f"ridgeform-{run_of}-{index}",
+                pure=False,
+            ): index
+            for index in indices
+        }
+        for future in as_completed(list(futures)):
+            index = futures.pop(future)
+            error = future.exception()
+            answer = {"lost": f"Dask: {error}"} if error is not None else future.result()
+            # Dask keeps results for as long as somebody has their future.
+            future.release()
+            if "lost" in answer:
+                answer = lost(targets[index], plan, str(answer["lost"]))
+            yield index, answer
+    finally:
+        client.cancel(list(futures), force=True)
+        client.run(helper.end_in_dask)
+        client.close()
+        cloudpickle.unregister_pickle_by_value(helper)

@@ -1,0 +1,27 @@
+"""The tests of batches on a Dask cluster, in an environment of their own: distributed is optional.
+
+python scripts/setup_env.py scripts/test_dask.py [PYTEST ARGUMENTS]
+"""
+
+import sys
+
+from build_extension import build_extension, extension_here
+from setup_env import PYTHONS, environment_python, environments, fill_environment
+from workspace import run
+
+
+def main(arguments: list[str]) -> None:
+    """Make the environment for the oldest Python here, and run the tests in it."""
+    version = next(iter(environments()))
+    name = environment_python(version).parents[1].name
+    python = fill_environment("dask", sys.executable, [name, "test", "dask"], "distributed")
+    extension = extension_here(build_extension())
+    run(
+        [python, "-m", "pytest", "-q", *arguments, "tests/blender/test_dask.py"],
+        f"Dask with Blender {PYTHONS[version]}",
+        {"RIDGEFORM_EXTENSION": str(extension), "PYTHONPATH": ""},
+    )
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
