@@ -12,6 +12,7 @@ import numpy as np
 import ridgeform
 
 from ..blender import mesh_io
+from ..blender.mesh_layers import numbered_edges
 from ..blender.welding import Weld
 from ..framework.settings import chosen
 from . import reduction
@@ -22,6 +23,9 @@ KEY_NAME = "Stylized"
 FEW_FLAT = 0.1
 """With less than this part of its area in flat faces a shape has hardly any facets: regular spheres and tori
 end at 0.00 to 0.09, a head of 500 vertices at 0.07, everything else that was tried at 0.16 and above."""
+
+ONE_FACET = np.radians(2.0)
+"""Faces that meet at less than this angle are one facet; the report counts facets so."""
 
 
 @dataclass
@@ -62,7 +66,7 @@ class Finished:
     notes: list[str] = field(default_factory=list)
     reduced: reduction.Reduced | None = None
     ridges: np.ndarray | None = None
-    """The edges (k,) bool to be marked, of a reduced mesh in the order of `Edges.of_triangles`."""
+    """The edges (k,) bool to be marked, of a reduced mesh in the order of `numbered_edges`."""
 
 
 def finished(
@@ -90,10 +94,20 @@ def finished(
 
 
 def _ridges(source: Source, made: Finished, least: float | None) -> np.ndarray:
-    if made.reduced is not None:
-        points = made.reduced.points.astype(np.float32)
-        return Edges.of_triangles(made.reduced.faces).ridges(points, least)
-    return source.edges.ridges(made.coordinates, least) & source.free[source.edges.ends].all(axis=1)
+    if made.reduced is None:
+        return source.edges.ridges(made.coordinates, least) & source.free[source.edges.ends].all(axis=1)
+    faces, points = made.reduced.faces, made.reduced.points.astype(np.float32)
+    ends, edge = numbered_edges(faces)
+    edges = Edges(ends, (np.arange(0, faces.size, 3), faces.ravel(), edge))
+    # What is left of a facet is a few triangles, and nothing between facets is round.
+    ridges = edges.ridges(points, ONE_FACET if least is None else least)
+    held = np.isin(_rows(points), _rows(made.coordinates[~source.free]))
+    return ridges & ~held[ends].any(axis=1)
+
+
+def _rows(points: np.ndarray) -> np.ndarray:
+    """Points (n, 3) float32 as single values (n,), to be compared bit by bit."""
+    return np.ascontiguousarray(points).view("V12").ravel()
 
 
 def write(obj: bpy.types.Object, source: Source, made: Finished, settings: object) -> None:

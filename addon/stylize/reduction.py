@@ -138,7 +138,7 @@ def write(obj: bpy.types.Object, reduced: Reduced) -> np.ndarray:
 
 
 def _losses(mesh: bpy.types.Mesh, triangles: np.ndarray) -> list[str]:
-    loose = len(mesh.vertices) - len(np.unique(triangles))
+    loose = int((np.bincount(triangles.ravel(), minlength=len(mesh.vertices)) == 0).sum())
     facts = (
         (len(mesh.polygons) != len(triangles), "quads and n-gons became triangles"),
         (loose > 0, f"vertices without a face were dropped ({loose})"),

@@ -13,15 +13,6 @@ class Edges:
     ends: np.ndarray
     corners: tuple[np.ndarray, np.ndarray, np.ndarray]
 
-    @classmethod
-    def of_triangles(cls, faces: np.ndarray) -> "Edges":
-        """Those of triangles (q, 3), each once and in order."""
-        ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-        size = int(ends.max(initial=0)) + 1
-        keys, edge = np.unique(ends.astype(np.int64) @ [size, 1], return_inverse=True)
-        ends = np.stack(np.divmod(keys, size), axis=1).astype(np.int32)
-        return cls(ends, (np.arange(0, faces.size, 3), faces.ravel(), edge.reshape(-1)))
-
     def ridges(self, coordinates: np.ndarray, least: float | None = None) -> np.ndarray:
         """Which edges (k,) bool are bent by at least an angle (radians), or what parts them from the others.
 

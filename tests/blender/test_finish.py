@@ -281,3 +281,53 @@ def test_reduce_is_left_with_a_reason():
     bpy.ops.ridgeform.stylize(steps=1, finish="LOW_POLY")
     assert any("has shape keys" in note for note in notes())
     assert len(obj.data.polygons) == faces
+
+
+def sharp_and_angles(obj):
+    ends = mesh_io.edges(obj.data)
+    angles = edge_angles(kit.coordinates(obj), mesh_io.face_corners(obj.data), len(ends))
+    sharp = np.zeros(len(ends), bool)
+    attribute = obj.data.attributes.get("sharp_edge")
+    if attribute is not None:
+        attribute.data.foreach_get("value", sharp)
+    return ends, sharp, angles
+
+
+@pytest.mark.parametrize("smooth", [True, False])
+@pytest.mark.parametrize("kind", ["sphere", "torus", "box"])
+def test_every_facet_of_a_reduced_mesh_is_seen(kind, smooth):
+    if kind == "box":
+        obj = kit.bumpy_box()
+    else:
+        add = {"sphere": bpy.ops.mesh.primitive_uv_sphere_add, "torus": bpy.ops.mesh.primitive_torus_add}
+        add[kind]()
+        obj = bpy.context.object
+    obj.data.polygons.foreach_set("use_smooth", [smooth] * len(obj.data.polygons))
+    bpy.ops.ridgeform.stylize(steps=2, finish="LOW_POLY", reduce_ratio=0.4)
+    _, sharp, angles = sharp_and_angles(obj)
+    assert sharp[angles >= np.radians(2.0)].all()
+    assert not sharp[(angles >= 0) & (angles < np.radians(2.0))].any()
+
+
+def test_what_a_mask_holds_stays_smooth_where_the_rest_is_reduced():
+    bpy.ops.mesh.primitive_uv_sphere_add()
+    obj = bpy.context.object
+    obj.data.polygons.foreach_set("use_smooth", [True] * len(obj.data.polygons))
+    group = obj.vertex_groups.new(name="mask")
+    group.add(np.flatnonzero(kit.coordinates(obj)[:, 2] > 0).tolist(), 1.0, "REPLACE")
+    before = kit.coordinates(obj)
+    bpy.ops.ridgeform.stylize(steps=2, finish="LOW_POLY", reduce_ratio=0.6, strength_group="mask")
+    ends, sharp, angles = sharp_and_angles(obj)
+    places = {point.tobytes() for point in before[before[:, 2] <= 0]}
+    held = np.array([point.tobytes() in places for point in kit.coordinates(obj)])
+    assert held.sum() == len(places)
+    inside = ~held[ends].any(axis=1)
+    assert np.array_equal(sharp, inside & (angles >= np.radians(2.0)))
+
+
+@pytest.mark.parametrize("finish", ["KEEP", "LOW_POLY"])
+def test_a_ridge_angle_that_is_set_counts_for_each_finish(finish):
+    obj = kit.bumpy_box()
+    bpy.ops.ridgeform.stylize(steps=2, finish=finish, reduce_ratio=0.5, mark_angle=np.radians(40.0))
+    _, sharp, angles = sharp_and_angles(obj)
+    assert np.array_equal(sharp, angles >= np.float32(np.radians(40.0)))
