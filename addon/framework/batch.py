@@ -105,6 +105,7 @@ def _add_files(child: argparse.ArgumentParser) -> None:
     )
     add("--dask", metavar="ADDRESS", help="Work on the Dask cluster with this scheduler: tcp://host:8786")
     add("--resume", action="store_true", help="Do only what a run before with the same options has not done")
+    add("--pictures", action="store_true", help="Keep pictures in the journal for the page of a later run")
     add(
         "--report",
         type=_report,

@@ -67,7 +67,7 @@ def serve(options: argparse.Namespace, steps: Sequence[Step]) -> int:
 
 def _planned(options: argparse.Namespace, steps: Sequence[Step]) -> tuple[list[Target], Plan]:
     targets, ledger = assign(options.files, options.output, options.format)
-    pictures = any(path.suffix.lower() == ".html" for path in options.report)
+    pictures = options.pictures or any(path.suffix.lower() == ".html" for path in options.report)
     return targets, Plan(steps, ledger, None, pictures)
 
 
@@ -76,7 +76,14 @@ def _needs_journal(options: argparse.Namespace) -> bool:
 
 
 def _wants_journal(options: argparse.Namespace) -> bool:
-    return bool(options.resume or options.jobs or options.dask or options.timeout or options.report)
+    return bool(
+        options.resume
+        or options.jobs
+        or options.dask
+        or options.pictures
+        or options.timeout
+        or options.report
+    )
 
 
 def _journal(options: argparse.Namespace, steps: Sequence[Step]) -> Journal:

@@ -307,6 +307,7 @@ def test_the_manual_names_every_setting_and_every_flag():
         "--resume",
         "--report",
         "--dask",
+        "--pictures",
     }
     for tool in registry.TOOLS:
         for name, setting in tool.settings.declared.items():

@@ -1,0 +1,113 @@
+"""The job type for Flamenco: what its tasks say, and what running their commands does.
+
+The manager's side is a stub with what its documentation offers. The commands run as they are issued, by a
+program that takes Blender's place.
+"""
+
+import json
+import shutil
+import stat
+import subprocess
+import sys
+from pathlib import Path
+
+import batch_kit
+import bpy
+import pytest
+from bl_ext.user_default.ridgeform.overnight import worker
+from test_overnight import entries
+
+SCRIPT = Path(__file__).parents[2] / "farms/flamenco/ridgeform.js"
+STUB = Path(__file__).with_name("flamenco_stub.js")
+
+pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="needs node")
+
+
+def compiled(**settings):
+    """The job type and the tasks of a job."""
+    command = ["node", str(STUB), str(SCRIPT), json.dumps(settings)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise ValueError(done.stderr)
+    made = json.loads(done.stdout)
+    return made["type"], made["tasks"]
+
+
+def job(folder, arguments="stylize", **more):
+    names = sorted(path.name for path in (folder / "in").iterdir()) if (folder / "in").is_dir() else ["a.ply"]
+    given = {"input_folder": str(folder / "in"), "pattern": "*.ply", "output_folder": str(folder / "out")}
+    return compiled(**given | {"arguments": arguments, "chunk_size": 2, "files": json.dumps(names)} | more)
+
+
+def test_the_settings_are_those_that_flamenco_knows(tmp_path):
+    kind, _ = job(tmp_path)
+    assert set(kind) == {"label", "settings"}
+    for setting in kind["settings"]:
+        assert setting["type"] in {"string", "int32", "float", "bool"}
+        assert setting.get("subtype", "dir_path") in {"file_path", "dir_path", "hashed_file_path"}
+        assert setting.get("visible", "visible") in {"visible", "hidden", "submission", "web"}
+        known = {"key", "type", "subtype", "choices", "propargs", "description", "label", "default", "eval"}
+        assert set(setting) <= known | {"evalInfo", "visible", "required", "editable"}
+
+
+def test_the_files_are_found_when_a_job_is_submitted(tmp_path):
+    batch_kit.boxes(tmp_path / "in", 3)
+    (tmp_path / "in/other.txt").touch()
+    kind, _ = job(tmp_path)
+    (files,) = (setting for setting in kind["settings"] if setting["key"] == "files")
+    settings = type("Settings", (), {"input_folder": str(tmp_path / "in"), "pattern": "*.ply"})
+    # The names that expressions may use.
+    names = {"settings": settings, "bpy": bpy, "C": bpy.context, "Path": Path, "jobname": "Job"}
+    found = eval(files["eval"], names | {"abspath": lambda path: Path(path).absolute()})
+    assert json.loads(found) == ["box0.ply", "box1.ply", "box2.ply"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "names", "message"),
+    [
+        ("", ["a.ply"], "write a tool"),
+        ("stylize --jobs 2", ["a.ply"], "leave --jobs to this job type"),
+        ("stylize --report=x.html", ["a.ply"], "leave --report to this job type"),
+        ("stylize", [], "There is no file"),
+        ("stylize --format .ply", ["a.obj", "A.stl"], "a.obj and A.stl would have the same output"),
+    ],
+)
+def test_what_is_wrong_is_said_when_a_job_is_submitted(tmp_path, arguments, names, message):
+    with pytest.raises(ValueError, match=message):
+        job(tmp_path, arguments, files=json.dumps(names))
+
+
+def test_the_commands_do_all_files_once_also_when_a_task_is_tried_again(tmp_path):
+    sources = batch_kit.boxes(tmp_path / "in", 3)
+    blender = tmp_path / "blender"
+    code = worker.MODULE.format(paths=sys.path, name=worker.__name__)
+    blender.write_text(
+        f"#!{sys.executable}\nimport sys\nassert sys.argv.pop(1) == '--command'\n"
+        f"assert sys.argv.pop(1) == 'ridgeform'\n{code}\n"
+    )
+    blender.chmod(blender.stat().st_mode | stat.S_IXUSR)
+    _, tasks = job(tmp_path, "stylize --steps 1")
+    assert [task["name"] for task in tasks] == ["files-1-2", "files-3-3", "summary"]
+    assert tasks[-1]["dependencies"] == ["files-1-2", "files-3-3"]
+    assert {task["type"] for task in tasks} == {"blender"}
+
+    def run(task):
+        for command in task["commands"]:
+            given = command["parameters"]
+            if command["name"] == "make-directory":
+                Path(given["path"]).mkdir(parents=True, exist_ok=True)
+            else:
+                exe = given["exe"].replace("{blender}", str(blender))
+                subprocess.run([exe, *given["args"]], check=True, capture_output=True, cwd="/")
+
+    for task in tasks[:-1]:
+        run(task)
+    before = batch_kit.state_of(tmp_path / "out")
+    assert set(before) == {path.name for path in sources}
+    run(tasks[0])
+    run(tasks[-1])
+    assert batch_kit.state_of(tmp_path / "out") == before
+    assert set(entries(tmp_path / "out").values()) == {"done"}
+    page = (tmp_path / "out.html").read_text()
+    assert "3 of 3 files done, 3 of them before" in page
+    assert page.count("data:image/png") == 6
