@@ -333,7 +333,8 @@ class Sequences(RuleBasedStateMachine):
 
 def meshes():
     """The mesh objects of the view layer."""
-    return [obj for obj in bpy.context.view_layer.objects if obj.type == "MESH"]
+    # One that was removed stays in the view layer, as None, until that is brought up to date.
+    return [obj for obj in bpy.context.view_layer.objects if obj and obj.type == "MESH"]
 
 
 def everything():
