@@ -14,7 +14,7 @@ from ..blender.selection import Needs
 from ..blender.welding import Weld
 from ..framework.job import Task
 from ..framework.run import Part, Run, meshes_phrase
-from ..framework.surface import Surface, surface_of
+from ..framework.surface import Surface, half_notes, surface_of
 from .attribute_run import energy_on
 from .settings import energy_options
 
@@ -49,7 +49,8 @@ class VibrationModes(Run):
         surface = surface_of(obj)
         call = partial(_modes, surface, self.settings.count, energy_options(self.settings))
         task = Task(obj.name, call, counted="mode")
-        return ModesPart(obj, task, len(obj.data.vertices), weld=surface.weld)
+        notes = surface.weld.notes + half_notes(obj, surface, "these are the modes of")
+        return ModesPart(obj, task, len(obj.data.vertices), notes, weld=surface.weld)
 
     def write(self, parts: Sequence[ModesPart]) -> None:
         """Write the modes over those of an earlier run, and show one of them."""

@@ -16,7 +16,7 @@ from ..blender.selection import Needs
 from ..framework.job import Task
 from ..framework.run import Part, Run, counted, meshes_phrase
 from ..framework.settings import chosen
-from ..framework.surface import Surface, surface_of
+from ..framework.surface import Surface, half_notes, surface_of
 from . import curves_io, drawing
 from .layout import curve_points
 from .sources import Colors, attribute_colors, image_colors
@@ -58,7 +58,7 @@ class DiffusionCurves(Run):
             obj,
             task,
             len(obj.data.vertices),
-            list(colors.notes),
+            [*colors.notes, *half_notes(obj, surface, "the curves are those of")],
             surface=surface,
             colors=colors,
             alpha=float(colors.values[surface.weld.first[0], 3]),

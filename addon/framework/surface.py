@@ -35,6 +35,18 @@ def surface_of(obj: bpy.types.Object, whole: bool = False) -> Surface:
         raise RefusedError(f'"{obj.name}": {error}') from error
 
 
+def half_notes(obj: bpy.types.Object, surface: Surface, what: str) -> list[str]:
+    """What a modeler should know of half a mesh when a tool does not see what Mirror modifiers add to it."""
+    coordinates = mesh_io.open_coordinates(obj).original
+    whole = mirrored(surface.weld, coordinates, modifiers.mirrors(obj, coordinates))
+    if whole.images is None:
+        return []
+    return [
+        f"{what} the half without its mirror image, which ends at the plane (apply the Mirror modifier for "
+        "the whole)"
+    ]
+
+
 def welded(obj: bpy.types.Object, coordinates: np.ndarray, whole: bool = False) -> tuple[Weld, np.ndarray]:
     """The mesh of an object with its seams welded, and all its loop triangles (m, 3) int32.
 

@@ -4,7 +4,7 @@ import addon_kit as kit
 import bpy
 import numpy as np
 import pytest
-from mirror_kit import warnings
+from mirror_kit import half_ball, warnings
 
 SENTENCES = [
     ("SUBSURF", {}, "rounds the facets off"),
@@ -52,3 +52,32 @@ def test_a_shape_key_that_does_not_show_is_spoken_of():
     key.value = 1.0
     bpy.ops.ridgeform.stylize(steps=1)
     assert "Smile" not in warnings()
+
+
+def painted_half():
+    obj, coordinates = half_ball("X")
+    colors = obj.data.color_attributes.new("paint", "FLOAT_COLOR", "POINT")
+    values = np.ones((len(coordinates), 4), np.float32)
+    values[:, :3] = coordinates[:, 2:] > 0
+    colors.data.foreach_set("color", values.ravel())
+    return obj
+
+
+@pytest.mark.parametrize(
+    ("call", "what"),
+    [
+        (lambda: bpy.ops.ridgeform.vibration_modes(count=2), "these are the modes of the half"),
+        (lambda: bpy.ops.ridgeform.diffusion_curves(attribute="paint"), "the curves are those of the half"),
+    ],
+)
+def test_tools_that_see_half_a_mirrored_mesh_say_so(call, what):
+    obj = painted_half()
+    assert call() == {"FINISHED"}
+    assert what in warnings()
+    obj.modifiers["Mirror"].show_viewport = False
+    assert call() == {"FINISHED"}
+    assert what not in warnings()
+    obj.modifiers["Mirror"].show_viewport = True
+    bpy.ops.object.modifier_apply(modifier="Mirror")
+    assert call() == {"FINISHED"}
+    assert what not in warnings()
