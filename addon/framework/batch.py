@@ -11,7 +11,9 @@ import ctypes
 import json
 import os
 import shutil
+import signal
 import sys
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
@@ -43,7 +45,7 @@ def main(arguments: Sequence[str]) -> int:
     if worker.is_worker():
         return driver.serve(options, steps)
     try:
-        with _clean_output(options.json) as emit:
+        with _interruptible(), _clean_output(options.json) as emit:
             return driver.drive(options, steps, arguments, lambda record: emit(record, steps))
     except driver.RefusalError as refusal:
         print(f"{COMMAND}: error: {refusal}", file=sys.stderr)
@@ -138,6 +140,21 @@ def _report(text: str) -> Path:
     if path.suffix.lower() not in report.KINDS:
         raise argparse.ArgumentTypeError(f'"{text}" does not end in {", ".join(report.KINDS)}')
     return path
+
+
+@contextlib.contextmanager
+def _interruptible() -> Iterator[None]:
+    """Have Ctrl-C raise `KeyboardInterrupt`: Blender takes the first for a wish to stop a render."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        # A handler of Blender's own cannot be put back, nor is there anything left to interrupt.
+        if before is not None:
+            signal.signal(signal.SIGINT, before)
 
 
 Emit = Callable[[dict[str, object], Sequence[Step]], None]

@@ -109,12 +109,15 @@ def test_ctrl_c_ends_all_processes_and_leaves_what_resumes(tmp_path, capfd, monk
     def interrupted(self):
         seen[:] = [one.process.pid for one in self._helpers]
         if entries(out):
-            raise KeyboardInterrupt
+            os.kill(os.getpid(), signal.SIGINT)
         yield from look(self)
 
     monkeypatch.setattr(pool.Pool, "_look", interrupted)
+    # As Blender, which has a handler of its own that only stops renders.
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     command = ("stylize", *sources, "-o", out, *batch_kit.STEPS)
     code, _ = batch_kit.run(capfd, *command, "--jobs", 1, "--report", tmp_path / "short.txt")
+    assert signal.signal(signal.SIGINT, before) == signal.SIG_IGN
     assert code == batch.INTERRUPTED
     assert seen
     assert not any(map(is_alive, seen))
