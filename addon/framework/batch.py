@@ -164,7 +164,13 @@ Emit = Callable[[dict[str, object], Sequence[Step]], None]
 def _clean_output(as_json: bool) -> Iterator[Emit]:
     """Give a function that prints a record; with JSON, what Blender prints goes to standard error."""
     if not as_json:
-        yield lambda record, steps: print(_sentence(record, steps), flush=True)
+
+        def say(record: dict[str, object], steps: Sequence[Step]) -> None:
+            # Else what Blender prints comes after what is said of it, and after the summary.
+            flush_output()
+            print(_sentence(record, steps), flush=True)
+
+        yield say
         return
     flush_output()
     saved = os.dup(1)

@@ -103,10 +103,16 @@ def _triangles(objects: Sequence[bpy.types.Object]) -> tuple[np.ndarray, np.ndar
         palette = np.full((max(len(obj.material_slots), 1), 3), GRAY)
         for slot, held in enumerate(obj.material_slots):
             if held.material is not None:
-                palette[slot] = held.material.diffuse_color[:3]
+                palette[slot] = _displayed(np.array(held.material.diffuse_color[:3]))
         corners.append(made[finite])
         colors.append(palette[np.clip(slots, 0, len(palette) - 1)][finite])
     return np.concatenate(corners), np.concatenate(colors)
+
+
+def _displayed(linear: np.ndarray) -> np.ndarray:
+    """A color of Blender's as screens and PNG files have it: sRGB, which is IEC 61966-2-1."""
+    linear = np.clip(linear, 0.0, 1.0)
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
 
 
 def _draw(at: np.ndarray, depth: np.ndarray, colors: np.ndarray, side: int) -> np.ndarray:
