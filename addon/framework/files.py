@@ -8,7 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
+import numpy as np
 
+from . import far_origin
+from .completeness import check_whole
 from .completeness_blend import IncompleteError
 from .writing import Protected, write_whole
 
@@ -93,6 +96,10 @@ FORMATS: dict[str, Format] = {
 """How to read and how to write each kind of file, by its suffix."""
 
 
+Moved = tuple[Path, np.ndarray]
+"""The file that was read with its coordinates moved, and the offset (3,)."""
+
+
 class FileError(Exception):
     """A file that cannot be read or written; the message says why."""
 
@@ -107,15 +114,21 @@ def check_suffix(path: Path) -> str:
     return suffix
 
 
-def read_file(path: Path) -> list[bpy.types.Object]:
-    """Open or import a file, alone, and return its meshes in Object Mode; `FileError` if unreadable."""
+def read_file(path: Path, offset: np.ndarray | None = None) -> list[bpy.types.Object]:
+    """Open or import a file, alone, and return its meshes in Object Mode; `FileError` if unreadable.
+
+    With an `offset` (3,) in the file's axes, its coordinates are moved by `-offset` before.
+    """
     suffix = check_suffix(path)
     if not path.is_file():
         raise FileError(f"{path} does not exist or is not a file")
     if suffix != ".blend":
         bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     try:
-        _call(FORMATS[suffix].read, str(path))
+        if offset is None:
+            _call(FORMATS[suffix].read, str(path))
+        else:
+            far_origin.read_moved(path, offset, lambda copy: _call(FORMATS[suffix].read, str(copy)))
     except _OperatorError as error:
         raise FileError(f"{path.name}: {error}") from error
     if bpy.context.mode != "OBJECT":
@@ -126,14 +139,23 @@ def read_file(path: Path) -> list[bpy.types.Object]:
     return objects
 
 
-def write_file(path: Path, protected: Protected | None = None) -> None:
-    """Write what Blender has open; makes the folder if there is none.
+def write_file(path: Path, protected: Protected | None = None, moved: Moved | None = None) -> None:
+    """Write what Blender has open, moved back if it was moved; makes the folder if there is none.
 
     `FileError` if it cannot be written or is `protected`; what was there before is as it was then.
     """
     kind = FORMATS[check_suffix(path)]
+
+    def export(hidden: str) -> None:
+        _call(kind.write, hidden)
+        if moved is not None:
+            # One that is not whole is refused, with the reason, by who called this.
+            with contextlib.suppress(IncompleteError, FileNotFoundError):
+                check_whole(Path(hidden))
+                far_origin.move_back(Path(hidden), *moved)
+
     try:
-        write_whole(path, lambda hidden: _call(kind.write, hidden), kind.several, protected)
+        write_whole(path, export, kind.several, protected)
     except (_OperatorError, IncompleteError, OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else error
         raise FileError(f"{path} was not written: {reason}") from error

@@ -7,9 +7,7 @@ import bpy
 import numpy as np
 
 from ..blender import mesh_io
-
-VISIBLE = 1e-5
-"""Rounding by less than this part of a mesh's size is what files of six digits have anyway."""
+from .far_origin import is_rounded, step_of
 
 
 def rounding_notes(objects: Sequence[bpy.types.Object]) -> list[str]:
@@ -20,10 +18,8 @@ def rounding_notes(objects: Sequence[bpy.types.Object]) -> list[str]:
         coordinates = coordinates[np.isfinite(coordinates).all(axis=1)]
         if len(coordinates) == 0:
             continue
-        size = float(np.ptp(coordinates, axis=0).max())
-        farthest = np.abs(coordinates).max(axis=0)
-        step = float(np.spacing(farthest.max()))
-        if step > VISIBLE * size > 0.0:
+        if is_rounded(coordinates):
+            size, step = float(np.ptp(coordinates, axis=0).max()), step_of(coordinates)
             middle = 0.5 * (coordinates.min(axis=0).astype(np.float64) + coordinates.max(axis=0))
             moves = ", ".join(f"{-x:.0f}" for x in middle)
             notes.append(
@@ -32,3 +28,11 @@ def rounding_notes(objects: Sequence[bpy.types.Object]) -> list[str]:
                 f"({moves}) first, and back afterwards"
             )
     return notes
+
+
+def moved_notes(offset: np.ndarray | None) -> list[str]:
+    """What the record says of a file whose coordinates were moved by `-offset` (3,), and back afterwards."""
+    if offset is None:
+        return []
+    where = ", ".join(f"{x:.0f}" for x in offset)
+    return [f"it lies far from the origin, so it was worked on around ({where}), in double precision"]

@@ -12,7 +12,8 @@ import bpy
 from ..blender import selection
 from ..blender.refusals import NothingToDoError, RefusedError
 from ..framework import files
-from ..framework.precision import rounding_notes
+from ..framework.far_origin import offset_of
+from ..framework.precision import moved_notes, rounding_notes
 from ..framework.run import NO_RESULT, Run
 from ..framework.targets import Ledger, Target
 from ..framework.tool import Tool
@@ -77,7 +78,8 @@ def _attempt(target: Target, plan: Plan, claim: Claim | None, watch: Watch) -> d
     try:
         if target.error is not None:
             raise files.FileError(f"{target.error}: choose another output")
-        objects = files.read_file(target.source)
+        offset = offset_of(target.source, target.path)
+        objects = files.read_file(target.source, offset)
         # A file of Blender's own has had single precision all along.
         rounded = [] if target.source.suffix.lower() == ".blend" else rounding_notes(objects)
         protected = claim or plan.ledger
@@ -86,14 +88,14 @@ def _attempt(target: Target, plan: Plan, claim: Claim | None, watch: Watch) -> d
         before = camera and camera.picture(objects)
         outcomes, notes = _run_steps(objects, plan.steps, watch)
         made = record | _record_of(outcomes) | {"output": str(target.path)}
-        made["warnings"] += notes + rounded
+        made["warnings"] += notes + rounded + moved_notes(offset)
         made["error"] = "; ".join(error for outcome in outcomes for error in outcome.errors) or None
         made["seconds"] = round(time.perf_counter() - begin, 3)
         watch(1.0)
         if claim is not None:
             claim.record = made
             claim.pictures = camera and [before, camera.picture(_meshes())]
-        files.write_file(target.path, protected)
+        files.write_file(target.path, protected, None if offset is None else (target.source, offset))
         record = made
         if claim is not None:
             claim.finish()

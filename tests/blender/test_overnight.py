@@ -175,11 +175,11 @@ def test_a_process_that_ends_while_a_result_is_put_in_place(tmp_path, capfd, mon
     claim = journal.Claim
     put = batch.driver.do_file.__globals__["files"].write_file
 
-    def ended(path, protected=None):
+    def ended(path, protected=None, moved=None):
         """Like a process that ends just before or just after."""
         with monkeypatch.context() as patch:
             patch.setattr("os.replace", lambda a, b: real(a, b) if installed or ".json" in str(b) else None)
-            put(path, protected)
+            put(path, protected, moved)
         raise KeyboardInterrupt
 
     real = os.replace
