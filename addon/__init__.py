@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ridgeform: piecewise flat meshes with crisp ridges, in Blender."""
 
-from . import registry
+from . import check, registry
 from .framework import job, wheel
 
-__all__ = ("job", "register", "unregister")
-"""`job` for scripts: `bl_ext.user_default.ridgeform.job.last_summary()` says what the last run did."""
+__all__ = ("check", "job", "register", "unregister")
+"""For scripts: `bl_ext.user_default.ridgeform.job.last_summary()` says what the last run did, `check.last()`
+what the last check found."""
 
 
 def register() -> None:

@@ -25,11 +25,13 @@ NAMES = (
     "segments",
     "attributes",
     "diffusion",
+    "check",
 )
 """The folders of the features, in the order of their panels and menu entries."""
 
 FEATURES = [import_module(f".{name}", __package__).FEATURE for name in NAMES]
 TOOLS = [tool for feature in FEATURES for tool in feature.tools]
+COMMANDS = [command for feature in FEATURES for command in feature.commands]
 
 
 def _classes() -> list[type]:
@@ -51,6 +53,7 @@ def _classes() -> list[type]:
                 groups.add(tool.group)
                 made.append(sidebar.group_panel(tool.group))
             made += [GROUPS[tool.scene_property], *sidebar.panel_classes(tool)]
+        made += feature.panels
     made += recipe_operators.classes(TOOLS)
     return [*made, preferences.preferences_class(TOOLS, GROUPS)]
 
@@ -64,6 +67,7 @@ def register() -> None:
     modal.register()
     bound.register()
     presets.offer(TOOLS)
+    sidebar.offer_lines([feature.draw_line for feature in FEATURES if feature.draw_line is not None])
     former.register(TOOLS)
     preferences.register(TOOLS)
     for cls in CLASSES:
@@ -75,7 +79,7 @@ def register() -> None:
             feature.register()
     menus.register(FEATURES)
     manual.register(TOOLS)
-    batch.register(TOOLS)
+    batch.register(TOOLS, COMMANDS)
 
 
 def unregister() -> None:

@@ -23,7 +23,7 @@ from ..overnight import driver, recipe, report, worker
 from ..overnight.one_file import Step
 from . import files, flags
 from .run import NO_RESULT
-from .tool import Tool
+from .tool import Command, Tool
 
 COMMAND = "ridgeform"
 RUN = "run"
@@ -37,21 +37,23 @@ def main(arguments: Sequence[str]) -> int:
         options = parser().parse_args(arguments)
     except SystemExit as leaving:
         return int(leaving.code or 0)
+    command = _commands.get(options.tool)
     try:
-        steps = steps_of(options)
-    except recipe.RecipeError as error:
+        return _drive(options, arguments) if command is None else command.run(options)
+    except (recipe.RecipeError, driver.RefusalError) as error:
         print(f"{COMMAND}: error: {error}", file=sys.stderr)
-        return 2
-    if worker.is_worker():
-        return driver.serve(options, steps)
-    try:
-        with _interruptible(), _clean_output(options.json) as emit:
-            return driver.drive(options, steps, arguments, lambda record: emit(record, steps))
-    except driver.RefusalError as refusal:
-        print(f"{COMMAND}: error: {refusal}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         return INTERRUPTED
+
+
+def _drive(options: argparse.Namespace, arguments: Sequence[str]) -> int:
+    """Run tools on files, or serve the process that does."""
+    steps = steps_of(options)
+    if worker.is_worker():
+        return driver.serve(options, steps)
+    with _interruptible(), clean_output(options.json, _sentence) as emit:
+        return driver.drive(options, steps, arguments, lambda record: emit(record, steps))
 
 
 def steps_of(options: argparse.Namespace) -> list[Step]:
@@ -76,6 +78,10 @@ def parser() -> argparse.ArgumentParser:
         "recipe", type=Path, metavar="RECIPE", help="A TOML file with a [[step]] for each tool"
     )
     _add_files(child)
+    for name, command in _commands.items():
+        command.add_arguments(
+            tools.add_parser(name, help=command.description, description=command.description)
+        )
     return made
 
 
@@ -157,18 +163,18 @@ def _interruptible() -> Iterator[None]:
             signal.signal(signal.SIGINT, before)
 
 
-Emit = Callable[[dict[str, object], Sequence[Step]], None]
-
-
 @contextlib.contextmanager
-def _clean_output(as_json: bool) -> Iterator[Emit]:
-    """Give a function that prints a record; with JSON, what Blender prints goes to standard error."""
+def clean_output(as_json: bool, sentence: Callable[..., str]) -> Iterator[Callable[..., None]]:
+    """Give a function that prints a record: as a sentence of it and what else is given, or as JSON.
+
+    With JSON, what Blender prints goes to standard error.
+    """
     if not as_json:
 
-        def say(record: dict[str, object], steps: Sequence[Step]) -> None:
+        def say(record: dict[str, object], *more: object) -> None:
             # Else what Blender prints comes after what is said of it, and after the summary.
             flush_output()
-            print(_sentence(record, steps), flush=True)
+            print(sentence(record, *more), flush=True)
 
         yield say
         return
@@ -181,7 +187,7 @@ def _clean_output(as_json: bool) -> Iterator[Emit]:
             contextlib.redirect_stdout(sys.stderr),
             os.fdopen(os.dup(saved), "w", encoding="utf-8") as stream,
         ):
-            yield lambda record, _steps: print(
+            yield lambda record, *_more: print(
                 json.dumps(record, ensure_ascii=False), file=stream, flush=True
             )
     finally:
@@ -220,7 +226,7 @@ def run_as_module() -> None:
     # The registry imports this module.
     from .. import registry  # noqa: PLC0415
 
-    offer(registry.TOOLS)
+    offer(registry.TOOLS, registry.COMMANDS)
     code = main(sys.argv[1:])
     sys.stdout.flush()
     sys.stderr.flush()
@@ -231,18 +237,21 @@ def run_as_module() -> None:
 
 _command = None
 _tools: dict[str, Tool] = {}
+_commands: dict[str, Command] = {}
 
 
-def offer(tools: Sequence[Tool]) -> None:
-    """Take the tools that the command line has."""
+def offer(tools: Sequence[Tool], commands: Sequence[Command] = ()) -> None:
+    """Take the tools that the command line has, and what else it has."""
     _tools.clear()
     _tools.update({tool.command: tool for tool in tools})
+    _commands.clear()
+    _commands.update({command.name: command for command in commands})
 
 
-def register(tools: Sequence[Tool]) -> None:
-    """Register `blender --command ridgeform` with these tools."""
+def register(tools: Sequence[Tool], commands: Sequence[Command] = ()) -> None:
+    """Register `blender --command ridgeform` with these tools and other commands."""
     global _command  # noqa: PLW0603
-    offer(tools)
+    offer(tools, commands)
     _command = bpy.utils.register_cli_command(COMMAND, main)
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The panels of the sidebar tab "Ridgeform" of the 3D Viewport, made from the tools."""
 
+from collections.abc import Callable, Sequence
 from typing import ClassVar
 
 import bpy
@@ -16,6 +17,13 @@ ATTRIBUTES = "Attributes and Curves"
 """The panel that the tools on attributes are in."""
 LARGE = 1.4
 """Height of the button of a prominent tool."""
+
+_lines: list[Callable[[bpy.types.UILayout, object], None]] = []
+
+
+def offer_lines(lines: Sequence[Callable[[bpy.types.UILayout, object], None]]) -> None:
+    """Take what draws a line above the button of every tool, from a layout and the active object."""
+    _lines[:] = lines
 
 
 class _ToolPanel:
@@ -46,6 +54,8 @@ class _ToolPanel:
         rows.draw_section(layout, settings, tool.settings, self.section, context.object)
         if self.section:
             return
+        for draw_line in _lines:
+            draw_line(layout, context.object)
         row = layout.row()
         row.scale_y = LARGE if tool.prominent else 1.0
         if bound.current(tool) is None:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a feature declares: its tools, and what else it adds to Blender."""
 
+import argparse
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -84,6 +85,20 @@ class Tool:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Command:
+    """A word of the command line that is no tool: it writes no files."""
+
+    name: str
+    """The word."""
+    description: str
+    """What it does, for `--help`."""
+    add_arguments: Callable[[argparse.ArgumentParser], None]
+    """Adds what follows the word."""
+    run: Callable[[argparse.Namespace], int]
+    """Does it, and returns the exit code."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Feature:
     """A folder of the add-on: tools, and operators that are none."""
 
@@ -92,6 +107,12 @@ class Feature:
     """Other operators; the registry registers them."""
     menu: Sequence[tuple[str, str]] = ()
     """Identifier and icon of those of them that have an entry in the menus."""
+    panels: Sequence[type] = ()
+    """Panels that are no tool's."""
+    commands: Sequence[Command] = ()
+    """Words of the command line that are no tool's."""
+    draw_line: Callable[[object, object], None] | None = None
+    """Draws a line above the button of every tool's panel, from a layout and the active object."""
     register: Callable[[], None] | None = None
     """What else is added to Blender."""
     unregister: Callable[[], None] | None = None

@@ -14,7 +14,7 @@ class Layout:
         """The same layout."""
         return self
 
-    column = row
+    column = box = row
 
     def prop(self, _settings: object, name: str, **_options: object) -> None:
         """Take down a row."""
@@ -35,3 +35,7 @@ class Layout:
         """Take down a button; its properties are set on the layout itself."""
         self.buttons.append((idname, text))
         return self
+
+    def popover(self, text: str = "", **_options: object) -> None:
+        """Take down the text of a button that opens a panel."""
+        self.labels.append(text)

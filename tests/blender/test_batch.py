@@ -235,3 +235,46 @@ def test_an_attribute_that_is_not_there_is_an_error_of_its_file(tmp_path, capfd)
     assert code == 1
     assert record["error"] == '"Box" has no attribute or vertex group "cold"'
     assert not (tmp_path / "out.blend").exists()
+
+
+def test_coordinates_that_blender_rounds_are_said(tmp_path, capfd):
+    x, y = np.meshgrid(np.arange(12.0), np.arange(12.0))
+    heights = np.random.default_rng(0).random(144)
+    for name, shift in (("near", np.zeros(3)), ("far", np.array([512345.0, 5572094.0, 312.0]))):
+        lines = [
+            f"v {p[0]:.6f} {p[1]:.6f} {p[2]:.6f}"
+            for p in np.stack([x.ravel(), y.ravel(), heights], axis=1) + shift
+        ]
+        lines += [
+            f"f {i + 1} {i + 2} {i + 14} {i + 13}"
+            for i in (12 * np.arange(11)[:, None] + np.arange(11)).ravel()
+        ]
+        (tmp_path / f"{name}.obj").write_text("\n".join(lines) + "\n")
+    code, (near, far) = run(capfd, tmp_path / "near.obj", tmp_path / "far.obj", "-o", tmp_path / "out")
+    assert code == 0
+    assert not any("far from the origin" in note for note in near["warnings"])
+    (said,) = (note for note in far["warnings"] if "far from the origin" in note)
+    assert "steps of 0.5 (5 % of its size)" in said
+
+
+def test_checking_files_says_what_is_wrong_and_writes_nothing(tmp_path, capfd):
+    kit.empty_scene()
+    kit.add_object("Fan", *kit.BAD_MESHES["three faces at an edge"])
+    files.write_file(tmp_path / "fan.ply")
+    (good,) = saved(tmp_path, ".blend")
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    paths = [str(tmp_path / "fan.ply"), str(tmp_path / "gone.ply"), str(good)]
+    batch.flush_output()
+    capfd.readouterr()
+    assert batch.main(["check", *paths, "--json"]) == 1
+    fan, gone, box = (json.loads(line) for line in capfd.readouterr().out.splitlines())
+    assert [found["kind"] for found in fan["meshes"][0]["findings"]] == ["nonmanifold_edges"]
+    assert fan["meshes"][0]["findings"][0]["count"] == 1
+    assert "gone.ply" in gone["error"]
+    assert box["meshes"][0]["findings"] == []
+    assert batch.main(["check", paths[0]]) == 0
+    assert "1 edge with more than two faces (limits)" in capfd.readouterr().out
+    assert batch.main(["check", paths[0], "--strict"]) == 1
+    assert batch.main(["check", paths[2], "--strict"]) == 0
+    assert batch.main(["check"]) == 2
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before

@@ -74,6 +74,10 @@ CLASSES = (
     "RIDGEFORM_PT_fill_holes",
     "RIDGEFORM_PT_fill_holes_expert",
     "RIDGEFORM_PT_fill_holes_presets",
+    "RIDGEFORM_OT_check",
+    "RIDGEFORM_OT_select_faults",
+    "RIDGEFORM_OT_cure_faults",
+    "RIDGEFORM_PT_check",
 )
 TOOLS = {
     "stylize": ("ridgeform_stylize", StylizeSettings),
@@ -86,7 +90,16 @@ TOOLS = {
 }
 PRESETS = {tool.name: list(tool.presets or ()) for tool in addon.registry.TOOLS}
 MENUS = ("VIEW3D_MT_object", "VIEW3D_MT_edit_mesh", "TOPBAR_MT_file_export")
-HANDLERS = {"load_pre": 1, "load_post": 2, "undo_pre": 1, "redo_pre": 1, "save_pre": 1}
+HANDLERS = {
+    "load_pre": 1,
+    "load_post": 3,
+    "undo_pre": 1,
+    "undo_post": 1,
+    "redo_pre": 1,
+    "redo_post": 1,
+    "save_pre": 1,
+    "depsgraph_update_post": 1,
+}
 
 
 def trace():

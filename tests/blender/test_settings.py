@@ -1,5 +1,6 @@
 """A setting is declared once: its property, row, preset entry, flag and the manual's words agree."""
 
+import argparse
 import itertools
 import json
 import math
@@ -313,6 +314,10 @@ def test_the_manual_names_every_setting_and_every_flag():
         for name, setting in tool.settings.declared.items():
             assert setting.label in manual, f"the setting {setting.label} is not in the manual"
             options |= set(flags.flags_of(name, setting))
+    for command in registry.COMMANDS:
+        parser = argparse.ArgumentParser(add_help=False)
+        command.add_arguments(parser)
+        options |= {word for word in parser._option_string_actions if word.startswith("--")}
     for option in options:
         assert f"`{option}" in manual, f"{option} is not in the manual"
     for option in re.findall(r"`(--[a-z][a-z-]*)", manual):

@@ -96,3 +96,16 @@ def edited_state():
     found = state()
     bpy.ops.object.mode_set(mode="EDIT")
     return found
+
+
+def test_undo_takes_a_cure_back():
+    box = kit.bumpy_box()
+    box.data.vertices.add(3)
+    bpy.context.preferences.edit.use_global_undo = True
+    bpy.ops.ed.undo_push(message="before")
+    assert bpy.ops.ridgeform.cure_faults(kind="loose_vertices") == {"FINISHED"}
+    bpy.ops.ed.undo_push(message="after")
+    bpy.ops.ed.undo()
+    assert len(bpy.data.objects["Box"].data.vertices) == 155
+    bpy.ops.ed.redo()
+    assert len(bpy.data.objects["Box"].data.vertices) == 152
