@@ -237,26 +237,6 @@ def test_an_attribute_that_is_not_there_is_an_error_of_its_file(tmp_path, capfd)
     assert not (tmp_path / "out.blend").exists()
 
 
-def test_coordinates_that_blender_rounds_are_said(tmp_path, capfd):
-    x, y = np.meshgrid(np.arange(12.0), np.arange(12.0))
-    heights = np.random.default_rng(0).random(144)
-    for name, shift in (("near", np.zeros(3)), ("far", np.array([512345.0, 5572094.0, 312.0]))):
-        lines = [
-            f"v {p[0]:.6f} {p[1]:.6f} {p[2]:.6f}"
-            for p in np.stack([x.ravel(), y.ravel(), heights], axis=1) + shift
-        ]
-        lines += [
-            f"f {i + 1} {i + 2} {i + 14} {i + 13}"
-            for i in (12 * np.arange(11)[:, None] + np.arange(11)).ravel()
-        ]
-        (tmp_path / f"{name}.obj").write_text("\n".join(lines) + "\n")
-    code, (near, far) = run(capfd, tmp_path / "near.obj", tmp_path / "far.obj", "-o", tmp_path / "out")
-    assert code == 0
-    assert not any("far from the origin" in note for note in near["warnings"])
-    (said,) = (note for note in far["warnings"] if "far from the origin" in note)
-    assert "steps of 0.5 (5 % of its size)" in said
-
-
 def test_checking_files_says_what_is_wrong_and_writes_nothing(tmp_path, capfd):
     kit.empty_scene()
     kit.add_object("Fan", *kit.BAD_MESHES["three faces at an edge"])
