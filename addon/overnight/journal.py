@@ -45,6 +45,9 @@ class Journal:
             shutil.rmtree(self.folder, ignore_errors=True)
         self.folder.mkdir(parents=True, exist_ok=True)
         (self.folder / "lock").touch()
+        # Some shared disks know no locks: they are told apart here, before anything is done.
+        with self.locked(INSTALLING):
+            pass
 
     @contextlib.contextmanager
     def claim(self, target: Target, ledger: Ledger) -> Iterator["Claim"]:

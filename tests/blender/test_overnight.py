@@ -197,6 +197,22 @@ def test_a_process_that_ends_while_a_result_is_put_in_place(tmp_path, capfd, mon
     assert out.exists()
 
 
+def test_where_no_journal_can_be_written_a_plain_run_goes_on(tmp_path, capfd, monkeypatch):
+    sources = batch_kit.boxes(tmp_path / "in", 2)
+
+    def refuse(*_arguments):
+        raise OSError(37, "No locks available")
+
+    monkeypatch.setattr(locks, "_try_lock", refuse)
+    command = ["stylize", *map(str, sources), "-o", str(tmp_path / "out"), *batch_kit.STEPS]
+    assert batch.main(command) == 0
+    assert "No locks available, so that this run cannot be resumed" in capfd.readouterr().err
+    assert len(batch_kit.state_of(tmp_path / "out")) == 2
+    for option in ("--resume", "--jobs=2", "--timeout=9", f"--report={tmp_path / 'page.html'}"):
+        assert batch.main([*command, option]) == 2
+        assert "No locks available; choose an OUT" in capfd.readouterr().err
+
+
 def test_outputs_of_other_processes_are_not_overwritten(tmp_path):
     (tmp_path / "a.obj").write_text("v 0 0 0\n")
     (tmp_path / "b.obj").write_text("v 0 0 0\n")
@@ -276,6 +292,14 @@ def test_pictures_show_what_is_in_front(tmp_path, add_mesh):
         seen = pixels(camera.picture([cube, obj]), tmp_path)[middle, middle]
         assert (seen[0] > 60) == (expected == 255)
         assert (seen[1] > 60) == (expected == 0)
+
+
+def test_a_picture_of_more_colors_than_a_palette_has(tmp_path):
+    size = thumbnails.SIZE
+    image = np.random.default_rng(0).integers(0, 256, (size, size, 3), np.uint8)
+    for made in (image, image // 200 * 200):
+        picture = base64.b64encode(thumbnails.png(made))
+        assert (pixels(picture, tmp_path) == made).all()
 
 
 def test_a_picture_of_nothing_and_of_broken_coordinates(tmp_path, add_mesh):
