@@ -115,11 +115,16 @@ class Run(ABC):
         """What the panel says of a mesh that is done, given its summary."""
         if entry["energy_after"] is None:
             return [f"{entry['name']}: {entry['seconds']:.1f} s"]
-        before = "" if entry["energy_before"] is None else f"{entry['energy_before']:.3g} → "
-        return [
-            f"{entry['name']}: energy {before}{entry['energy_after']:.3g}",
-            f"{entry['steps']} {cls.counted}, {entry['seconds']:.1f} s",
-        ]
+        return [f"{entry['name']}: {entry['steps']} {cls.counted}, {entry['seconds']:.1f} s"]
+
+    @classmethod
+    def numbers(cls, entry: dict[str, object]) -> list[str]:
+        """What the subpanel Expert says of it: energy and gap, where the tool has any."""
+        if entry["energy_after"] is None:
+            return []
+        before = "" if entry["energy_before"] is None else f"{entry['energy_before']:.4g} → "
+        gap = "" if entry["gap"] is None else f", gap {entry['gap']:.1g}"
+        return [f"{entry['name']}: energy {before}{entry['energy_after']:.4g}{gap}"]
 
     @classmethod
     def phrases(cls, done: Sequence[dict[str, object]]) -> list[str]:

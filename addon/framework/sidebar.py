@@ -9,6 +9,7 @@ import bpy
 from . import bound, former, job, manual, rows
 from .run import NO_RESULT
 from .settings import properties_of
+from .shared_settings import EXPERT
 from .tool import Tool
 
 LAST_RUN_LINES = 4
@@ -52,6 +53,8 @@ class _ToolPanel:
             # Its label is the preset that was chosen last.
             layout.menu(tool.presets_menu, text=getattr(bpy.types, tool.presets_menu).bl_label, icon="PRESET")
         rows.draw_section(layout, settings, tool.settings, self.section, context.object)
+        if self.section == EXPERT:
+            draw_last_run(layout, tool, tool.run.numbers)
         if self.section:
             return
         for draw_line in _lines:
@@ -66,11 +69,11 @@ class _ToolPanel:
             layout.label(text="A change starts from the original", icon="FILE_REFRESH")
         if tool.draw_more is not None:
             tool.draw_more(layout, settings)
-        draw_last_run(layout, tool)
+        draw_last_run(layout, tool, tool.run.lines)
 
 
-def draw_last_run(layout: bpy.types.UILayout, tool: Tool) -> None:
-    """Say what the last run did, if it was one of this tool."""
+def draw_last_run(layout: bpy.types.UILayout, tool: Tool, said: Callable[[dict], list[str]]) -> None:
+    """Say of each mesh what there is to be `said` of it in the last run, if that was one of this tool."""
     column = layout.column(align=True)
     done = [
         entry
@@ -80,7 +83,7 @@ def draw_last_run(layout: bpy.types.UILayout, tool: Tool) -> None:
         and entry["name"] in bpy.data.objects
     ]
     for entry in done[:LAST_RUN_LINES]:
-        for line, text in enumerate(tool.run.lines(entry)):
+        for line, text in enumerate(said(entry)):
             column.label(text=text, icon="BLANK1" if line else "INFO")
     if len(done) > LAST_RUN_LINES:
         column.label(text=f"… and {len(done) - LAST_RUN_LINES} more")

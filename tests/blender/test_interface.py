@@ -1,5 +1,6 @@
 """Panel, menus, presets, command: all there when registered, all gone when unregistered."""
 
+import re
 from fnmatch import fnmatch
 from types import SimpleNamespace
 
@@ -353,3 +354,29 @@ def test_more_strength_means_less_fidelity_and_more_of_the_rest():
 def test_unknown_setting_is_refused():
     with pytest.raises(TypeError, match="no setting step"):
         default_settings(step=3)
+
+
+def test_energy_and_gap_are_in_the_subpanel_for_experts():
+    kit.bumpy_box()
+    bpy.ops.ridgeform.stylize(steps=2)
+    panel = drawn(bpy.types.RIDGEFORM_PT_stylize, tool=STYLIZE, section="").labels
+    expert = drawn(bpy.types.RIDGEFORM_PT_stylize_expert, tool=STYLIZE, section="Expert").labels
+    assert not any("energy" in text or "gap" in text for text in panel)
+    assert any(re.fullmatch(r"Box: energy [\d.]+ → [\d.]+, gap \S+", text) for text in expert), expert
+
+
+def test_no_panel_speaks_of_energy_but_for_experts():
+    for tool in addon.registry.TOOLS:
+        entry = {
+            "name": "Box",
+            "energy_before": 2.0,
+            "energy_after": 1.0,
+            "gap": 0.001,
+            "steps": 3,
+            "seconds": 1.0,
+        }
+        entry |= {"facets": 3, "moved": 0.01, "holes": 1, "faces_added": 2, "ridge_edges": 1, "warnings": []}
+        entry |= {"segments": 3, "possible": [1, 4], "curves": 2, "psnr": 30.0, "numbers_before": 9}
+        entry |= {"numbers_after": 4, "regions": 2}
+        assert not any("energy" in line or "gap" in line for line in tool.run.lines(entry)), tool.name
+        assert tool.run.numbers(entry) == ["Box: energy 2 → 1, gap 0.001"]
