@@ -8,7 +8,7 @@ from collections.abc import Callable
 import bpy.props
 import numpy as np
 
-from .settings import Setting, Settings, defaults_of
+from .settings import Setting, Settings, chosen, defaults_of
 
 PREFIX = "setting_"
 """What the names of settings begin with among the parsed options, apart from those of files."""
@@ -157,11 +157,23 @@ def given_flags(values: object, settings: type[Settings]) -> dict[str, object]:
         word = flag_of(name, setting)
         if word is None:
             continue
-        if setting.implies:
+        if setting.optional is not None:
+            counts = chosen(values, name) is not None
+            changed = _written(setting, value) != _written(setting, setting.default)
+            if counts != setting.optional or (counts and changed):
+                # Zero is none.
+                given[word] = _written(setting, value) if counts else 0
+        elif setting.implies:
             if all(getattr(values, other) == implied for other, implied in setting.implies.items()):
                 given[word] = _written(setting, value)
         elif _written(setting, value) != _written(setting, setting.default):
             given[word] = _written(setting, value)
+    for name, (other, _) in settings.follows.items():
+        setting = settings.declared[name]
+        word = flag_of(name, setting)
+        # It would follow from the other one.
+        if word is not None and flag_of(other, settings.declared[other]) in given:
+            given[word] = _written(setting, getattr(values, name))
     return given
 
 

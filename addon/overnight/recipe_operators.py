@@ -9,6 +9,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
+from ..framework import former
 from ..framework.settings import values_of
 from ..framework.tool import Tool
 from ..framework.writing import write_text
@@ -29,7 +30,9 @@ class _SaveRecipe(ExportHelper):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Write the file, whole or not at all."""
         path, tool = Path(bpy.path.abspath(self.filepath)), _tools[self.tool]
-        text = recipe.step_text(tool, values_of(tool.settings, getattr(context.scene, tool.scene_property)))
+        panel = getattr(context.scene, tool.scene_property)
+        former.take_given(panel, tool.settings)
+        text = recipe.step_text(tool, values_of(tool.settings, panel))
         try:
             if self.append and path.exists():
                 recipe.read(path, _tools)

@@ -210,3 +210,31 @@ def test_a_panel_with_all_values_is_saved_as_it_is(tmp_path):
         (step,) = recipe.parse(text, "r.toml", COMMANDS)
         assert vars(step.settings) == vars(defaults_of(tool.settings))
     assert isinstance(step.settings, SimpleNamespace)
+
+
+OPTIONAL = [
+    (tool, name)
+    for tool in registry.TOOLS
+    for name, setting in tool.settings.declared.items()
+    if setting.optional is not None
+]
+
+
+@pytest.mark.parametrize(("tool", "name"), OPTIONAL, ids=[f"{tool.key}-{name}" for tool, name in OPTIONAL])
+@pytest.mark.parametrize("counts", [True, False])
+@pytest.mark.parametrize("same", [True, False])
+def test_an_optional_number_goes_into_a_recipe_with_its_check_box(tool, name, counts, same):
+    setting = tool.settings.declared[name]
+    given = setting.default if same else other_value(setting)
+    values = defaults_of(tool.settings, **{name: given, f"use_{name}": counts})
+    (step,) = recipe.parse(recipe.step_text(tool, values), "r.toml", COMMANDS)
+    got = vars(step.settings)
+    assert got[f"use_{name}"] is counts
+    assert not counts or got[name] == pytest.approx(given, rel=1e-6)
+
+
+def test_an_angle_that_was_left_alone_stays_so_in_a_recipe():
+    tool = next(tool for tool in registry.TOOLS if tool.name == "segment")
+    values = defaults_of(tool.settings, length_weight=2.0, angle=0.4)
+    (step,) = recipe.parse(recipe.step_text(tool, values), "r.toml", COMMANDS)
+    assert (step.settings.length_weight, step.settings.angle) == (2.0, pytest.approx(0.4, rel=1e-6))
