@@ -5,7 +5,7 @@ import bmesh
 import bpy
 import numpy as np
 
-from . import mesh_io, mesh_layers
+from . import blending, mesh_io, mesh_layers
 
 
 class MeshBackup:
@@ -21,6 +21,8 @@ class MeshBackup:
         self._marks = {name: _edge_values(mesh, name) for name, _ in mesh_io.EDGE_MARKS.values()}
         self._n_keys = 0 if mesh.shape_keys is None else len(mesh.shape_keys.key_blocks)
         self._active_key = obj.active_shape_key_index
+        self._result = blending.stored(mesh)
+        self._blends = blending.modifier_of(obj) is not None
         self._faces: bmesh.types.BMesh | None = None
         if faces:
             # The whole mesh with all that lies on it, as Blender itself copies it.
@@ -49,7 +51,16 @@ class MeshBackup:
                     mesh.attributes.remove(attribute)
             elif attribute is not None:
                 attribute.data.foreach_set("value", values)
+        self._put_back_result()
         mesh.update()
+
+    def _put_back_result(self) -> None:
+        now = blending.stored(self._object.data)
+        if (now is None) != (self._result is None) or not np.array_equal(now, self._result):
+            blending.store(self._object.data, self._result)
+        modifier = blending.modifier_of(self._object)
+        if modifier is not None and not self._blends:
+            self._object.modifiers.remove(modifier)
 
     def _remove_keys(self) -> None:
         keys = self._object.data.shape_keys

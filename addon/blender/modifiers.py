@@ -10,6 +10,7 @@ from collections.abc import Iterable
 import bpy
 import numpy as np
 
+from . import blending
 from .mirroring import Mirror
 
 ROUNDING = 1e-6
@@ -97,7 +98,7 @@ def shape_notes(obj: bpy.types.Object, creased: bool) -> list[str]:
 
     `creased` says whether its ridges got subdivision creases.
     """
-    shown = visible(obj)
+    shown = [modifier for modifier in visible(obj) if not blending.is_blend(modifier)]
     notes = []
     rounding = [
         modifier for modifier in shown if modifier.type in ROUNDS_OFF and not _keeps_ridges(modifier, creased)
@@ -139,6 +140,16 @@ def _keeps_ridges(modifier: bpy.types.Modifier, creased: bool) -> bool:
 def _named(modifiers: Iterable[bpy.types.Modifier]) -> str:
     names = [f'"{modifier.name}"' for modifier in modifiers]
     return f"its modifier {names[0]}" if len(names) == 1 else f"its modifiers {' and '.join(names)} each"
+
+
+def blend_notes(obj: bpy.types.Object) -> list[str]:
+    """What a modeler should know of a modifier that shows a result of before in place of the mesh."""
+    modifier = blending.modifier_of(obj)
+    if modifier is None or not modifier.show_viewport or blending.stored(obj.data) is None:
+        return []
+    return [
+        f'its modifier "{modifier.name}" shows the result that was stored before (remove it, or lower Factor)'
+    ]
 
 
 def normal_notes(mesh: bpy.types.Mesh) -> list[str]:

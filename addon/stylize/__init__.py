@@ -2,6 +2,7 @@
 """Stylize: the flow on each mesh, then what is made of the result."""
 
 from ..framework.tool import Feature, Tool
+from .operator import RIDGEFORM_OT_blend_result, draw_blend
 from .settings import PRESETS, StylizeSettings
 from .tool import Stylization
 
@@ -20,6 +21,9 @@ FEATURE = Feature(
             finds="Planar, Low Poly",
             stays_bound=True,
             presets=PRESETS,
+            draw_more=draw_blend,
         ),
-    )
+    ),
+    operators=(RIDGEFORM_OT_blend_result,),
+    menu=((RIDGEFORM_OT_blend_result.bl_idname, "GEOMETRY_NODES"),),
 )

@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 import ridgeform
 
-from ..blender import mesh_io
+from ..blender import blending, mesh_io
 from ..blender.mesh_layers import numbered_edges
 from ..blender.welding import Weld
 from ..framework.settings import chosen
@@ -115,6 +115,9 @@ def write(obj: bpy.types.Object, source: Source, made: Finished, settings: objec
     """Write a result to the mesh of an object, which may show a preview."""
     if settings.output == "SHAPE_KEY":
         mesh_io.add_shape_key(obj, made.coordinates, KEY_NAME)
+    elif settings.output == "ATTRIBUTE":
+        blending.store(obj.data, made.coordinates)
+        blending.add_modifier(obj)
     else:
         source.coordinates.write(made.coordinates)
     ridges = made.ridges

@@ -41,11 +41,16 @@ class Reduced:
     note: str
 
 
-def reason_against(mesh: bpy.types.Mesh, makes_key: bool = False) -> str | None:
-    """Why the triangles of a mesh cannot be reduced, which may get shape keys first; `None` if they can."""
+def reason_against(mesh: bpy.types.Mesh, leaves_mesh: bool = False) -> str | None:
+    """Why the triangles of a mesh cannot be reduced; `None` if they can.
+
+    `leaves_mesh`: the mesh is to stay as it is.
+    """
     if mesh.is_editmode:
         return "its triangles were not reduced, because that works only in Object Mode"
-    if makes_key or mesh.shape_keys is not None:
+    if leaves_mesh:
+        return "its triangles were not reduced, because Result leaves the mesh as it is"
+    if mesh.shape_keys is not None:
         return "its triangles were not reduced, because the mesh has shape keys"
     if importlib.util.find_spec("fast_simplification") is None:
         return "its triangles were not reduced, because the module fast-simplification is not installed"

@@ -113,11 +113,17 @@ class StylizeSettings(Settings):
         (
             ("POSITIONS", "Mesh", "Move the vertices, or the active shape key if there is one"),
             ("SHAPE_KEY", "New Shape Key", "Leave the mesh as it is and put the result into a new shape key"),
+            (
+                "ATTRIBUTE",
+                "Attribute and Modifier",
+                "Leave the mesh as it is, put the result into an attribute, and add a modifier that blends "
+                "the mesh with it by a factor or a mask",
+            ),
         ),
         default="POSITIONS",
         section=WHERE,
         flag=None,
-        switches={"--shape-key": "SHAPE_KEY"},
+        switches={"--shape-key": "SHAPE_KEY", "--blend": "ATTRIBUTE"},
     )
     keep_volume: boolean(
         "Keep Volume",

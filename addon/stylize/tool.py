@@ -108,12 +108,12 @@ class Stylization(Run):
 
     def write(self, parts: Sequence[FlowPart]) -> None:
         """Write the results with all that is made of them; parts without a result are restored."""
-        makes_keys = self.settings.output == "SHAPE_KEY"
+        leaves_mesh = self.settings.output != "POSITIONS"
         for part in self.parts:
-            if makes_keys or part.task.result is None:
+            if leaves_mesh or part.task.result is None:
                 part.source.coordinates.restore()
-        # Shape keys cannot be made in Edit Mode.
-        with mesh_io.object_mode() if makes_keys else contextlib.nullcontext():
+        # Neither shape keys nor attributes of vectors can be made in Edit Mode.
+        with mesh_io.object_mode() if leaves_mesh else contextlib.nullcontext():
             for part in parts:
                 finish.write(part.object, part.source, part.task.result, self.settings)
 
@@ -184,7 +184,7 @@ def _prepare(obj: bpy.types.Object, settings: object) -> FlowPart:
         options["fixed"] = ~moving
     source = Source(coordinates, weld, moving[weld.vertex])
     if settings.finish == "LOW_POLY":
-        source.refusal = reduction.reason_against(mesh, makes_key=settings.output == "SHAPE_KEY")
+        source.refusal = reduction.reason_against(mesh, leaves_mesh=settings.output != "POSITIONS")
         if source.refusal is None:
             source.reducible = reduction.read(obj)
     if settings.marks:
@@ -197,8 +197,8 @@ def _prepare(obj: bpy.types.Object, settings: object) -> FlowPart:
     part.warnings += weld.notes
     part.warnings += modifiers.shape_notes(obj, "CREASE" in settings.marks)
     part.warnings += modifiers.normal_notes(mesh)
-    if settings.output != "SHAPE_KEY":
-        part.warnings += modifiers.key_notes(obj)
+    if settings.output == "POSITIONS":
+        part.warnings += modifiers.key_notes(obj) + modifiers.blend_notes(obj)
     scales = np.abs(obj.matrix_world.to_scale())
     if scales.max() > UNEVEN_SCALE * scales.min():
         part.warnings.append(

@@ -105,6 +105,7 @@ CHANGED = (
     {"sharpness": 0.0, "marks": {"SHARP", "CREASE"}},
     {"finish": "LOW_POLY", "reduce_ratio": 0.5},
     {"output": "SHAPE_KEY"},
+    {"output": "ATTRIBUTE"},
     {"keep_volume": True, "marks": set()},
 )
 

@@ -75,6 +75,7 @@ CLASSES = (
     "RIDGEFORM_PT_fill_holes",
     "RIDGEFORM_PT_fill_holes_expert",
     "RIDGEFORM_PT_fill_holes_presets",
+    "RIDGEFORM_OT_blend_result",
     "RIDGEFORM_OT_check",
     "RIDGEFORM_OT_select_faults",
     "RIDGEFORM_OT_cure_faults",
