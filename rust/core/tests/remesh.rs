@@ -145,6 +145,28 @@ fn edges_and_vertices_that_are_not_manifold_stay() {
 }
 
 #[test]
+fn a_vertex_with_a_thousand_faces_is_remeshed() {
+    let n = 1000;
+    let rim = (0..n).map(|i| {
+        let angle = std::f64::consts::TAU * f64::from(i) / f64::from(n);
+        [angle.cos(), angle.sin(), 0.05 * (5.0 * angle).sin()]
+    });
+    let vertices = [[0.0, 0.0, 0.3], [0.0, 0.0, -0.3]].into_iter().chain(rim).collect();
+    let faces = (0..n).flat_map(|i| {
+        let (here, next) = (2 + i, 2 + (i + 1) % n);
+        [[0, here, next], [1, next, here]]
+    });
+    let mesh = Mesh::new(vertices, faces.collect()).unwrap();
+    let options = RemeshOptions { edge_length: Some(0.1), iterations: 5, ..RemeshOptions::default() };
+    let result = remesh(&mesh, &options, &Progress::new()).unwrap();
+    let after = Mesh::new(result.vertices.clone(), result.faces.clone()).unwrap();
+    assert_eq!(report(&after), clean(1, 0));
+    let mut valences = vec![0; result.vertices.len()];
+    result.faces.iter().flatten().for_each(|&v| valences[v as usize] += 1);
+    assert!(*valences.iter().max().unwrap() < 30, "{:?}", valences.iter().max());
+}
+
+#[test]
 fn slivers_and_faces_without_area_go() {
     let mut random = Random::new(5);
     let squeezed = shapes::grid(12, 12).map(|[x, y, z]| [x, 0.02 * y, z]);

@@ -1,8 +1,9 @@
 //! Pieces of surface that lie inside a hole of another.
 
+use super::places::Places;
 use super::Hole;
 use crate::error::Refusal;
-use crate::mesh::vector::{add, cross, dot, norm, scale, sub, unit, Point};
+use crate::mesh::vector::{add, cross, distance, dot, norm, scale, sub, unit, Point};
 use crate::mesh::{cycle, loop_area_vector};
 
 /// Pieces of less than this part of a hole's area are specks: they do not keep it from being filled, and stay where they are.
@@ -11,6 +12,9 @@ const SPECK: f64 = 0.01;
 /// A piece this far from the mean plane of a hole, as part of the square root of its area, is not inside it. The rim of a
 /// hemisphere is 0.56 from its top.
 const FAR: f64 = 0.6;
+
+/// Rounding must not leave out what lies on the edge of a search.
+const ROUNDING: f64 = 1e-6;
 
 /// A loop seen from afar.
 struct Outline {
@@ -33,6 +37,8 @@ impl Outline {
 pub(super) fn settle_islands(holes: &mut Vec<Hole>, components: &mut Vec<Option<usize>>, positions: &[Point]) {
     let outlines: Vec<Outline> = holes.iter().map(|hole| Outline::of(&hole.vertices, positions)).collect();
     let mut joined = vec![false; holes.len()];
+    let borders =
+        Places::new((0..holes.len()).filter(|&j| holes[j].is_outer_border).map(|j| (outlines[j].center, j)).collect());
     for i in 0..holes.len() {
         if holes[i].is_outer_border || holes[i].refusal.is_some() {
             continue;
@@ -48,8 +54,11 @@ pub(super) fn settle_islands(holes: &mut Vec<Hole>, components: &mut Vec<Option<
                 && dot(sub(island.center, hole.center), normal).abs() < FAR * size.sqrt()
                 && encloses(&rim, positions, normal, island.center)
         };
-        let islands: Vec<usize> =
-            (0..holes.len()).filter(|&j| holes[j].is_outer_border && !joined[j] && holds(j)).collect();
+        // The center of what it holds is inside its rim, and near its plane.
+        let from = |&v: &u32| distance(positions[v as usize], hole.center);
+        let radius = rim.iter().map(from).fold(0.0, f64::max).hypot(FAR * size.sqrt());
+        let mut islands = borders.within(hole.center, radius * (1.0 + ROUNDING));
+        islands.retain(|&j| !joined[j] && holds(j));
         for j in islands {
             let island = std::mem::take(&mut holes[j].vertices);
             match ring(&holes[i].vertices, &island) {

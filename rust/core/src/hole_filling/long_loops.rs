@@ -9,6 +9,14 @@ use crate::Progress;
 /// Vertices of the coarse polygon. Its table takes a quarter of the time of the largest full one.
 const COARSE: usize = 250;
 
+/// Parts of a long polygon, narrow pieces along its sides, are divided from this many vertices on, along a coarse polygon of
+/// [`PART_COARSE`]: their tables would grow with the square of the polygon's length. 20,000 vertices took 5.7 s of processor
+/// time so, three times as much as half of them.
+const PART_LIMIT: usize = 64;
+
+/// Vertices of the coarse polygon of a part.
+const PART_COARSE: usize = 40;
+
 /// Triangles as places in the polygon; places from its length on are the extra points.
 pub(super) struct Triangulation {
     /// New points, needed only where all chords are taken.
@@ -28,29 +36,32 @@ pub(super) struct Triangulation {
 pub(super) fn triangulate(polygon: &Polygon, rims: &Rims, progress: &Progress) -> Triangulation {
     let mut result = Triangulation { extra: Vec::new(), faces: Vec::new() };
     let places: Vec<usize> = (0..polygon.len()).collect();
-    add_part(polygon, &places, polygon.outside.clone(), rims, progress, &mut result);
+    let sizes = if polygon.len() <= TABLE_LIMIT { (TABLE_LIMIT, COARSE) } else { (PART_LIMIT, COARSE) };
+    add_part(polygon, &places, polygon.outside.clone(), rims, sizes, progress, &mut result);
     result
 }
 
-/// Adds the triangles of the part of `polygon` at `places`.
+/// Adds the triangles of the part of `polygon` at `places`, along a coarse polygon of `n_coarse` vertices if it has more than
+/// `limit`.
 fn add_part(
     polygon: &Polygon,
     places: &[usize],
     outside: Vec<Point>,
     rims: &Rims,
+    (limit, n_coarse): (usize, usize),
     progress: &Progress,
     result: &mut Triangulation,
 ) {
     let part = polygon.part(places, outside);
     let whole = |local: u32| places[local as usize] as u32;
-    if part.len() <= TABLE_LIMIT {
+    if part.len() <= limit {
         match minimum_weight(&part, rims, progress) {
             Some(faces) => result.faces.extend(faces.into_iter().map(|face| face.map(whole))),
             None => add_fan(polygon, places, result),
         }
         return;
     }
-    let samples = samples(&part);
+    let samples = samples(&part, n_coarse);
     let coarse = coarse_polygon(&part, &samples);
     let Some(faces) = minimum_weight(&coarse, rims, progress) else {
         return add_fan(polygon, places, result);
@@ -77,7 +88,7 @@ fn add_part(
                 outside.push(beyond.get(&[head, tail]).map_or([0.0; 3], |&f| normals[f]));
             }
         }
-        add_part(polygon, &run, outside, rims, progress, result);
+        add_part(polygon, &run, outside, rims, (PART_LIMIT, PART_COARSE), progress, result);
     }
 }
 
@@ -90,9 +101,9 @@ fn add_fan(polygon: &Polygon, places: &[usize], result: &mut Triangulation) {
     result.faces.extend(ends.map(|(&a, &b)| [a as u32, b as u32, center]));
 }
 
-/// [`COARSE`] places of the polygon, equally spaced by a measure that is half length and half turning angle, so that
+/// So many places of the polygon, equally spaced by a measure that is half length and half turning angle, so that
 /// corners are met more closely than straight runs.
-fn samples(polygon: &Polygon) -> Vec<usize> {
+fn samples(polygon: &Polygon, count: usize) -> Vec<usize> {
     let n = polygon.len();
     let edge = |i: usize| sub(polygon.points[(i + 1) % n], polygon.points[i]);
     let turn = |i: usize| {
@@ -102,10 +113,10 @@ fn samples(polygon: &Polygon) -> Vec<usize> {
     let length: f64 = (0..n).map(|i| distance(polygon.points[i], polygon.points[(i + 1) % n])).sum();
     let turning: f64 = (0..n).map(turn).sum();
     let share = |value: f64, total: f64| if total > 0.0 { 0.5 * value / total } else { 0.5 / n as f64 };
-    let (mut samples, mut measure) = (Vec::with_capacity(COARSE), 0.0);
+    let (mut samples, mut measure) = (Vec::with_capacity(count), 0.0);
     for i in 0..n {
         measure += share(turn(i), turning);
-        if samples.len() < COARSE && measure * COARSE as f64 >= samples.len() as f64 {
+        if samples.len() < count && measure * count as f64 >= samples.len() as f64 {
             samples.push(i);
         }
         measure += share(norm(edge(i)), length);
@@ -122,4 +133,47 @@ fn coarse_polygon(polygon: &Polygon, samples: &[usize]) -> Polygon {
         unit(run.fold([0.0; 3], |sum, i| add(sum, polygon.outside[i])))
     });
     polygon.part(samples, outside.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use std::f64::consts::TAU;
+
+    use super::super::triangulation::TRIED;
+    use super::*;
+    use crate::hole_filling::faces_at;
+    use crate::mesh::Mesh;
+
+    /// How many triangles are compared to triangulate a round hole of `n` edges.
+    fn tried(n: u32) -> usize {
+        let at = |i: u32, radius: f64| {
+            let angle = TAU * f64::from(i) / f64::from(n);
+            [radius * angle.cos(), radius * angle.sin(), 0.3 * radius]
+        };
+        let vertices = (0..n).map(|i| at(i, 1.0)).chain((0..n).map(|i| at(i, 1.01))).collect();
+        let faces = (0..n).flat_map(|i| {
+            let next = (i + 1) % n;
+            [[i, n + i, n + next], [i, n + next, next]]
+        });
+        let mesh = Mesh::new(vertices, faces.collect()).unwrap();
+        let rim: Vec<u32> = (0..n).collect();
+        let loops = [rim.clone()];
+        let rims = Rims::new(&mesh, &loops, &faces_at(&mesh, &loops).unwrap()).unwrap();
+        let polygon = Polygon::new(mesh.positions().unwrap(), &rim, &rims).unwrap_or_else(|_| unreachable!());
+        TRIED.set(0);
+        let found = triangulate(&polygon, &rims, &Progress::new());
+        assert_eq!((found.faces.len(), found.extra.len()), (n as usize - 2, 0));
+        TRIED.get()
+    }
+
+    #[test]
+    fn the_triangles_compared_grow_with_the_length_of_a_rim() {
+        let counts = [5000, 10_000, 20_000, 40_000].map(tried);
+        // The coarse polygon's own, then at most those of the largest tables all along.
+        let coarse = COARSE.pow(3) / 6;
+        for (count, n) in counts.into_iter().zip([5000, 10_000, 20_000, 40_000]) {
+            assert!(count < coarse + n * PART_LIMIT * PART_LIMIT / 6, "{n}: {counts:?}");
+        }
+    }
 }

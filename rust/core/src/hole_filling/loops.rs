@@ -1,6 +1,6 @@
 //! Which boundary loops are holes.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::components::Components;
 use super::islands::settle_islands;
@@ -88,10 +88,12 @@ pub(crate) fn holes_of(mesh: &Mesh) -> Result<Vec<Hole>> {
         owners = holes.iter().map(&mut owner).collect();
     }
     let mut outer: BTreeMap<usize, (f64, usize)> = BTreeMap::new();
+    let decided: HashSet<Option<usize>> =
+        holes.iter().zip(&owners).filter(|(hole, _)| hole.is_outer_border).map(|(_, &owner)| owner).collect();
     for i in undecided {
         let Some(number) = owners[i] else { continue };
-        let is_decided = (0..holes.len()).any(|j| holes[j].is_outer_border && owners[j] == owners[i]);
-        let Some(normal) = components.sheet_normal(number).filter(|_| !is_decided) else { continue };
+        let is_open = |_: &Point| !decided.contains(&owners[i]);
+        let Some(normal) = components.sheet_normal(number).filter(is_open) else { continue };
         let size = dot(loop_area_vector(&holes[i].vertices, positions), normal).abs();
         if outer.get(&number).is_none_or(|&(largest, _)| size > largest) {
             outer.insert(number, (size, i));

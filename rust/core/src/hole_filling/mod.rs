@@ -21,6 +21,7 @@ mod lids;
 mod long_loops;
 mod loops;
 mod patch;
+mod places;
 mod polygon;
 mod refinement;
 mod rims;

@@ -20,7 +20,8 @@ const WORTH: f64 = 1.1;
 /// Flips edges where that brings the valences of the four vertices closer to regular: 6 inside, on a border one more than
 /// the number of 60-degree triangles that fit there (4 on a straight one). Of two equal choices the better triangles.
 pub(crate) fn equalize_valences(remesher: &mut Remesher, progress: &Progress) {
-    let targets = target_valences(remesher);
+    let borders = borders(remesher);
+    let targets = target_valences(remesher, &borders);
     for [a, b] in remesher.mesh.edges() {
         if progress.is_stopping() {
             return;
@@ -30,7 +31,8 @@ pub(crate) fn equalize_valences(remesher: &mut Remesher, progress: &Progress) {
         }
         let Some(wings) = remesher.mesh.wings(a, b) else { continue };
         let [c, d] = wings.tips;
-        let excess = |v: u32| valence(remesher, v) - targets[v as usize];
+        let valence = |v: u32| remesher.mesh.faces_of(v).len() as i32 + i32::from(borders[v as usize]);
+        let excess = |v: u32| valence(v) - targets[v as usize];
         let [a_excess, b_excess, c_excess, d_excess] = [a, b, c, d].map(excess);
         let squares = |values: [i32; 4]| values.iter().map(|x| x * x).sum::<i32>();
         let before = squares([a_excess, b_excess, c_excess, d_excess]);
@@ -59,18 +61,17 @@ fn keeps_shape(mesh: &EditableMesh, a: u32, b: u32) -> bool {
     })
 }
 
-/// Number of edges at `v`.
-fn valence(remesher: &Remesher, v: u32) -> i32 {
-    let faces = remesher.mesh.faces_of(v).len() as i32;
-    let may_be_border = remesher.roles[v as usize] != Role::Free;
-    faces + i32::from(may_be_border && remesher.mesh.is_border(v))
+/// Whether each vertex is on the border, where it has an edge more than faces. Flips change nothing about that.
+fn borders(remesher: &Remesher) -> Vec<bool> {
+    let is_border = |v: u32| remesher.roles[v as usize] != Role::Free && remesher.mesh.is_border(v);
+    (0..remesher.mesh.n_vertices() as u32).map(is_border).collect()
 }
 
 /// The regular valence of every vertex.
-fn target_valences(remesher: &Remesher) -> Vec<i32> {
+fn target_valences(remesher: &Remesher, borders: &[bool]) -> Vec<i32> {
     let mesh = &remesher.mesh;
     let mut targets = vec![6; mesh.n_vertices()];
-    for v in (0..mesh.n_vertices() as u32).filter(|&v| remesher.roles[v as usize] != Role::Free && mesh.is_border(v)) {
+    for v in (0..mesh.n_vertices() as u32).filter(|&v| borders[v as usize]) {
         let angle: f64 = mesh
             .faces_of(v)
             .iter()

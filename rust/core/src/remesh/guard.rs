@@ -46,19 +46,23 @@ pub fn may_flip(mesh: &EditableMesh, a: u32, b: u32) -> bool {
 /// was none, and none comes to lie at more than a right angle to a neighbor if none did before.
 #[must_use]
 pub fn may_move(mesh: &EditableMesh, v: u32, position: Point) -> bool {
-    keeps_shape(mesh, &[v], position)
+    keeps_shape(mesh, &[v], &[v], position)
 }
 
 /// Whether the edge may collapse into its end `to` at `position`: the connectivity allows it
-/// ([`EditableMesh::can_collapse`]), and the faces that stay are in order as for [`may_move`].
+/// ([`EditableMesh::can_collapse`]), and the faces that stay are in order as for [`may_move`]. Into a hub, edges collapse to
+/// where it is, so that its other faces need not be looked at.
 #[must_use]
 pub fn may_collapse(mesh: &EditableMesh, from: u32, to: u32, position: Point) -> bool {
-    keeps_shape(mesh, &[from, to], position) && mesh.can_collapse(from, to)
+    let is_kept = mesh.is_hub(to) && position == mesh.position(to);
+    let ends = [from, to];
+    keeps_shape(mesh, &ends[..2 - usize::from(is_kept)], &ends, position) && mesh.can_collapse(from, to)
 }
 
-/// Whether the faces around `vertices` are in order once these are all at `position`; faces with two of them are gone then.
-fn keeps_shape(mesh: &EditableMesh, vertices: &[u32], position: Point) -> bool {
-    let faces = || vertices.iter().flat_map(|&v| mesh.faces_of(v)).filter_map(|&f| mesh.face(f).map(|face| (f, face)));
+/// Whether the faces around the `moved` of `vertices` are in order once these are all at `position`; faces with two of them are
+/// gone then.
+fn keeps_shape(mesh: &EditableMesh, moved: &[u32], vertices: &[u32], position: Point) -> bool {
+    let faces = || moved.iter().flat_map(|&v| mesh.faces_of(v)).filter_map(|&f| mesh.face(f).map(|face| (f, face)));
     let worst = faces().map(|(_, face)| quality(mesh.corners(face))).fold(1.0, f64::min);
     let mut least = 1.0_f64;
     for (f, face) in faces() {
@@ -73,7 +77,7 @@ fn keeps_shape(mesh: &EditableMesh, vertices: &[u32], position: Point) -> bool {
         }
         least = least.min(cosine(area_vector(new), old));
     }
-    least > HARDLY_TURNED || bend_after(mesh, vertices, position) >= bend_before(mesh, vertices).min(BENT)
+    least > HARDLY_TURNED || bend_after(mesh, moved, vertices, position) >= bend_before(mesh, moved).min(BENT)
 }
 
 /// The least cosine between the normals of neighbors anywhere, those beyond borders included.
@@ -105,11 +109,11 @@ fn least_cosine(mesh: &EditableMesh, faces: impl Iterator<Item = u32>) -> f64 {
     least
 }
 
-/// The same once `vertices` are all at `position`.
-fn bend_after(mesh: &EditableMesh, vertices: &[u32], position: Point) -> f64 {
+/// The same around the `moved` of `vertices` once these are all at `position`.
+fn bend_after(mesh: &EditableMesh, moved: &[u32], vertices: &[u32], position: Point) -> f64 {
     let merged = |v: u32| if vertices.contains(&v) { vertices[0] } else { v };
     // The faces that stay, as they are named now and then, with their area vectors then.
-    let stay: Vec<([u32; 3], [u32; 3], Point)> = vertices
+    let stay: Vec<([u32; 3], [u32; 3], Point)> = moved
         .iter()
         .flat_map(|&v| mesh.faces_of(v))
         .filter_map(|&f| mesh.face(f))
@@ -129,6 +133,18 @@ fn bend_after(mesh: &EditableMesh, vertices: &[u32], position: Point) -> f64 {
             .filter(|pair| is_outer(pair) || matches!(mesh.edge(pair.0, pair.1), Edge::Border(..)))
             .find_map(|(t, h)| mesh.normal_across(t, h))
     };
+    // Across the edges of the vertices that do not move lie faces that stay as they are.
+    let unmoved = |tail: u32, head: u32| {
+        let other = match vertices[0] {
+            name if name == tail => head,
+            name if name == head => tail,
+            _ => return None,
+        };
+        vertices.iter().filter(|v| !moved.contains(v)).find_map(|&v| {
+            let stays = |&f: &u32| mesh.face(f).is_some_and(|face| !face.iter().any(|w| moved.contains(w)));
+            mesh.wings(v, other)?.faces.into_iter().find(stays).map(|f| mesh.area_vector(f))
+        })
+    };
     // Found by their directed edges, also around a hub with ten thousand faces.
     let mut by_edge: Vec<([u32; 2], u32)> =
         (0..).zip(&stay).flat_map(|(s, (_, then, _))| (0..3).map(move |k| ([then[k], then[(k + 1) % 3]], s))).collect();
@@ -141,7 +157,8 @@ fn bend_after(mesh: &EditableMesh, vertices: &[u32], position: Point) -> f64 {
     for (face, then, area) in &stay {
         for i in 0..3 {
             let (tail, head) = (then[i], then[(i + 1) % 3]);
-            let across = area_at([head, tail]).or_else(|| beyond(face[i], face[(i + 1) % 3]));
+            let across =
+                area_at([head, tail]).or_else(|| unmoved(tail, head)).or_else(|| beyond(face[i], face[(i + 1) % 3]));
             if let Some(across) = across {
                 least = least.min(cosine(across, *area));
             }
@@ -153,4 +170,45 @@ fn bend_after(mesh: &EditableMesh, vertices: &[u32], position: Point) -> f64 {
 /// The least quality among `faces`.
 fn worst_quality(mesh: &EditableMesh, faces: &[u32]) -> f64 {
     faces.iter().filter_map(|&f| mesh.face(f)).map(|face| quality(mesh.corners(face))).fold(1.0, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    /// A vertex with `n` faces, and a ring of squares around them, all bumpy.
+    fn hub(n: u32) -> EditableMesh {
+        let at = |i: u32, radius: f64| {
+            let angle = TAU * f64::from(i) / f64::from(n);
+            [radius * angle.cos(), radius * angle.sin(), 0.05 * (37.0 * angle).sin() - 0.2 * radius]
+        };
+        let rings = (0..n).map(|i| at(i, 1.0)).chain((0..n).map(|i| at(i, 2.0)));
+        let vertices = std::iter::once([0.0; 3]).chain(rings).collect();
+        let faces = (0..n).flat_map(|i| {
+            let (here, next) = (1 + i, 1 + (i + 1) % n);
+            [[0, here, next], [here, n + here, n + next], [here, n + next, next]]
+        });
+        EditableMesh::new(vertices, faces.collect()).unwrap()
+    }
+
+    #[test]
+    fn what_bends_at_a_hub_is_told_by_the_faces_that_come_to_it() {
+        let mesh = hub(300);
+        assert!(mesh.is_hub(0) && !mesh.is_hub(1) && !hub(200).is_hub(0));
+        let mut count = 0;
+        for from in 1..=300 {
+            let mut after = mesh.clone();
+            if !after.collapse(from, 0, mesh.position(0)) {
+                continue;
+            }
+            count += 1;
+            let stay = mesh.faces_of(from).iter().copied().filter(|&f| after.face(f).is_some());
+            let found = bend_after(&mesh, &[from], &[from, 0], mesh.position(0));
+            assert_eq!(found.to_bits(), worst_bend_of(&after, stay).to_bits());
+        }
+        assert_eq!(count, 300);
+    }
 }

@@ -101,7 +101,11 @@ impl<'a> Remesher<'a> {
     /// Which way the edge may collapse: from, to, and where the vertex that is left goes.
     fn collapse_plan(&self, a: u32, b: u32) -> Option<(u32, u32, Point)> {
         let middle = between(self.mesh.position(a), self.mesh.position(b), 0.5);
-        match (self.roles[a as usize], self.roles[b as usize]) {
+        let role = |v: u32| match self.roles[v as usize] {
+            Role::Free | Role::Curve(_) if self.mesh.is_hub(v) => Role::Fixed,
+            role => role,
+        };
+        match (role(a), role(b)) {
             (Role::Pinched, _) | (_, Role::Pinched) | (Role::Fixed, Role::Fixed) => None,
             (Role::Free, Role::Free) => Some((b, a, middle)),
             (Role::Free, _) => Some((a, b, self.mesh.position(b))),
@@ -121,7 +125,9 @@ impl<'a> Remesher<'a> {
         let Some((from, to, position)) = self.collapse_plan(a, b) else { return false };
         let around = self.mesh.neighbors(from);
         let too_long = |w: u32| distance(position, self.mesh.position(w)) > longest * self.sizing.target(to, w);
-        if around.iter().chain(&self.mesh.neighbors(to)).any(|&w| w != from && w != to && too_long(w)) {
+        // The edges of a hub stay as long as they are.
+        let around_to = if self.mesh.is_hub(to) { Vec::new() } else { self.mesh.neighbors(to) };
+        if around.iter().chain(&around_to).any(|&w| w != from && w != to && too_long(w)) {
             return false;
         }
         let carried: Vec<(u32, u32)> = if self.roles[from as usize] == Role::Free {
