@@ -140,6 +140,25 @@ def flip_note(weld: Weld, faces: np.ndarray) -> str | None:
     )
 
 
+def topology_notes(report: ridgeform.MeshReport, faces: np.ndarray) -> list[str]:
+    """What a modeler should know of T-junctions and of faces that lie on others, if there are any.
+
+    `faces` (l,) is the face of each welded triangle.
+    """
+    notes = []
+    if count := len(report.t_junctions):
+        what = "1 vertex lies" if count == 1 else f"{count} vertices lie"
+        notes.append(
+            f"{what} in the middle of edges of other faces (T-junctions: split these edges there, and Merge "
+            "by Distance makes one surface of them)"
+        )
+    doubled = np.union1d(report.doubled_faces, report.duplicate_faces)
+    if count := len(np.unique(faces[doubled.astype(np.int64)])):
+        what = "1 face lies" if count == 1 else f"{count} faces lie"
+        notes.append(f"{what} on others, as a second lid does (delete one of two)")
+    return notes
+
+
 def connected_parts(triangles: np.ndarray, n_vertices: int) -> np.ndarray:
     """The lowest vertex (n,) of the connected part of each vertex; triangles sharing one are joined."""
     label = np.arange(n_vertices)

@@ -9,7 +9,7 @@ import ridgeform
 
 from ..blender import mesh_io, modifiers
 from ..blender.refusals import RefusedError
-from ..blender.welding import Weld, flip_note, mirrored, seam_note, weld_seams
+from ..blender.welding import Weld, flip_note, mirrored, seam_note, topology_notes, weld_seams
 from .shared_settings import ridge_weights_of
 
 
@@ -30,9 +30,11 @@ def surface_of(obj: bpy.types.Object, whole: bool = False) -> Surface:
     coordinates = mesh_io.open_coordinates(obj).original
     weld, _ = welded(obj, coordinates, whole)
     try:
-        return Surface(weld, ridgeform.Mesh(weld.places(coordinates), weld.triangles))
+        mesh = ridgeform.Mesh(weld.places(coordinates), weld.triangles)
     except ridgeform.RidgeformError as error:
         raise RefusedError(f'"{obj.name}": {error}') from error
+    weld.notes += topology_notes(mesh.report, mesh_io.triangle_faces(obj.data)[weld.rows])
+    return Surface(weld, mesh)
 
 
 def half_notes(obj: bpy.types.Object, surface: Surface, what: str) -> list[str]:

@@ -54,6 +54,17 @@ def test_turned_faces_are_segmented_with_their_neighbors_and_counted():
     assert np.array_equal([tuple(face.vertices) for face in obj.data.polygons], faces)
 
 
+def test_t_junctions_and_second_lids_are_named():
+    # A square beside two, whose common corner is in the middle of its edge, and a second lid on one of them.
+    points = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (2, 1, 0), (3, 0, 0), (3, 1, 0), (3, 2, 0)]
+    faces = [(0, 1, 2, 3), (1, 5, 6, 4), (4, 6, 7, 2), (4, 6, 5)]
+    kit.add_object("Junction", np.array(points, float), faces)
+    bpy.ops.ridgeform.segment()
+    (entry,) = job.last_summary()
+    assert any(note.startswith("1 vertex lies in the middle of edges") for note in entry["warnings"])
+    assert any(note.startswith("2 faces lie on others") for note in entry["warnings"])
+
+
 @pytest.mark.parametrize("shape", ["AUTO", "FLAT"])
 def test_a_box_gets_its_lid_back(shape):
     vertices, faces = shapes.cube(8, 2.0)

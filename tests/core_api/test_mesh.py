@@ -80,7 +80,8 @@ def test_a_clean_mesh_reports_nothing():
     report = ridgeform.Mesh(*shapes.torus()).report
     assert (report.n_components, report.n_boundary_loops) == (1, 0)
     assert report.nonmanifold_edges.shape == (0, 2)
-    for name in ("nonmanifold_vertices", "degenerate_faces", "duplicate_faces", "unreferenced_vertices"):
+    lists = ("duplicate_faces", "doubled_faces", "t_junctions", "nonmanifold_vertices", "degenerate_faces")
+    for name in (*lists, "unreferenced_vertices"):
         array = getattr(report, name)
         assert array.shape == (0,)
         assert array.dtype == np.int32
@@ -98,6 +99,24 @@ def test_the_report_names_what_is_unusual():
     assert worse.duplicate_faces.tolist() == [4]
     assert worse.degenerate_faces.tolist() == [5]
     assert "1 duplicate" in repr(worse)
+
+
+def test_the_report_names_second_lids_and_t_junctions():
+    corners = np.array([[x, y, z] for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], float)
+    quads = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
+    box = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    assert ridgeform.Mesh(corners, box).report.doubled_faces.tolist() == []
+    # A second lid, cut along the other diagonal.
+    twice = ridgeform.Mesh(corners, np.vstack([box, [[4, 5, 7], [5, 6, 7]]])).report
+    assert twice.doubled_faces.tolist() == [1, 7, 12, 13]
+    assert twice.duplicate_faces.tolist() == []
+    # One square beside two, whose common corner is in the middle of its edge; and the same as a soup.
+    points = np.array([[0, 0], [2, 0], [2, 2], [0, 2], [2, 1], [3, 0], [3, 1], [3, 2]], float)
+    vertices = np.column_stack([points, np.zeros(8)])
+    faces = np.array([[0, 1, 2], [0, 2, 3], [1, 5, 6], [1, 6, 4], [4, 6, 7], [4, 7, 2]])
+    assert ridgeform.Mesh(vertices, faces).report.t_junctions.tolist() == [4]
+    soup = ridgeform.Mesh(vertices[faces].reshape(-1, 3), np.arange(18).reshape(-1, 3)).report
+    np.testing.assert_array_equal(vertices[faces].reshape(-1, 3)[soup.t_junctions], vertices[[4]])
 
 
 def test_components_are_counted():

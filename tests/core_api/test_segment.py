@@ -255,3 +255,49 @@ def test_odd_meshes_give_labels():
         result = ridgeform.segment(ridgeform.Mesh(vertices, faces))
         assert (result.labels >= 0).all()
         assert np.isfinite(result.values).all()
+
+
+def strips(n, m, bend=0.0):
+    """Two strips of `n` and `m` squares along a line, with common vertices only where both have one."""
+    parts = []
+    for count, shift in ((n, 0.0), (m, 1.0)):
+        vertices, faces = shapes.grid(count, count)
+        vertices = vertices / count + [shift, 0.0, 0.0]
+        vertices[:, 2] = bend * np.maximum(vertices[:, 0] - 1.0, 0.0)
+        parts.append((vertices, faces))
+    (a, of_a), (b, of_b) = parts
+    points, index = np.unique(np.round(np.vstack([a, b]), 9), axis=0, return_inverse=True)
+    return points, index.ravel()[np.vstack([of_a, of_b + len(a)])]
+
+
+@pytest.mark.parametrize(("n", "m"), [(1, 2), (2, 3), (6, 7), (9, 12)])
+@pytest.mark.parametrize("turned", [False, True])
+def test_t_junctions_cut_no_face_and_hide_no_ridge(n, m, turned):
+    for bend, count in ((0.0, 1), (1.0, 2)):
+        vertices, faces = strips(n, m, bend)
+        if turned:
+            faces[: 2 * n * n] = faces[: 2 * n * n, ::-1]
+        mesh = ridgeform.Mesh(vertices @ shapes.random_rotation(3).T, faces)
+        assert len(mesh.report.t_junctions) > 0
+        result = ridgeform.segment(mesh)
+        sides = (np.arange(len(faces)) >= 2 * n * n).astype(int) if count == 2 else np.zeros(len(faces), int)
+        assert result.n_segments == count
+        assert same_partition(result.labels, sides) or count == 1
+        assert result.labels.shape == result.indicator.shape == (len(faces),)
+        np.testing.assert_array_equal(result.labels_at(count), result.labels)
+        # No edge has a face of either side.
+        assert len(result.boundary_edges) == 0 or count == 2
+
+
+def test_weights_and_a_choice_of_faces_reach_the_parts_of_split_faces():
+    vertices, faces = strips(6, 7, bend=0.3)
+    mesh = ridgeform.Mesh(vertices, faces)
+    assert ridgeform.segment(mesh).n_segments == 1
+    near = np.abs(vertices[faces].mean(axis=1)[:, 0] - 1.0) < 0.2
+    assert ridgeform.segment(mesh, face_weights=np.where(near, 0.2, 1.0)).n_segments == 2
+    edges = np.repeat(np.where(near, 0.2, 1.0)[:, None], 3, axis=1)
+    assert ridgeform.segment(mesh, edge_weights=edges).n_segments == 2
+    some = np.arange(len(faces)) < 72
+    labels = ridgeform.segment(mesh, faces=some).labels
+    assert (labels[some] == 0).all()
+    assert (labels[~some] == -1).all()

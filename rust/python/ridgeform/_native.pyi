@@ -47,6 +47,8 @@ class MeshReport:
     nonmanifold_vertices: Final[Indices]
     degenerate_faces: Final[Indices]
     duplicate_faces: Final[Indices]
+    doubled_faces: Final[Indices]
+    t_junctions: Final[Indices]
     unreferenced_vertices: Final[Indices]
 
 @final

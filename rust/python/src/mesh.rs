@@ -158,6 +158,10 @@ pub struct MeshReport {
     degenerate_faces: Py<PyArray1<i32>>,
     /// Faces with the same three vertices as an earlier face, (k,) int32.
     duplicate_faces: Py<PyArray1<i32>>,
+    /// Faces that lie on another one from a common edge on, as second lids do, (k,) int32.
+    doubled_faces: Py<PyArray1<i32>>,
+    /// Vertices in the middle of border edges of other faces, (k,) int32; `segment` takes the two sides as joined.
+    t_junctions: Py<PyArray1<i32>>,
     /// Vertices that no face names, (k,) int32.
     unreferenced_vertices: Py<PyArray1<i32>>,
 }
@@ -174,6 +178,8 @@ impl MeshReport {
             nonmanifold_vertices: indices(&report.nonmanifold_vertices)?,
             degenerate_faces: indices(&report.degenerate_faces)?,
             duplicate_faces: indices(&report.duplicate_faces)?,
+            doubled_faces: indices(&report.doubled_faces)?,
+            t_junctions: indices(&report.t_junctions)?,
             unreferenced_vertices: indices(&report.unreferenced_vertices)?,
         })
     }
@@ -185,13 +191,15 @@ impl MeshReport {
         let count = |list: &Py<PyArray1<i32>>| list.bind(py).len();
         Ok(format!(
             "<ridgeform.MeshReport: {} components, {} boundary loops, {} non-manifold edges, {} non-manifold vertices, \
-             {} degenerate, {} duplicate faces, {} unreferenced vertices>",
+             {} degenerate, {} duplicate, {} doubled faces, {} T-junctions, {} unreferenced vertices>",
             self.n_components,
             self.n_boundary_loops,
             self.nonmanifold_edges.bind(py).len()?,
             count(&self.nonmanifold_vertices)?,
             count(&self.degenerate_faces)?,
             count(&self.duplicate_faces)?,
+            count(&self.doubled_faces)?,
+            count(&self.t_junctions)?,
             count(&self.unreferenced_vertices)?,
         ))
     }

@@ -10,6 +10,7 @@ mod measured;
 pub(crate) mod orientation;
 pub(crate) mod partition;
 mod report;
+mod t_junctions;
 pub mod triangle;
 pub mod vector;
 mod welding;
@@ -23,6 +24,7 @@ pub use edge_table::EdgeTable;
 pub use flip::Flip;
 pub use orientation::{flipped_faces, orient};
 pub use report::{report, MeshReport};
+pub use t_junctions::{SplitFaces, TJunctions};
 pub use welding::Weld;
 pub use working::Working;
 

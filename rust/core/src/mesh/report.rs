@@ -2,7 +2,8 @@
 
 use crate::mesh::connectivity::{next, previous};
 use crate::mesh::partition::Partition;
-use crate::mesh::{boundary_loops, flipped_faces, triangle, Connectivity, EdgeKind, Mesh};
+use crate::mesh::vector::{cosine, cross, dot, sub};
+use crate::mesh::{boundary_loops, flipped_faces, triangle, Connectivity, EdgeKind, Mesh, TJunctions, Weld};
 
 /// Counts, and the edges, vertices and faces that are not as on a clean surface. All lists are sorted.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -24,6 +25,11 @@ pub struct MeshReport {
     pub degenerate_faces: Vec<u32>,
     /// Faces with the three vertices of an earlier face, in any order.
     pub duplicate_faces: Vec<u32>,
+    /// Faces that lie on another one from a common edge on, where the edge has more than two: a second lid, whether or not it is cut
+    /// into triangles as the first is.
+    pub doubled_faces: Vec<u32>,
+    /// Vertices in the middle of border edges of other faces, to which they are not joined ([`TJunctions`]).
+    pub t_junctions: Vec<u32>,
     /// Vertices that no face names.
     pub unreferenced_vertices: Vec<u32>,
 }
@@ -43,6 +49,8 @@ pub fn report(mesh: &Mesh) -> MeshReport {
         nonmanifold_vertices: nonmanifold_vertices(connectivity),
         degenerate_faces: degenerate_faces(mesh),
         duplicate_faces: duplicate_faces(connectivity),
+        doubled_faces: doubled_faces(mesh),
+        t_junctions: t_junctions(mesh),
         unreferenced_vertices: (0..).zip(&referenced).filter_map(|(v, &named)| (!named).then_some(v)).collect(),
     }
 }
@@ -114,4 +122,52 @@ fn duplicate_faces(connectivity: &Connectivity) -> Vec<u32> {
         keys.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| pair[1].1).collect();
     duplicates.sort_unstable();
     duplicates
+}
+
+/// Two faces lie on each other if they leave their common edge in the same direction, up to this sine of the angle between them.
+const SAME_DIRECTION: f64 = 1e-4;
+
+/// The faces at edges with more than two that lie on another one there.
+fn doubled_faces(mesh: &Mesh) -> Vec<u32> {
+    let (connectivity, Some(positions)) = (mesh.connectivity(), mesh.positions()) else { return Vec::new() };
+    let crowded = (0..connectivity.n_halfedges()).filter(|&h| connectivity.kind(h) == EdgeKind::NonManifold);
+    let ends = |h: usize| [connectivity.tail(h), connectivity.head(h)];
+    let mut at: Vec<([u32; 2], usize)> = crowded
+        .map(|h| {
+            let [a, b] = ends(h);
+            ([a.min(b), a.max(b)], h)
+        })
+        .collect();
+    at.sort_unstable();
+    let mut doubled = Vec::new();
+    for edge in at.chunk_by(|x, y| x.0 == y.0) {
+        let [a, b] = edge[0].0.map(|v| positions[v as usize]);
+        let along = sub(b, a);
+        // Across the edge, into the face, turned by a quarter: the length does not matter.
+        let across = |h: usize| cross(along, sub(positions[connectivity.opposite(h) as usize], a));
+        for &(_, h) in edge {
+            let lies_on = |&(_, other): &([u32; 2], usize)| {
+                let (x, y) = (across(h), across(other));
+                let sine = (1.0 - cosine(x, y).powi(2)).max(0.0).sqrt();
+                other != h && dot(x, y) > 0.0 && sine < SAME_DIRECTION
+            };
+            if edge.iter().any(lies_on) {
+                doubled.push((h / 3) as u32);
+            }
+        }
+    }
+    doubled.sort_unstable();
+    doubled.dedup();
+    doubled
+}
+
+fn t_junctions(mesh: &Mesh) -> Vec<u32> {
+    let (connectivity, Some(positions)) = (mesh.connectivity(), mesh.positions()) else { return Vec::new() };
+    let Some(weld) = Weld::of_seams(connectivity, positions, None) else {
+        return TJunctions::find(connectivity, positions).map_or_else(Vec::new, |found| found.vertices());
+    };
+    // Faces that the seams' vertices make are those of the mesh, and so no error to be expected.
+    let Ok(welded) = Connectivity::new(weld.faces(connectivity.faces()), weld.first.len()) else { return Vec::new() };
+    let found = TJunctions::find(&welded, &weld.firsts(positions));
+    found.map_or_else(Vec::new, |found| found.vertices().into_iter().map(|v| weld.first[v as usize]).collect())
 }

@@ -13,7 +13,7 @@ const SIX_DIGITS: f64 = 1e-5;
 const UNITS: f64 = 4.0;
 
 /// Nothing is joined over more than this part of the shortest border edge there: it would not be rounding.
-const OF_EDGE: f64 = 0.1;
+pub(super) const OF_EDGE: f64 = 0.1;
 
 /// Which vertices are one.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -84,7 +84,7 @@ impl Weld {
 
 /// How far apart roundings of one place may be, by the `points` that were rounded: those on borders, so that a closed surface of any
 /// size costs nothing.
-fn rounding(points: impl Iterator<Item = Point>) -> f64 {
+pub(super) fn rounding(points: impl Iterator<Item = Point>) -> f64 {
     let (mut low, mut high, mut largest) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], 0.0_f64);
     let mut is_single = true;
     for p in points {

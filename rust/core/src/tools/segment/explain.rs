@@ -21,6 +21,8 @@ pub(super) struct Explain<'a> {
     pub most_faces: usize,
     /// Whether neighbors may be curved.
     pub curved: bool,
+    /// Only faces of the same region may be of one segment, where given: a region for each face.
+    pub regions: Option<&'a [u32]>,
     pub progress: &'a Progress,
 }
 
@@ -74,7 +76,8 @@ impl Explain<'_> {
         let plane = |faces: &Vec<u32>| Plane::through(surface, faces).filter(|plane| plane.spread <= self.flat);
         let mut borders: BTreeMap<(u32, u32), f64> = BTreeMap::new();
         for f in 0..labels.len() {
-            for (h, g) in surface.around(f).filter(|&(_, g)| labels[g] != labels[f]) {
+            let may = |g: usize| self.regions.is_none_or(|regions| regions[g] == regions[f]);
+            for (h, g) in surface.around(f).filter(|&(_, g)| labels[g] != labels[f] && may(g)) {
                 *borders.entry((labels[f], labels[g])).or_default() += surface.lengths[f][h % 3];
             }
         }

@@ -45,6 +45,36 @@ impl Hierarchy {
         self
     }
 
+    /// The same for faces that are each one of those here, `faces[i]`. Segments without a face are none.
+    pub(in crate::tools) fn picked(&self, faces: &[u32]) -> Self {
+        let picked: Vec<u32> = faces.iter().map(|&f| self.leaves[f as usize]).collect();
+        // The fresh name of each segment that is there, which moves on to the segment that it becomes part of.
+        let mut name = vec![u32::MAX; self.n_leaves];
+        let mut count = 0;
+        let leaves: Vec<u32> = picked
+            .iter()
+            .map(|&leaf| {
+                let Some(name) = name.get_mut(leaf as usize) else { return u32::MAX };
+                if *name == u32::MAX {
+                    *name = count;
+                    count += 1;
+                }
+                *name
+            })
+            .collect();
+        let mut there = Self { leaves, n_leaves: count as usize, merges: Vec::new(), strengths: Vec::new() };
+        for (&[kept, gone], &strength) in self.merges.iter().zip(&self.strengths) {
+            let (a, b) = (name[kept as usize], name[gone as usize]);
+            if a == u32::MAX {
+                name[kept as usize] = b;
+            } else if b != u32::MAX {
+                there.merges.push([a, b]);
+                there.strengths.push(strength);
+            }
+        }
+        there
+    }
+
     /// Most and fewest segments that there can be: those of the finest segmentation, and one for each connected part.
     #[must_use]
     pub fn range(&self) -> [usize; 2] {
@@ -96,5 +126,17 @@ mod tests {
         assert!(hierarchy.labels_at(0).is_err());
         let spread = hierarchy.spread(&[1, 2, 3, 5, 6], 7);
         assert_eq!(spread.labels_at(2).unwrap(), [-1, 0, 0, 1, -1, 1, 0]);
+    }
+
+    #[test]
+    fn segments_without_a_face_are_none() {
+        let merges = [([2, 3], 0.2), ([0, 1], 0.3), ([0, 2], 0.5)];
+        let hierarchy = Hierarchy::new(vec![0, 1, 2, 3, u32::MAX, 1], 4, merges);
+        assert_eq!(hierarchy.picked(&[0, 1, 2, 3, 4, 5]), hierarchy);
+        let picked = hierarchy.picked(&[5, 3, 4]);
+        assert_eq!(picked.range(), [2, 1]);
+        assert_eq!(picked.strengths(), [0.5]);
+        assert_eq!(picked.labels_at(2).unwrap(), [0, 1, -1]);
+        assert_eq!(picked.labels_at(1).unwrap(), [0, 0, -1]);
     }
 }

@@ -144,7 +144,7 @@ pub(super) fn rename(labels: &mut [u32], merges: &[Merge]) {
 
 /// Removes borders weaker than `threshold`, weakest first; borders that two segments had with a third become one, with their
 /// mean strength by length.
-fn greedy(borders: &[Border], threshold: f64) -> Vec<Merge> {
+pub(super) fn greedy(borders: &[Border], threshold: f64) -> Vec<Merge> {
     let mut around: BTreeMap<u32, BTreeMap<u32, (f64, f64)>> = BTreeMap::new();
     let mut heap = BinaryHeap::new();
     for &Border { labels: [a, b], length, strength } in borders {

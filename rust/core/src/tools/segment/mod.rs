@@ -4,14 +4,13 @@
 //! other one ([`passes`]) is [`watershed`], then merging across borders that bend little ([`crease`], [`merge`]), dividing what lies across a
 //! ridge ([`divide`]), joining what a neighbor explains ([`explain`]), and moving faces at borders
 //! to the segment that they fit best ([`relabel`]), or, between curved segments, along creases ([`straighten`]). Sides of a few triangles, which the Hessian cannot see, are told by their planes
-//! ([`exact`]), those of a few rows under little noise by the normals of their faces ([`flat_sides`]). In any case a [`hierarchy`] of nested segmentations comes with it.
+//! ([`exact`]), those of a few rows under little noise by the clear ridges around them ([`regions`]). In any case a [`hierarchy`] of nested segmentations comes with it.
 
 mod constants;
 mod crease;
 mod divide;
 mod exact;
 mod explain;
-mod flat_sides;
 mod hierarchy;
 mod indicator;
 mod indicator_step;
@@ -22,8 +21,10 @@ mod options;
 mod part;
 mod passes;
 mod patches;
+mod regions;
 mod relabel;
 mod slopes;
+mod split;
 mod straighten;
 mod surface;
 mod threshold;
@@ -36,7 +37,7 @@ pub use options::{SegmentMethod, SegmentOptions};
 use crate::error::MeshError;
 use crate::linear::Columns;
 use crate::memory::Tool;
-use crate::mesh::{Mesh, Working};
+use crate::mesh::{Mesh, TJunctions, Working};
 use crate::progress::Progress;
 use crate::solve::{Settings, Status};
 use crate::tools::answer;
@@ -44,7 +45,6 @@ use crate::unit::Unit;
 use crate::Result;
 use constants::{BEND, LEAST_EPSILON};
 use exact::coarse_planes;
-use flat_sides::flat_sides;
 use indicator::Functional;
 use noise::noise_level;
 use normalized::Normalized;
@@ -83,7 +83,7 @@ pub struct Segmentation {
 /// Minimizes `α ‖u − u₀‖²_M + Σ_f v_f² ‖(H u)_f‖ + λ ε vᵀ L v + λ/(4ε) ‖1 − v‖²_{M_F}` (Rowe et al. 2024, eq. (41)) in turns over `u` and
 /// `v`, with `ε` halved down, and makes segments from `v`: see [`SegmentMethod`].
 ///
-/// Faces are oriented first, and for a shape its seams joined ([`Working`]).
+/// Faces are oriented first, and for a shape its seams joined ([`Working`]), T-junctions too ([`TJunctions`]).
 ///
 /// # Errors
 /// [`MeshError::NoPositions`], [`MeshError::NoFaces`], arguments of the wrong shape or range, [`crate::Error::Cancelled`], and the errors of
@@ -95,16 +95,45 @@ pub fn segment(
     progress: &Progress,
 ) -> Result<Segmentation> {
     options.check(mesh, values)?;
-    // The values may differ between the sides of a seam.
-    let working = if values.is_none() { Working::new(mesh)? } else { Working::unwelded(mesh)? };
+    if values.is_some() {
+        // The values may differ between the sides of a seam.
+        return oriented(mesh, &Working::unwelded(mesh)?, values, options, progress);
+    }
+    let working = Working::new(mesh)?;
+    let here = working.mesh();
+    let positions = here.positions().ok_or(MeshError::NoPositions)?;
+    let Some(found) = TJunctions::find(here.connectivity(), positions) else {
+        return oriented(mesh, &working, None, options, progress);
+    };
+    let split = found.split(here, positions)?;
+    let options = split::options_of_parts(&split, &options_here(&working, options));
+    // Joined sides may disagree on what is outside.
+    let parts = oriented(&split.mesh, &Working::unwelded(&split.mesh)?, None, &options, progress)?;
+    given_back(&working, None, split::of_whole_faces(&split, here, parts))
+}
+
+/// Segments the `working` mesh made of `mesh`, and gives back what comes out for that.
+fn oriented(
+    mesh: &Mesh,
+    working: &Working<'_>,
+    values: Option<&Columns>,
+    options: &SegmentOptions,
+    progress: &Progress,
+) -> Result<Segmentation> {
     if working.is_plain() {
         return on(mesh, values, options, progress);
     }
-    let options = SegmentOptions {
-        edge_weights: options.edge_weights.as_ref().map(|weights| working.corner_rows(weights)),
-        ..options.clone()
-    };
-    let found = on(working.mesh(), values, &options, progress)?;
+    given_back(working, values, on(working.mesh(), values, &options_here(working, options), progress)?)
+}
+
+/// The options for the faces of the working mesh.
+fn options_here(working: &Working<'_>, options: &SegmentOptions) -> SegmentOptions {
+    let edge_weights = options.edge_weights.as_ref().map(|weights| working.corner_rows(weights));
+    SegmentOptions { edge_weights, ..options.clone() }
+}
+
+/// The same for the mesh that the working one was made of.
+fn given_back(working: &Working<'_>, values: Option<&Columns>, found: Segmentation) -> Result<Segmentation> {
     Ok(Segmentation {
         boundary_edges: found.boundary_edges.iter().map(|edge| edge.map(|v| working.original(v))).collect(),
         values: match values {
@@ -166,7 +195,6 @@ fn whole(
     let is_exact = exact.is_some();
     let degrees = values.map_or(1, |v| v.n_columns);
     let noise = if is_exact { 0.0 } else { noise_level(&surface, &start, degrees) };
-    let planes = exact.or_else(|| if plain { flat_sides(&surface, noise) } else { None });
     let mut epsilons = options.epsilons(LEAST_EPSILON * surface.mean_edge);
     if is_exact {
         epsilons.drain(..epsilons.len() - 1);
@@ -184,16 +212,19 @@ fn whole(
         settings: *settings,
     };
     let found = if is_exact { functional.indicate(progress)? } else { functional.minimize(progress)? };
-    let passes = Passes {
+    let mut passes = Passes {
         surface: &surface,
         start: &start,
         is_shape: values.is_none(),
         noise,
         indicator: &found.indicator,
-        planes: planes.as_ref(),
+        planes: exact.as_ref(),
+        regions: None,
         options,
         progress,
     };
+    let regions = passes.regions()?;
+    passes.regions = regions.as_ref();
     let slopes = passes.slopes();
     let merging = passes.merging(&slopes);
     let leaves = passes.leaves()?;

@@ -8,10 +8,11 @@ use super::hierarchy::Hierarchy;
 use super::merge::{rename, Merge, Merging};
 use super::options::{SegmentMethod, SegmentOptions};
 use super::patches::patch_size;
+use super::regions::Regions;
 use super::relabel::Relabel;
 use super::slopes::Slopes;
 use super::straighten::Straighten;
-use super::surface::{contiguous, Surface};
+use super::surface::{contiguous, pieces, Surface};
 use super::threshold::cut_and_merge;
 use super::watershed::watershed;
 use crate::linear::Columns;
@@ -30,6 +31,8 @@ pub(super) struct Passes<'a> {
     pub indicator: &'a [f64],
     /// The planes of an exact shape, which are segments to begin with.
     pub planes: Option<&'a Planes>,
+    /// The regions that are segmented by themselves.
+    pub regions: Option<&'a Regions>,
     pub options: &'a SegmentOptions,
     pub progress: &'a Progress,
 }
@@ -65,6 +68,9 @@ impl<'a> Passes<'a> {
             }
             SegmentMethod::Fitted => {
                 let mut leaves = watershed(self.surface, self.indicator, PERSISTENCE).0;
+                if let Some(regions) = self.groups() {
+                    leaves = common(self.surface, &leaves, regions);
+                }
                 self.divide(&mut leaves)?;
                 Ok(leaves)
             }
@@ -81,7 +87,11 @@ impl<'a> Passes<'a> {
             merging.below(&mut labels, BEND * self.options.length_weight)?;
             merging.absorb_small(&mut labels, self.options.min_faces.unwrap_or(0))?;
         } else if self.options.method == SegmentMethod::Fitted {
-            self.fit(merging, &mut labels)?;
+            self.fit(&Merging { groups: self.groups(), ..*merging }, &mut labels)?;
+            if let Some(regions) = self.regions {
+                regions.join(self.surface, &mut labels, BEND * self.options.length_weight);
+                merging.absorb_small(&mut labels, self.options.min_faces.unwrap_or(0))?;
+            }
         }
         if let Some(n) = self.options.n_segments {
             self.merge_to(merging, &mut labels, n)?;
@@ -102,6 +112,17 @@ impl<'a> Passes<'a> {
         [self.noise.max(least), (PLANE_NOISE * self.noise).max(least)]
     }
 
+    /// The regions between clear ridges of a shape; none of shapes that are planes already, and of other signals.
+    ///
+    /// # Errors
+    /// [`crate::Error::Cancelled`].
+    pub(super) fn regions(&self) -> Result<Option<Regions>> {
+        if self.planes.is_some() || !self.is_shape || self.options.method != SegmentMethod::Fitted {
+            return Ok(None);
+        }
+        Regions::between_clear_ridges(self.surface, self.noise, &self.explanation(true, None))
+    }
+
     /// Divides segments of a shape that lie across a ridge.
     fn divide(&self, labels: &mut Vec<u32>) -> Result<()> {
         if !self.is_shape {
@@ -114,13 +135,20 @@ impl<'a> Passes<'a> {
 
     /// Gives segments of a shape to the planes, and small ones also to the `curved` sides, that explain them.
     fn explain(&self, labels: &mut Vec<u32>, curved: bool) -> Result<()> {
-        if !self.is_shape {
-            return Ok(());
+        if self.is_shape {
+            self.explanation(curved, self.groups()).run(labels)?;
         }
+        Ok(())
+    }
+
+    fn explanation(&self, curved: bool, regions: Option<&'a [u32]>) -> Explain<'a> {
         let [deviation, flat] = self.deviations();
         let most_faces = patch_size(self.noise / self.surface.mean_edge);
-        let surface = self.surface;
-        Explain { surface, deviation, flat, most_faces, curved, progress: self.progress }.run(labels)
+        Explain { surface: self.surface, deviation, flat, most_faces, curved, regions, progress: self.progress }
+    }
+
+    fn groups(&self) -> Option<&'a [u32]> {
+        self.regions.map(|regions| regions.labels.as_slice())
     }
 
     /// Merges and relabels in turns.
@@ -130,6 +158,7 @@ impl<'a> Passes<'a> {
             signal: (!self.is_shape).then_some(self.start),
             noise: self.noise,
             least_faces: self.least_faces(),
+            regions: self.groups(),
             progress: self.progress,
         };
         let threshold = BEND * self.options.length_weight;
@@ -146,7 +175,7 @@ impl<'a> Passes<'a> {
             }
         }
         let [_, flat] = self.deviations();
-        let straighten = self.is_shape.then(|| Straighten::new(self.surface, flat, self.progress));
+        let straighten = self.is_shape.then(|| Straighten::new(self.surface, flat, self.groups(), self.progress));
         if let Some(straighten) = &straighten {
             straighten.run(labels)?;
             relabel.rejoin(labels);
@@ -229,6 +258,19 @@ impl<'a> Passes<'a> {
     fn report(&self, fraction: f64, stage: &str) {
         self.progress.report(Report { fraction, stage: stage.into(), ..Report::default() });
     }
+}
+
+/// The connected pieces in which two labelings both have one label.
+fn common(surface: &Surface<'_>, first: &[u32], second: &[u32]) -> Vec<u32> {
+    let mut names = std::collections::BTreeMap::new();
+    let pairs = first.iter().zip(second);
+    let labels: Vec<u32> = pairs
+        .map(|pair| {
+            let fresh = names.len() as u32;
+            *names.entry(pair).or_insert(fresh)
+        })
+        .collect();
+    pieces(surface, &labels).0
 }
 
 /// The same merges in the order given, each named by segments that are still there.

@@ -25,6 +25,8 @@ pub(super) struct Relabel<'a> {
     pub noise: f64,
     /// Pieces of at least so many faces that come loose are segments of their own.
     pub least_faces: usize,
+    /// Faces stay in their region, where given: a region for each face.
+    pub regions: Option<&'a [u32]>,
     pub progress: &'a Progress,
 }
 
@@ -74,7 +76,7 @@ impl Relabel<'_> {
                 continue;
             }
             let mut candidates = vec![labels[f]];
-            for (_, g) in self.surface.around(f) {
+            for (_, g) in self.surface.around(f).filter(|&(_, g)| self.may_share(f, g)) {
                 if !candidates.contains(&labels[g]) {
                     candidates.push(labels[g]);
                 }
@@ -90,6 +92,11 @@ impl Relabel<'_> {
             labels[f] = best.1;
         }
         moved
+    }
+
+    /// Whether two faces may be of one segment.
+    fn may_share(&self, f: usize, g: usize) -> bool {
+        self.regions.is_none_or(|regions| regions[f] == regions[g])
     }
 
     fn border_cost(&self, labels: &[u32], f: usize, label: u32) -> f64 {
@@ -131,7 +138,8 @@ impl Relabel<'_> {
                 if largest[&labels[f]] == piece[f] as usize {
                     continue;
                 }
-                for (h, g) in self.surface.around(f).filter(|&(_, g)| labels[g] != labels[f]) {
+                let may = |g: usize| labels[g] != labels[f] && self.may_share(f, g);
+                for (h, g) in self.surface.around(f).filter(|&(_, g)| may(g)) {
                     *shared.entry((piece[f], labels[g])).or_default() += self.surface.lengths[f][h % 3];
                 }
             }

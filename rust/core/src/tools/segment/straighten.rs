@@ -20,12 +20,14 @@ pub(super) struct Straighten<'a> {
     flat: f64,
     /// What a border along each halfedge costs.
     costs: Vec<[f64; 3]>,
+    /// Borders between regions stay, where given: a region for each face.
+    regions: Option<&'a [u32]>,
     progress: &'a Progress,
 }
 
 impl<'a> Straighten<'a> {
     /// Measures all edges. Normals are those of a face and its neighbors together, so that noise does not count as creases.
-    pub(super) fn new(surface: &'a Surface<'a>, flat: f64, progress: &'a Progress) -> Self {
+    pub(super) fn new(surface: &'a Surface<'a>, flat: f64, regions: Option<&'a [u32]>, progress: &'a Progress) -> Self {
         let normals: Vec<Point> = (0..surface.n_faces())
             .map(|f| {
                 unit(surface.around(f).fold(surface.vector_area(f), |sum, (_, g)| add(sum, surface.vector_area(g))))
@@ -49,7 +51,7 @@ impl<'a> Straighten<'a> {
                 costs[h % 3] *= surface.lengths[f][h % 3] / (1.0 + bend(f, g) / mean);
             }
         }
-        Self { surface, flat, costs, progress }
+        Self { surface, flat, costs, regions, progress }
     }
 
     /// Moves the borders between segments that are no planes; those of planes are where the planes meet. No segment vanishes, but
@@ -64,7 +66,8 @@ impl<'a> Straighten<'a> {
         for _ in 0..STRAIGHTEN_PASSES {
             let mut borders: BTreeMap<[u32; 2], Vec<u32>> = BTreeMap::new();
             for f in 0..labels.len() {
-                for (_, g) in self.surface.around(f) {
+                let may = |g: usize| self.regions.is_none_or(|regions| regions[g] == regions[f]);
+                for (_, g) in self.surface.around(f).filter(|&(_, g)| may(g)) {
                     let (a, b) = (labels[f].min(labels[g]), labels[f].max(labels[g]));
                     if a != b && curved[a as usize] && curved[b as usize] {
                         borders.entry([a, b]).or_default().push(f as u32);
@@ -150,7 +153,7 @@ mod tests {
             (0..labels.len()).map(|f| surface.around(f).filter(|(_, g)| labels[*g] != labels[f]).count()).sum()
         };
         let before = length(&labels);
-        Straighten::new(&surface, 0.0, &Progress::new()).run(&mut labels).unwrap();
+        Straighten::new(&surface, 0.0, None, &Progress::new()).run(&mut labels).unwrap();
         assert!(3 * length(&labels) < 2 * before, "{} of {before}", length(&labels));
         assert_eq!(contiguous(&labels).1, 2);
     }
