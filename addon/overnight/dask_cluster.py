@@ -5,6 +5,7 @@ Dask hands a file of a worker that is gone to another one. The journal, in a fol
 that it is not done twice.
 """
 
+import contextlib
 import os
 import secrets
 import sys
@@ -66,17 +67,24 @@ def run(
             ): index
             for index in indices
         }
-        for future in as_completed(list(futures)):
+        # In the loop of this client: by default that of another one, if there is any.
+        found = as_completed(list(futures), loop=client.loop, with_results=True, raise_errors=False)
+        for future, answer in found:
             index = futures.pop(future)
-            error = future.exception()
-            answer = {"lost": f"Dask: {error}"} if error is not None else future.result()
+            if future.status == "finished":
+                why = answer.get("lost")
+            else:
+                error = answer[1] if isinstance(answer, tuple) else answer
+                why = f"Dask: {type(error).__name__}: {error}"
             # Dask keeps results for as long as somebody has their future.
             future.release()
-            if "lost" in answer:
-                answer = lost(targets[index], plan, str(answer["lost"]))
-            yield index, answer
+            record = answer if why is None else lost(targets[index], plan, why)
+            # A worker may have ended with its answer: the next one has it from the journal.
+            yield index, record | {"resumed": False}
     finally:
-        client.cancel(list(futures), force=True)
-        client.run(helper.end_in_dask)
+        # The scheduler may be gone as well.
+        with contextlib.suppress(OSError, TimeoutError):
+            client.cancel(list(futures), force=True)
+            client.run(helper.end_in_dask)
         client.close()
         cloudpickle.unregister_pickle_by_value(helper)

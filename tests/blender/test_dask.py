@@ -26,7 +26,7 @@ def cluster(tmp_path, monkeypatch):
 
 def test_a_worker_that_is_killed_loses_nothing_and_nothing_is_done_twice(tmp_path, capfd, cluster):
     sources, out = batch_kit.boxes(tmp_path / "in", 12), tmp_path / "out"
-    with distributed.Client(cluster) as client:
+    with distributed.Client(cluster, set_as_default=False) as client:
         workers = client.run(os.getpid)
         assert len(workers) == 2
         begun = {}
