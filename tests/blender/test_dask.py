@@ -15,6 +15,9 @@ from test_overnight import entries
 distributed = pytest.importorskip("distributed", reason="`make test-dask` runs it")
 
 
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
+
+
 @pytest.fixture
 def cluster(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

@@ -5,6 +5,7 @@ program that takes Blender's place.
 """
 
 import json
+import os
 import shutil
 import stat
 import subprocess
@@ -77,6 +78,7 @@ def test_what_is_wrong_is_said_when_a_job_is_submitted(tmp_path, arguments, name
         job(tmp_path, arguments, files=json.dumps(names))
 
 
+@pytest.mark.skipif(os.name == "nt", reason="a script takes Blender's place")
 def test_the_commands_do_all_files_once_also_when_a_task_is_tried_again(tmp_path):
     sources = batch_kit.boxes(tmp_path / "in", 3)
     blender = tmp_path / "blender"

@@ -19,6 +19,8 @@ from bl_ext.user_default.ridgeform.framework import batch, files
 from bl_ext.user_default.ridgeform.overnight import helper, journal, locks, pool, thumbnails
 from known_shapes import shapes
 
+by_signals = pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
+
 
 def entries(out):
     """The states of the journal beside an output."""
@@ -34,6 +36,7 @@ def is_alive(process):
     return True
 
 
+@by_signals
 def test_a_process_that_crashes_or_hangs_costs_its_file_only(tmp_path, capfd, monkeypatch):
     sources, out = batch_kit.boxes(tmp_path / "in", 5), tmp_path / "out"
     look, ended = pool.Pool._look, {}
@@ -102,6 +105,7 @@ def test_resume_after_the_process_of_all_was_killed(tmp_path, capfd):
     assert batch_kit.state_of(out) == finished
 
 
+@by_signals
 def test_ctrl_c_ends_all_processes_and_leaves_what_resumes(tmp_path, capfd, monkeypatch):
     sources, out = batch_kit.boxes(tmp_path / "in", 6), tmp_path / "out"
     look, seen = pool.Pool._look, []
