@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import ridgeform
 
 
 @dataclass
@@ -41,6 +42,11 @@ class MeshArrays:
         """Which vertices (n,) have a place."""
         x, y, z = self.places.T
         return np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+
+    @cached_property
+    def report(self) -> ridgeform.MeshReport:
+        """What the wheel says of the triangles, where all vertices have a place."""
+        return ridgeform.Mesh(self.places, self.triangles).report
 
     def faces_of_corners(self, corners: np.ndarray) -> np.ndarray:
         """The face of each of some corners."""

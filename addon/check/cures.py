@@ -81,7 +81,7 @@ def _seams(mesh: MeshArrays) -> Callable[[bmesh.types.BMesh], None]:
 
 def _flipped_faces(mesh: MeshArrays) -> Callable[[bmesh.types.BMesh], None]:
     sound = faults.sound(mesh)
-    flipped = faults.flipped_faces(sound, faults.welded(sound)).tolist()
+    flipped = faults.orientation(sound, faults.welded(sound))[0].tolist()
 
     def edit(edited: bmesh.types.BMesh) -> None:
         faces = [edited.faces[face] for face in flipped]

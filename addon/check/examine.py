@@ -8,7 +8,8 @@ import numpy as np
 
 from ..blender import mesh_io, modifiers, selection
 from ..blender.selection import Needs
-from ..framework.preflight import reason_too_large
+from ..framework.far_origin import is_rounded, step_of
+from ..framework.preflight import reason_too_large, uneven_scale
 from . import faults, junctions
 from .arrays import MeshArrays
 from .kinds import KIND, KINDS, Finding, Report
@@ -16,10 +17,6 @@ from .kinds import KIND, KINDS, Finding, Report
 NEEDS = Needs(selection=False)
 CALL = "stylize"
 """The call whose memory is asked for: the tool of the first panel."""
-EVEN = 1e-3
-"""Scales that differ by less are even: what is stretched by a thousandth is not seen."""
-VISIBLE = 1e-5
-"""Rounding by less than this part of a mesh's size is what files of six digits have anyway."""
 
 
 def examine(obj: bpy.types.Object) -> Report:
@@ -72,7 +69,9 @@ def _add_elements(mesh: MeshArrays, add: object) -> None:
     sound = faults.sound(mesh)
     target = faults.welded(sound)
     add("seams", faults.in_groups(faults.weldable(sound, target)))
-    add("flipped_faces", faults.flipped_faces(sound, target))
+    turned, one_sided = faults.orientation(sound, target)
+    add("flipped_faces", turned)
+    add("one_sided", one_sided)
     add("duplicate_faces", faults.duplicate_faces(mesh, target))
     fans, flat = faults.of_triangles(sound, target)
     add("degenerate_faces", flat)
@@ -84,19 +83,16 @@ def _add_elements(mesh: MeshArrays, add: object) -> None:
 
 
 def _scale_notes(obj: bpy.types.Object) -> list[str]:
-    size = np.abs(obj.matrix_world.to_scale())
-    if size.max() - size.min() <= EVEN * size.max():
+    scales = uneven_scale(obj)
+    if scales is None:
         return []
-    return [f"its scale is {', '.join(f'{x:.3g}' for x in size)} along X, Y, Z"]
+    return [f"its scale is {', '.join(f'{x:.3g}' for x in scales)} along X, Y, Z"]
 
 
 def _far_notes(mesh: MeshArrays) -> list[str]:
     places = mesh.places[mesh.is_finite]
-    if len(places) == 0:
+    if not is_rounded(places):
         return []
-    size, farthest = float(np.ptp(places, axis=0).max()), np.abs(places).max()
-    step = float(np.spacing(farthest))
-    if not step > VISIBLE * size > 0.0:
-        return []
-    part = 100.0 * step / size
+    step = step_of(places)
+    part = 100.0 * step / float(np.ptp(places, axis=0).max())
     return [f"coordinates are rounded to steps of {step:.2g}, {part:.1g} % of its size, far from its origin"]

@@ -90,13 +90,22 @@ def in_groups(target: np.ndarray) -> np.ndarray:
     return np.flatnonzero(np.bincount(target, minlength=len(target))[target] > 1)
 
 
-def flipped_faces(mesh: MeshArrays, target: np.ndarray) -> np.ndarray:
-    """Faces that the tools turn over, once vertices are welded to their targets (n,)."""
+def orientation(mesh: MeshArrays, target: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Faces that the tools turn over, and edges at which faces disagree even then.
+
+    That is once vertices are welded to their targets (n,).
+    """
     triangles = target[mesh.triangles]
     a, b, c = triangles.T
     kept = (a != b) & (b != c) & (c != a)
-    _, flipped = ridgeform.orient(triangles[kept])
-    return np.unique(mesh.triangle_faces[kept][flipped])
+    turned, flipped = ridgeform.orient(triangles[kept])
+    faces = np.unique(mesh.triangle_faces[kept][flipped])
+    are_welded = (target != np.arange(len(target))).any()
+    if len(faces) == 0 and not are_welded and len(mesh.report.inconsistent_edges) == 0:
+        return faces, np.empty(0, np.int64)
+    pairs = ridgeform.Mesh(mesh.places, turned).report.inconsistent_edges.reshape(-1, 2)
+    of_edges = np.sort(target[mesh.edges], axis=1).astype(np.int64) @ [len(target), 1]
+    return faces, np.flatnonzero(np.isin(of_edges, pairs.astype(np.int64) @ [len(target), 1]))
 
 
 def of_triangles(mesh: MeshArrays, target: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -107,7 +116,7 @@ def of_triangles(mesh: MeshArrays, target: np.ndarray) -> tuple[np.ndarray, np.n
     """
     if len(mesh.triangles) == 0:
         return np.empty(0, np.int64), np.empty(0, np.int64)
-    report = ridgeform.Mesh(mesh.places, mesh.triangles).report
+    report = mesh.report
     fans = report.nonmanifold_vertices.astype(np.int64)
     fans = fans[~np.isin(fans, mesh.edges[nonmanifold_edges(mesh)])]
     if len(fans) and (target != np.arange(len(target))).any():

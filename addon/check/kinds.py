@@ -111,6 +111,15 @@ KINDS = (
         cure_text="Remove all but the first of the faces in one place",
     ),
     Kind(
+        name="one_sided",
+        label="One-Sided",
+        one="edge where a surface has no outside",
+        many="edges where surfaces have no outside",
+        severity=Severity.LIMITS,
+        tools="Count as borders: no ridge follows them",
+        domain=Domain.EDGE,
+    ),
+    Kind(
         name="uneven_scale",
         label="Uneven Scale",
         one="uneven scale",

@@ -2,12 +2,21 @@
 """Whether a mesh is too large for the memory that is free, before anything of it is read."""
 
 import bpy
+import numpy as np
 import ridgeform
 
 SHARE = 0.8
 """The share of what is free that a call may take, as in the package."""
 STEPS = 20
 """Halvings until what would fit is known to a millionth."""
+UNEVEN_SCALE = 1.1
+"""Object scales that differ by more than this ratio visibly change which facets the flow prefers."""
+
+
+def uneven_scale(obj: bpy.types.Object) -> np.ndarray | None:
+    """The scale (3,) of an object in the world, if it stretches visibly: tools see the mesh without it."""
+    scales = np.abs(obj.matrix_world.to_scale())
+    return scales if scales.max() > UNEVEN_SCALE * scales.min() else None
 
 
 def reason_too_large(obj: bpy.types.Object, call: str) -> str | None:

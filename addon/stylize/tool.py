@@ -13,15 +13,13 @@ import ridgeform
 from ..blender import mesh_io, modifiers
 from ..blender.refusals import RefusedError
 from ..framework.job import Task
+from ..framework.preflight import uneven_scale
 from ..framework.run import Part, Run, counted, meshes_phrase
 from ..framework.surface import group_weights, painted_ridges, welded
 from . import finish, recorded, reduction
 from .finish import Source
 from .ridges import Edges
 from .settings import stylize_options
-
-UNEVEN_SCALE = 1.1
-"""Object scales that differ by more than this ratio visibly change which facets the flow prefers."""
 
 
 @dataclass(kw_only=True)
@@ -199,8 +197,7 @@ def _prepare(obj: bpy.types.Object, settings: object) -> FlowPart:
     part.warnings += modifiers.normal_notes(mesh)
     if settings.output == "POSITIONS":
         part.warnings += modifiers.key_notes(obj) + modifiers.blend_notes(obj)
-    scales = np.abs(obj.matrix_world.to_scale())
-    if scales.max() > UNEVEN_SCALE * scales.min():
+    if uneven_scale(obj) is not None:
         part.warnings.append(
             "its scale is uneven, so facets follow the unscaled shape (apply the scale to avoid that)"
         )

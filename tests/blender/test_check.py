@@ -1,5 +1,7 @@
 """What the check finds on shapes with one fault each, and on none."""
 
+from pathlib import Path
+
 import addon_kit as kit
 import bmesh
 import bpy
@@ -7,6 +9,7 @@ import numpy as np
 import pytest
 from bl_ext.user_default.ridgeform import check
 from bl_ext.user_default.ridgeform.check.kinds import KINDS
+from bl_ext.user_default.ridgeform.framework import files
 
 CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
 SIDES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
@@ -193,6 +196,46 @@ def test_selecting_where_there_is_nothing():
     assert bpy.context.mode == "OBJECT"
 
 
+FIXTURES = Path(__file__).parents[2] / "blend_fixtures"
+
+
+def test_files_with_faults():
+    """What the fixtures are made for is found, and nothing in clean ones."""
+    found = {}
+    for name in ("nonmanifold", "clean", "ngons", "noisy", "bust", "spot"):
+        for obj in files.read_file(FIXTURES / f"{name}.blend"):
+            kinds = {item.kind.name: item.count for item in check.examine(obj).findings}
+            if name == "nonmanifold":
+                found[obj.name] = kinds
+            else:
+                assert kinds == {}, obj.name
+    assert found.pop("Empty") == {"refused": 1}
+    assert {name: set(kinds) for name, kinds in found.items()} == {
+        "Bow Tie": {"nonmanifold_vertices"},
+        "Coincident Vertices": {"seams"},
+        "Duplicate Faces": {"nonmanifold_edges", "duplicate_faces", "flipped_faces"},
+        "Loose": {"loose_edges", "loose_vertices"},
+        "Moebius": {"one_sided"},
+        "Not a Number": {"not_finite"},
+        "Three Faces": {"nonmanifold_edges"},
+        "Touching Cubes": {"nonmanifold_edges"},
+        "Zero Area": {"seams", "degenerate_faces"},
+        "Everything": {
+            "one_sided",
+            "nonmanifold_edges",
+            "nonmanifold_vertices",
+            "duplicate_faces",
+            "seams",
+            "flipped_faces",
+            "degenerate_faces",
+            "loose_vertices",
+        },
+    }
+    assert found["Moebius"]["one_sided"] == 1
+    assert found["Coincident Vertices"]["seams"] == 24
+    assert found["Touching Cubes"]["nonmanifold_edges"] == 4
+
+
 def test_all_kinds_are_tested():
-    here = {*FAULTS, "refused", "loose_edges", "uneven_scale", "modifiers", "shape_keys"}
+    here = {*FAULTS, "refused", "one_sided", "loose_edges", "uneven_scale", "modifiers", "shape_keys"}
     assert here == {kind.name for kind in KINDS}

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from bl_ext.user_default.ridgeform import check
 from bl_ext.user_default.ridgeform.check.kinds import KIND, KINDS
-from test_check import CUBE, FAULTS, SIDES, cube, names
+from bl_ext.user_default.ridgeform.framework import files
+from test_check import CUBE, FAULTS, FIXTURES, SIDES, cube, names
 
 CURABLE = [kind.name for kind in KINDS if kind.cure and kind.name in FAULTS]
 
@@ -202,6 +203,42 @@ def test_a_soup_becomes_the_mesh_that_it_was():
     assert names(check.examine(obj)) == set()
     assert len(obj.data.vertices) == len(whole.data.vertices)
     assert len(obj.data.edges) == len(whole.data.edges)
+
+
+def test_a_scan_with_all_kinds_of_faults_becomes_what_it_was():
+    (obj,) = files.read_file(FIXTURES / "bust.blend")
+    before = kit.coordinates(obj), [tuple(face.vertices) for face in obj.data.polygons]
+    rng = np.random.default_rng(2)
+    edited = bmesh.new()
+    edited.from_mesh(obj.data)
+    edited.faces.ensure_lookup_table()
+    chosen = [edited.faces[face] for face in rng.choice(len(edited.faces), 40, replace=False).tolist()]
+    doubled = [face.copy(verts=False, edges=False) for face in chosen[20:]]
+    bmesh.ops.reverse_faces(edited, faces=chosen[:20])
+    for _ in range(3):
+        edited.verts.new(rng.random(3).tolist())
+    edited.edges.new([edited.verts.new(rng.random(3).tolist()) for _ in range(2)])
+    edited.to_mesh(obj.data)
+    edited.free()
+    obj.select_set(True)
+    bpy.context.view_layer.objects.active = obj
+    counts = {found.kind.name: found.count for found in check.examine(obj).findings}
+    assert counts["duplicate_faces"] == len(doubled)
+    assert counts["loose_vertices"] == 3
+    assert counts["loose_edges"] == 1
+    for kind in ("duplicate_faces", "flipped_faces", "loose_edges", "loose_vertices"):
+        assert bpy.ops.ridgeform.cure_faults(kind=kind) == {"FINISHED"}
+    assert names(check.examine(obj)) == set()
+    assert kit.same_bits(kit.coordinates(obj), before[0])
+    after = [tuple(face.vertices) for face in obj.data.polygons]
+    assert len(after) == len(before[1])
+    # The same faces with the same outside, wherever they begin.
+    assert {_rolled(face) for face in after} == {_rolled(face) for face in before[1]}
+
+
+def _rolled(face: tuple[int, ...]) -> tuple[int, ...]:
+    start = face.index(min(face))
+    return face[start:] + face[:start]
 
 
 def test_several_meshes_are_cured_at_once():
