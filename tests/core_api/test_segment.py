@@ -289,6 +289,29 @@ def test_t_junctions_cut_no_face_and_hide_no_ridge(n, m, turned):
         assert len(result.boundary_edges) == 0 or count == 2
 
 
+@pytest.mark.parametrize("noise", [0.0, 0.05])
+def test_a_second_lid_is_of_the_segment_of_the_first(noise):
+    part = segment_shapes.cube(0).noisy(noise, 1)
+    lid = np.flatnonzero(part.truth == 2)
+    # Turned over as well: which way a copy faces does not matter.
+    copies = part.faces[lid][::-1]
+    copies[::2] = copies[::2, ::-1]
+    mesh = ridgeform.Mesh(part.vertices, np.vstack([part.faces, copies]))
+    assert len(mesh.report.duplicate_faces) == len(lid)
+    result = ridgeform.segment(mesh)
+    assert result.n_segments == 6
+    assert same_partition(result.labels[: len(part.faces)], part.truth)
+    np.testing.assert_array_equal(result.labels[len(part.faces) :], result.labels[lid[::-1]])
+    assert len(np.unique(result.labels_at(3))) == 3
+    np.testing.assert_array_equal(result.labels_at(6), result.labels)
+    # Without the first ones the copies are the lid.
+    faces = np.ones(len(mesh.faces), bool)
+    faces[lid] = False
+    alone = ridgeform.segment(mesh, faces=faces).labels
+    assert (alone[lid] == -1).all()
+    assert (alone[len(part.faces) :] >= 0).all()
+
+
 def test_weights_and_a_choice_of_faces_reach_the_parts_of_split_faces():
     vertices, faces = strips(6, 7, bend=0.3)
     mesh = ridgeform.Mesh(vertices, faces)

@@ -3,10 +3,13 @@
 //! [`indicator`] minimizes the functional (41), whose `v` is low at borders. From there on the paper's way is [`threshold`]; the
 //! other one ([`passes`]) is [`watershed`], then merging across borders that bend little ([`crease`], [`merge`]), dividing what lies across a
 //! ridge ([`divide`]), joining what a neighbor explains ([`explain`]), and moving faces at borders
-//! to the segment that they fit best ([`relabel`]), or, between curved segments, along creases ([`straighten`]). Sides of a few triangles, which the Hessian cannot see, are told by their planes
-//! ([`exact`]), those of a few rows under little noise by the clear ridges around them ([`regions`]). In any case a [`hierarchy`] of nested segmentations comes with it.
+//! to the segment that they fit best ([`relabel`]), or, between curved segments, along creases ([`straighten`]). Sides of a few
+//! triangles, which the Hessian cannot see, are told by their planes ([`exact`]), those of a few rows under little noise by the clear
+//! ridges around them ([`regions`]). In any case a [`hierarchy`] of nested segmentations comes with it. Faces split at T-junctions
+//! ([`split`]) and [`copies`] of faces are given back as the mesh has them.
 
 mod constants;
+mod copies;
 mod crease;
 mod divide;
 mod exact;
@@ -44,6 +47,7 @@ use crate::tools::answer;
 use crate::unit::Unit;
 use crate::Result;
 use constants::{BEND, LEAST_EPSILON};
+use copies::Copies;
 use exact::coarse_planes;
 use indicator::Functional;
 use noise::noise_level;
@@ -152,17 +156,22 @@ fn on(mesh: &Mesh, values: Option<&Columns>, options: &SegmentOptions, progress:
     let value = values.map_or(length, |values| Unit::of(values.data.iter().copied()));
     let mesh = mesh.measured(length)?;
     let values = values.map(|values| values.measured(value));
+    let copies = Copies::among(mesh.connectivity(), options.faces.as_deref());
+    let without = copies.as_ref().map(|copies| copies.others(options.faces.as_deref()));
     let mut found = options.solve.run(|| {
         mesh.demand(Tool::Segment)
             .with_columns(n_columns, options.solve.solver.is_clarabel())
             .admit(options.solve.memory_limit)?;
-        match &options.faces {
+        match without.as_ref().or(options.faces.as_ref()) {
             None => whole(&mesh, values.as_deref(), options, &settings, progress),
             Some(faces) => part::segment_part(&mesh, values.as_deref(), faces, options, |mesh, values, options| {
                 whole(mesh, values, options, &settings, progress)
             }),
         }
     })?;
+    if let Some(copies) = &copies {
+        found = copies.given(found);
+    }
     value.restore_all(found.values.data.iter_mut());
     found.noise = value.restore(found.noise);
     if !found.values.data.iter().all(|x| x.is_finite()) {
