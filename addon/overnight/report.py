@@ -23,6 +23,13 @@ td.file { overflow-wrap: anywhere; }
 img { display: block; background: #fff; border-radius: 4px; }
 .failed { color: #c0262d; }
 .note { opacity: .75; font-size: .87rem; }
+@media (max-width: 46rem) {
+  thead { display: none; }
+  tr { display: flex; flex-wrap: wrap; border-bottom: 1px solid #8884; }
+  td { border: 0; }
+  td.file { flex-basis: 100%; }
+  td.number::before { content: attr(data-label) " "; opacity: .75; }
+}
 @media (prefers-color-scheme: dark) { .failed { color: #ff8080; } }
 """
 
@@ -87,7 +94,8 @@ def _row(record: Record, pictures: Sequence[str] | None) -> str:
     for key in ("vertices", "faces", "seconds"):
         value = record[key]
         shown = "" if value is None else f"{value:.1f}" if key == "seconds" else str(value)
-        cells.append(f'<td class="number">{shown}</td>')
+        label = key.title() if shown else ""
+        cells.append(f'<td class="number" data-label="{label}">{shown}</td>')
     return f"<tr>{''.join(cells)}</tr>"
 
 
