@@ -196,7 +196,8 @@ def _write_positions(mesh: bpy.types.Mesh, coordinates: np.ndarray) -> None:
 
 
 def _read_key(key: bpy.types.ShapeKey) -> np.ndarray:
-    values = np.empty(3 * len(key.data), np.float32)
+    # Blender 5.2 takes any length for that of a key without points.
+    values = np.empty(3 * len(key.data) if key.id_data.user.vertices else 0, np.float32)
     key.data.foreach_get("co", values)
     return values.reshape(-1, 3)
 

@@ -130,3 +130,14 @@ def test_result_as_new_key_builds_on_the_active_key(keyed):
         assert kit.same_bits(after[name], values)
     assert keyed.data.shape_keys.key_blocks["Stylized"].relative_key.name == "A"
     assert not np.array_equal(after["Stylized"], before["A"])
+
+
+@pytest.mark.parametrize("tool", ["stylize", "segment", "fill_holes", "denoise_attribute"])
+def test_keys_without_points_are_no_fault(tool):
+    """Blender 5.2 says some length of a key of an empty mesh."""
+    obj = kit.add_object("Nothing", np.empty((0, 3)), [])
+    obj.shape_key_add(name="Basis")
+    obj.shape_key_add(name="Later")
+    with pytest.raises(RuntimeError, match='"Nothing"'):
+        getattr(bpy.ops.ridgeform, tool)()
+    assert mesh_io.key_coordinates(obj.data)["Later"].shape == (0, 3)
