@@ -142,8 +142,8 @@ def _nonmanifold_vertices(mesh: MeshArrays) -> Callable[[bmesh.types.BMesh], Non
 
 
 def _t_junctions(mesh: MeshArrays) -> Callable[[bmesh.types.BMesh], None]:
-    target = faults.welded(faults.sound(mesh))
-    vertices, edges = junctions.t_junctions(mesh, target)
+    sound = faults.sound(mesh)
+    vertices, edges = junctions.edges_at(sound, faults.welded(sound))
     return lambda edited: splitting.join_junctions(edited, vertices.tolist(), edges.tolist())
 
 

@@ -76,7 +76,7 @@ def _add_elements(mesh: MeshArrays, add: object) -> None:
     fans, flat = faults.of_triangles(sound, target)
     add("degenerate_faces", flat)
     add("uneven_ngons", faults.uneven_ngons(sound))
-    touching, edges = junctions.t_junctions(mesh, target)
+    touching, edges = junctions.edges_at(sound, target)
     add("t_junctions", np.unique(touching))
     # Where an edge ends that another vertex lies on, the surface is open, and its sides touch at the end.
     add("nonmanifold_vertices", fans[~np.isin(fans, mesh.edges[edges])])

@@ -6,11 +6,9 @@ import numpy as np
 from .arrays import MeshArrays
 
 ROUNDING = 1e-5
-"""How far off the edge a vertex may be, in parts of the size of all borders: as for seams, six digits."""
+"""How far off the edge a vertex may be, in parts of the size of all borders, as the wheel says."""
 OF_EDGE = 0.1
-"""And in parts of the edge and of the shortest open edge at the vertex, as for seams."""
-MOST_EDGES = 300_000
-"""Open edges up to which junctions are looked for: about a second."""
+"""And in parts of the edge."""
 AT_ONCE = 1_000_000
 """Pairs of a vertex and an edge that are measured at a time, for the memory's sake."""
 
@@ -23,38 +21,32 @@ def open_edges(mesh: MeshArrays, target: np.ndarray) -> np.ndarray:
     return single[(counts[row.ravel()] == 1) & (ends[:, 0] != ends[:, 1])]
 
 
-def t_junctions(mesh: MeshArrays, target: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices (j,) and the edges (j,) that they lie on; none if there are too many open edges to look.
+def edges_at(mesh: MeshArrays, target: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The T-junctions that the wheel finds, and the edge that each lies on: vertices (j,) and edges (j,).
 
-    Vertices are welded to their targets (n,); of several that are one, the first is meant.
+    Vertices are welded to their targets (n,); of several that are one, the first is meant. One may lie on two
+    edges.
     """
-    edges = open_edges(mesh, target)
-    edges = edges[mesh.is_finite[mesh.edges[edges]].all(axis=1)]
-    if not 0 < len(edges) <= MOST_EDGES:
+    vertices = mesh.report.t_junctions.astype(np.int64)
+    edges = open_edges(mesh, target) if len(vertices) else np.empty(0, np.int64)
+    if len(edges) == 0:
         return np.empty(0, np.int64), np.empty(0, np.int64)
     ends = target[mesh.edges[edges]].astype(np.int64)
-    a, b = (mesh.places[ends[:, k]].astype(np.float64) for k in range(2))
+    border = mesh.places[ends].astype(np.float64)
+    a, b = border[:, 0], border[:, 1]
     lengths = np.linalg.norm(b - a, axis=1)
-    vertices = np.unique(ends)
-    places = mesh.places[vertices].astype(np.float64)
-    reach = np.full(len(vertices), np.inf)
-    for k in range(2):
-        np.minimum.at(reach, np.searchsorted(vertices, ends[:, k]), OF_EDGE * lengths)
-    rounding = ROUNDING * np.ptp(places, axis=0).max()
-    unit = np.spacing(np.abs(places).max().astype(np.float32))
-    reach = np.minimum(reach, max(rounding, 4.0 * float(unit)))
-    found = []
-    for vertex, edge in _near_pairs(places, a, b, lengths):
+    size, farthest = np.ptp(border.reshape(-1, 3), axis=0).max(), np.abs(border).max()
+    reach = np.minimum(max(ROUNDING * size, 4.0 * np.finfo(np.float32).eps * farthest), OF_EDGE * lengths)
+    found = [np.empty((0, 2), np.int64)]
+    for vertex, edge in _near_pairs(mesh.places[vertices].astype(np.float64), a, b, lengths):
         along = b[edge] - a[edge]
-        offset = places[vertex] - a[edge]
-        squared = (along**2).sum(axis=1)
-        part = (offset * along).sum(axis=1) / np.where(squared > 0.0, squared, 1.0)
+        offset = mesh.places[vertices[vertex]] - a[edge]
+        part = (offset * along).sum(axis=1) / (along**2).sum(axis=1)
         apart = np.linalg.norm(offset - part[:, None] * along, axis=1)
-        within = np.minimum(reach[vertex], OF_EDGE * lengths[edge])
-        inside = np.minimum(part, 1.0 - part) * lengths[edge] > within
-        hit = (apart <= within) & inside & (vertices[vertex][:, None] != ends[edge]).all(axis=1)
+        inside = np.minimum(part, 1.0 - part) * lengths[edge] > reach[edge]
+        hit = (apart <= reach[edge]) & inside & (vertices[vertex][:, None] != ends[edge]).all(axis=1)
         found.append(np.stack([vertices[vertex[hit]], edges[edge[hit]]], axis=1))
-    pairs = np.unique(np.concatenate(found), axis=0) if found else np.empty((0, 2), np.int64)
+    pairs = np.unique(np.concatenate(found), axis=0)
     pairs = pairs[~_of_own_face(mesh, target, pairs)]
     return pairs[:, 0], pairs[:, 1]
 
