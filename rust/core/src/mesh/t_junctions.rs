@@ -7,6 +7,9 @@ use crate::mesh::welding::{rounding, OF_EDGE};
 use crate::mesh::{Connectivity, Mesh};
 use crate::Result;
 
+/// A segment of a cell, with a tenth of one on either side, begins and ends so many cells apart at most.
+const MOST_CELLS: i64 = 2;
+
 /// Border edges along which two sides meet in different vertices.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TJunctions {
@@ -37,7 +40,7 @@ impl TJunctions {
         for &h in &border {
             let [a, b] = ends(h).map(|v| positions[v as usize]);
             let (along, length) = (sub(b, a), length(h));
-            let off = tolerance.min(OF_EDGE * length);
+            let off = tolerance.min(OF_EDGE * length.min(cell));
             let place = |v: u32| {
                 let p = positions[v as usize];
                 let t = dot(sub(p, a), along) / dot(along, along);
@@ -179,6 +182,10 @@ impl Grid {
             let [p, q] = [k, k + 1].map(|k| between(a, b, k as f64 / steps as f64));
             let low = self.key([0, 1, 2].map(|c| p[c].min(q[c]) - off));
             let high = self.key([0, 1, 2].map(|c| p[c].max(q[c]) + off));
+            // No more than a cell long: what takes more of them is rounding, so far from the origin that places are not told apart.
+            if [0, 1, 2].iter().any(|&c| high[c].saturating_sub(low[c]) > MOST_CELLS) {
+                continue;
+            }
             for x in low[0]..=high[0] {
                 for y in low[1]..=high[1] {
                     for z in low[2]..=high[2] {
@@ -259,6 +266,9 @@ mod tests {
         for shape in [shapes::grid(5, 4), shapes::cube(3), shapes::grid(3, 3).and(&shapes::icosphere(1))] {
             assert_eq!(split(&shape.mesh().unwrap()).map(|found| found.0), None);
         }
+        // A large sheet so far away that its coordinates hold no edge of the small one.
+        let far = shapes::grid(40, 40).map(|p| p.map(|x| 1e6 * x + 1e18));
+        assert_eq!(split(&shapes::grid(30, 30).and(&far).mesh().unwrap()).map(|found| found.0), None);
         // The corner of a sheet that stands on the border of another one.
         let standing = Mesh::new(
             vec![
