@@ -53,7 +53,7 @@ fn solver(criterion: &mut Criterion) {
         linear_constraints: None,
         coupling: Coupling::Joint,
     };
-    let free = FreeOperator::new(&operator, &problem.fixed);
+    let free = FreeOperator::new(&operator, &problem.fixed).unwrap();
     let reduced = Reduced::<4>::new(&problem, &free, &[0, 1, 2]).unwrap();
     let r = vec![100.0; operator.n_blocks()];
     for (name, check) in [("pass over the blocks", false), ("pass over the blocks, with a check", true)] {

@@ -1,5 +1,8 @@
 //! Things in numbered buckets, by counting sort.
 
+use crate::error::SolveError;
+use crate::memory;
+
 /// Items in buckets `0..n`, each in the order in which it came.
 #[derive(Debug, Clone)]
 pub(crate) struct Buckets<T> {
@@ -17,13 +20,27 @@ impl<T> Default for Buckets<T> {
 impl<T: Copy + Default> Buckets<T> {
     /// Sorts what `each` visits into `n` buckets: it names a bucket and an item at a time, and is called twice.
     pub(crate) fn new(n: usize, each: impl Fn(&mut dyn FnMut(usize, T))) -> Self {
-        let mut starts = vec![0; n + 1];
-        each(&mut |bucket, _| starts[bucket + 1] += 1);
-        for i in 0..n {
-            starts[i + 1] += starts[i];
-        }
-        let mut next = starts.clone();
-        let mut items = vec![T::default(); starts[n]];
+        let starts = counted(vec![0; n + 1], &each);
+        let (next, items) = (starts.clone(), vec![T::default(); starts[n]]);
+        Self::placed(starts, next, items, &each)
+    }
+
+    /// [`Buckets::new`] for what a linear system takes.
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`] when the system does not give that much.
+    pub(crate) fn try_new(n: usize, each: impl Fn(&mut dyn FnMut(usize, T))) -> Result<Self, SolveError> {
+        let starts = counted(memory::repeated(0, n + 1)?, &each);
+        let (next, items) = (memory::twin(&starts)?, memory::repeated(T::default(), starts[n])?);
+        Ok(Self::placed(starts, next, items, &each))
+    }
+
+    fn placed(
+        starts: Vec<usize>,
+        mut next: Vec<usize>,
+        mut items: Vec<T>,
+        each: &impl Fn(&mut dyn FnMut(usize, T)),
+    ) -> Self {
         each(&mut |bucket, item| {
             items[next[bucket]] = item;
             next[bucket] += 1;
@@ -50,6 +67,15 @@ impl<T: Copy + Default> Buckets<T> {
     pub(crate) fn into_parts(self) -> (Vec<usize>, Vec<T>) {
         (self.starts, self.items)
     }
+}
+
+/// Where the buckets begin, with the number of items at the end; `starts` are zeros.
+fn counted<T>(mut starts: Vec<usize>, each: &impl Fn(&mut dyn FnMut(usize, T))) -> Vec<usize> {
+    each(&mut |bucket, _| starts[bucket + 1] += 1);
+    for i in 1..starts.len() {
+        starts[i] += starts[i - 1];
+    }
+    starts
 }
 
 #[cfg(test)]

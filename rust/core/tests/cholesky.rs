@@ -68,7 +68,7 @@ impl Matrix {
         let mesh = shapes::torus(around, along, 3.0, 1.0).noisy(0.01, 1).mesh().unwrap();
         let (connectivity, lengths) = (mesh.connectivity(), mesh.edge_lengths());
         let operator = HessianPattern::new(connectivity).assemble(connectivity, lengths, Dual::Barycentric).unwrap();
-        let normal = NormalMatrix::new(&operator);
+        let normal = NormalMatrix::new(&operator).unwrap();
         let mut values = Vec::new();
         let diagonal = vec![0.1; operator.n_columns];
         normal.assemble(&operator, &vec![1.0; operator.n_blocks()], &diagonal, &mut values);

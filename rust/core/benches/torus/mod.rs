@@ -19,6 +19,6 @@ pub(crate) fn torus(around: usize, across: usize) -> Torus {
     let (connectivity, lengths) = (mesh.connectivity(), mesh.edge_lengths());
     let operator = HessianPattern::new(connectivity).assemble(connectivity, lengths, Dual::Barycentric).unwrap();
     let fidelity = voronoi_mass(connectivity, lengths).iter().map(|m| 2e4 * m).collect();
-    let normal = NormalMatrix::new(&operator);
+    let normal = NormalMatrix::new(&operator).unwrap();
     Torus { shape, operator, fidelity, normal }
 }

@@ -8,7 +8,7 @@ use faer::sparse::linalg::cholesky::{
     factorize_symbolic_cholesky, CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
 };
 use faer::sparse::linalg::{SupernodalThreshold, SymbolicSupernodalParams};
-use faer::sparse::SymbolicSparseColMatRef;
+use faer::sparse::{FaerError, SymbolicSparseColMatRef};
 use faer::Side;
 
 use crate::error::SolveError;
@@ -55,7 +55,13 @@ impl Cholesky {
     /// # Errors
     /// [`SolveError::Memory`] when the factor is larger than that, or than what the system gives.
     pub fn analyze(pattern: LowerPattern, memory_limit: Option<usize>) -> Result<Self, SolveError> {
-        let failed = |e: &dyn std::fmt::Debug| SolveError::Factorization { reason: format!("{e:?}") };
+        let failed = |error| match error {
+            // What it asked for it does not say: of what it makes, the factor's pattern is the largest.
+            FaerError::OutOfMemory => {
+                SolveError::Memory { needed: size_of::<usize>() * pattern.rows.len(), limit: memory_limit }
+            }
+            other => SolveError::Factorization { reason: format!("{other:?}") },
+        };
         let view = SymbolicSparseColMatRef::new_checked(pattern.n, pattern.n, &pattern.starts, None, &pattern.rows);
         let parameters = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
@@ -63,15 +69,16 @@ impl Cholesky {
             ..CholeskySymbolicParams::default()
         };
         let first = if pattern.n < DISSECTED_FROM { minimum_degree(&pattern)? } else { nested_dissection(&pattern)? };
-        let forward = postordered(&pattern, &first);
-        let mut backward = vec![0; pattern.n];
+        let forward = postordered(&pattern, &first)?;
+        let mut backward = memory::repeated(0, pattern.n)?;
         for (k, &i) in forward.iter().enumerate() {
             backward[i] = k;
         }
         let ordering = SymmetricOrdering::Custom(PermRef::new_checked(&forward, &backward, pattern.n));
-        let symbolic = factorize_symbolic_cholesky(view, Side::Lower, ordering, parameters).map_err(|e| failed(&e))?;
-        let order = symbolic.perm().map_or_else(Vec::new, |p| p.arrays().0.iter().map(|&i| i as u32).collect());
-        let panels = panels(&symbolic);
+        let symbolic = factorize_symbolic_cholesky(view, Side::Lower, ordering, parameters).map_err(failed)?;
+        let mut order = memory::room(pattern.n)?;
+        order.extend(symbolic.perm().into_iter().flat_map(|p| p.arrays().0).map(|&i| i as u32));
+        let panels = panels(&symbolic)?;
         let tree = Tree::new(&pattern, &order, &panels)?;
         let subtrees = Subtrees::new(&panels, &tree);
         let len = symbolic.len_val() + LANES;
@@ -155,31 +162,36 @@ impl Cholesky {
 }
 
 /// The supernodes of the factor; a factor without any, of a matrix that is nearly diagonal, has panels of one column.
-fn panels(symbolic: &SymbolicCholesky<usize>) -> Panels {
+///
+/// # Errors
+/// [`SolveError::Memory`].
+fn panels(symbolic: &SymbolicCholesky<usize>) -> Result<Panels, SolveError> {
     let mut panels = Panels { below: vec![0], ..Panels::default() };
-    let mut push = |begin: usize, below: &[usize]| {
+    let push = |panels: &mut Panels, begin: usize, below: &[usize]| {
         panels.begin.push(begin);
         panels.rows.extend(below.iter().map(|&row| row as u32));
         panels.below.push(panels.rows.len());
     };
     match symbolic.raw() {
         SymbolicCholeskyRaw::Supernodal(factor) => {
+            let len = (0..factor.n_supernodes()).map(|s| factor.supernode(s).pattern().len()).sum();
+            panels.rows = memory::room(len)?;
             for s in 0..factor.n_supernodes() {
                 let supernode = factor.supernode(s);
-                push(supernode.start(), supernode.pattern());
+                push(&mut panels, supernode.start(), supernode.pattern());
             }
-            panels.values = factor.col_ptr_for_val().to_vec();
+            panels.values = memory::twin(factor.col_ptr_for_val())?;
         }
         SymbolicCholeskyRaw::Simplicial(factor) => {
             for (j, bounds) in factor.col_ptr().windows(2).enumerate() {
                 // The diagonal entry comes first.
-                push(j, &factor.row_idx()[bounds[0] + 1..bounds[1]]);
+                push(&mut panels, j, &factor.row_idx()[bounds[0] + 1..bounds[1]]);
             }
-            panels.values = factor.col_ptr().to_vec();
+            panels.values = memory::twin(factor.col_ptr())?;
         }
     }
     panels.begin.push(symbolic.ncols());
-    panels
+    Ok(panels)
 }
 
 #[cfg(test)]

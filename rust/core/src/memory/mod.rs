@@ -17,6 +17,7 @@ pub use model::Tool;
 pub use threads::processors;
 pub(crate) use threads::room_for_threads;
 
+use crate::error::SolveError;
 use crate::{Error, Result};
 
 /// The part of the free memory that a call takes at most by itself: estimates are within a quarter of the truth, so that one
@@ -90,6 +91,37 @@ pub fn reserved<T>(what: &'static str, n: usize) -> Result<Vec<T>> {
         let needed = n.saturating_mul(size_of::<T>());
         Error::Memory { what, needed, limit: available(), is_given: false, fits: 0 }
     })?;
+    Ok(array)
+}
+
+/// An empty array with room for `n` entries of what a linear system takes.
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn room<T>(n: usize) -> std::result::Result<Vec<T>, SolveError> {
+    let mut array = Vec::new();
+    let refused = |_| SolveError::Memory { needed: n.saturating_mul(size_of::<T>()), limit: None };
+    array.try_reserve_exact(n).map_err(refused)?;
+    Ok(array)
+}
+
+/// `n` times `value`, as [`room`].
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn repeated<T: Clone>(value: T, n: usize) -> std::result::Result<Vec<T>, SolveError> {
+    let mut array = room(n)?;
+    array.resize(n, value);
+    Ok(array)
+}
+
+/// A copy of `values`, as [`room`].
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn twin<T: Clone>(values: &[T]) -> std::result::Result<Vec<T>, SolveError> {
+    let mut array = room(values.len())?;
+    array.extend_from_slice(values);
     Ok(array)
 }
 

@@ -113,7 +113,7 @@ impl Pencil<'_> {
 
     /// The factor of `Q + σM`.
     fn factored(&self) -> Result<Cholesky> {
-        let normal = NormalMatrix::new(self.operator);
+        let normal = NormalMatrix::new(self.operator)?;
         let mut cholesky = Cholesky::analyze(normal.pattern().clone(), self.memory_limit)?;
         let mut values = Vec::new();
         let mut shift = SHIFT * self.scale;

@@ -3,6 +3,8 @@
 use std::borrow::Cow;
 
 use crate::block_rows::BlockRows;
+use crate::error::SolveError;
+use crate::memory;
 
 /// The free rows of the operator, shared by all columns of a problem, and the blocks that see one of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,18 +21,32 @@ pub struct FreeOperator {
 
 impl FreeOperator {
     /// Drops the columns of `operator` whose rows of `u` are fixed, and the blocks that have no other.
-    #[must_use]
-    pub fn new(operator: &BlockRows, fixed: &[bool]) -> Self {
-        let free: Vec<u32> = (0..operator.n_columns as u32).filter(|&i| !fixed[i as usize]).collect();
-        let mut place = vec![None; operator.n_columns];
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`] when the system does not give what it takes.
+    pub fn new(operator: &BlockRows, fixed: &[bool]) -> Result<Self, SolveError> {
+        let mut free: Vec<u32> = memory::room(fixed.iter().filter(|&&fixed| !fixed).count())?;
+        free.extend((0..operator.n_columns as u32).filter(|&i| !fixed[i as usize]));
+        let mut place = memory::repeated(None, operator.n_columns)?;
         for (k, &i) in free.iter().enumerate() {
             place[i as usize] = Some(k as u32);
         }
         if free.len() == operator.n_columns {
-            return Self { operator: operator.clone(), blocks: None, place, free };
+            let operator = BlockRows {
+                n_columns: operator.n_columns,
+                starts: memory::twin(&operator.starts)?,
+                columns: memory::twin(&operator.columns)?,
+                values: memory::twin(&operator.values)?,
+            };
+            return Ok(Self { operator, blocks: None, place, free });
         }
         let mut kept = BlockRows::empty(free.len());
-        let mut blocks = Vec::new();
+        let n_entries = operator.columns.iter().filter(|&&column| place[column as usize].is_some()).count();
+        (kept.columns, kept.values) = (memory::room(n_entries)?, memory::room(n_entries)?);
+        let mut blocks = memory::room(operator.n_blocks())?;
+        kept.starts
+            .try_reserve_exact(operator.n_blocks())
+            .map_err(|_| SolveError::Memory { needed: size_of::<usize>() * operator.n_blocks(), limit: None })?;
         for b in 0..operator.n_blocks() {
             let (columns, values) = operator.block(b);
             for (&column, value) in columns.iter().zip(values) {
@@ -44,7 +60,7 @@ impl FreeOperator {
                 blocks.push(b as u32);
             }
         }
-        Self { operator: kept, blocks: Some(blocks), place, free }
+        Ok(Self { operator: kept, blocks: Some(blocks), place, free })
     }
 
     /// What belongs to the blocks that are left, of something per block.

@@ -2,7 +2,9 @@
 
 use crate::block_rows::{BlockRows, BLOCK};
 use crate::buckets::Buckets;
+use crate::error::SolveError;
 use crate::linear::pattern::LowerPattern;
+use crate::memory;
 use crate::solve::primal_dual::Stiffness;
 
 /// Where each product of two entries of a block lands in the lower triangle of `HᵀRH`.
@@ -15,10 +17,12 @@ pub struct NormalMatrix {
 
 impl NormalMatrix {
     /// Finds the pattern in one pass over the blocks and one sort of each column.
-    #[must_use]
-    pub fn new(operator: &BlockRows) -> Self {
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`] when the system does not give what it takes.
+    pub fn new(operator: &BlockRows) -> Result<Self, SolveError> {
         let n = operator.n_columns;
-        let mut gathered = Buckets::new(n, |visit| {
+        let mut gathered = Buckets::try_new(n, |visit| {
             (0..n).for_each(|j| visit(j, j as u32));
             for b in 0..operator.n_blocks() {
                 let (columns, _) = operator.block(b);
@@ -26,22 +30,24 @@ impl NormalMatrix {
                     columns[..i].iter().for_each(|&column| visit(column as usize, row));
                 }
             }
-        });
-        let mut starts = Vec::with_capacity(n + 1);
-        let mut rows: Vec<usize> = Vec::new();
+        })?;
+        let mut starts = memory::room(n + 1)?;
+        (0..n).for_each(|j| gathered.of_mut(j).sort_unstable());
+        let distinct = |j| gathered.of(j).chunk_by(|a, b| a == b).count();
+        let mut rows: Vec<usize> = memory::room((0..n).map(distinct).sum())?;
         starts.push(0);
         for j in 0..n {
-            let column = gathered.of_mut(j);
-            column.sort_unstable();
             let first = rows.len();
-            for &row in column.iter() {
+            for &row in gathered.of(j) {
                 if rows.len() == first || rows[rows.len() - 1] != row as usize {
                     rows.push(row as usize);
                 }
             }
             starts.push(rows.len());
         }
-        let mut landing = Vec::new();
+        let size = |b| operator.block(b).0.len();
+        let products = (0..operator.n_blocks()).map(|b| size(b) * (size(b) + 1) / 2).sum();
+        let mut landing = memory::room(products)?;
         for b in 0..operator.n_blocks() {
             let columns = &operator.columns[operator.starts[b]..operator.starts[b + 1]];
             for (i, &row) in columns.iter().enumerate() {
@@ -52,7 +58,7 @@ impl NormalMatrix {
                 }
             }
         }
-        Self { landing, pattern: LowerPattern { n, starts, rows } }
+        Ok(Self { landing, pattern: LowerPattern { n, starts, rows } })
     }
 
     /// The lower triangle's pattern; every diagonal entry is there.
@@ -137,7 +143,7 @@ mod tests {
     #[test]
     fn agrees_with_the_dense_product_and_solves() {
         let (h, r, d) = (operator(), [2.0, 7.0, 0.5], [0.1, 0.2, 0.3, 0.4]);
-        let normal = NormalMatrix::new(&h);
+        let normal = NormalMatrix::new(&h).unwrap();
         let mut values = Vec::new();
         normal.assemble(&h, &r, &d, &mut values);
         let expected = dense(&h, &r, &d);

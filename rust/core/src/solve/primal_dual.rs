@@ -217,7 +217,7 @@ mod tests {
     fn with_reduced(check: impl FnOnce(Reduced<'_, 1>)) {
         let operator = operator();
         let problem = problem(&operator);
-        let free = FreeOperator::new(&operator, &problem.fixed);
+        let free = FreeOperator::new(&operator, &problem.fixed).unwrap();
         check(Reduced::<1>::new(&problem, &free, &[0]).unwrap());
     }
 

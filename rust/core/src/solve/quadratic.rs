@@ -52,7 +52,7 @@ const MOST_STEPS: usize = 299;
 /// [`Error::Cancelled`].
 pub fn minimize(problem: &Problem<'_>, settings: &Settings, progress: &Progress) -> Result<Solution> {
     problem.check_shapes()?;
-    let free = FreeOperator::new(problem.operator, &problem.fixed);
+    let free = FreeOperator::new(problem.operator, &problem.fixed)?;
     let mut newton = Newton::new(problem, &free, settings.memory_limit)?;
     let mut values = problem.target.clone();
     let mut total = Totals::default();
@@ -93,7 +93,7 @@ struct Newton<'a> {
 
 impl<'a> Newton<'a> {
     fn new(problem: &'a Problem<'a>, free: &'a FreeOperator, memory_limit: Option<usize>) -> Result<Self> {
-        let normal = NormalMatrix::new(&free.operator);
+        let normal = NormalMatrix::new(&free.operator)?;
         let mut cholesky = Cholesky::analyze(normal.pattern().clone(), memory_limit)?;
         if free.free.is_empty() {
             return Ok(Self { problem, free, cholesky });

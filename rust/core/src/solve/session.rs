@@ -92,7 +92,7 @@ impl Session {
             Coupling::Joint => vec![(0..k).collect()],
             Coupling::Separate => (0..k).map(|c| vec![c]).collect(),
         };
-        self.prepare(problem);
+        self.prepare(problem)?;
         let stored = std::mem::take(&mut self.warm);
         let fits = stored.len() == groups.len();
         let mut total = Total::new(problem, method);
@@ -112,8 +112,8 @@ impl Session {
         Ok(total.into_solution())
     }
 
-    fn prepare(&mut self, problem: &Problem<'_>) {
-        let free = FreeOperator::new(problem.operator, &problem.fixed);
+    fn prepare(&mut self, problem: &Problem<'_>) -> Result<()> {
+        let free = FreeOperator::new(problem.operator, &problem.fixed)?;
         match &mut self.structure {
             Some(s)
                 if s.free.free == free.free
@@ -126,6 +126,7 @@ impl Session {
                 *structure = Some(Structure { free, system: None });
             }
         }
+        Ok(())
     }
 
     fn group<const K: usize>(

@@ -2,6 +2,7 @@
 
 use super::scalar::{ScalarOptions, ScalarProblem};
 use crate::linear::Columns;
+use crate::memory;
 use crate::mesh::Mesh;
 use crate::progress::Progress;
 use crate::solve::Solution;
@@ -42,7 +43,8 @@ pub fn denoise(mesh: &Mesh, values: &Columns, options: &DenoiseOptions, progress
     if fixed.len() != n {
         return Err(Error::argument("fixed", format!("has {} entries, expected one per vertex: {n}", fixed.len())));
     }
-    let problem =
-        ScalarProblem { mesh, options: &options.scalar, fidelity: options.fidelity, target: values.clone(), fixed };
+    let data = memory::copied("values", &values.data)?;
+    let target = Columns { n_rows: values.n_rows, n_columns: values.n_columns, data };
+    let problem = ScalarProblem { mesh, options: &options.scalar, fidelity: options.fidelity, target, fixed };
     problem.run(progress)
 }

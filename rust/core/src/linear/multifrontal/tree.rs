@@ -5,6 +5,7 @@ use crate::buckets::Buckets;
 use crate::error::SolveError;
 use crate::linear::pattern::LowerPattern;
 use crate::linear::triangular::Panels;
+use crate::memory;
 
 /// No panel.
 pub(super) const NONE: u32 = u32::MAX;
@@ -44,10 +45,10 @@ impl Tree {
     /// The tree of the fronts of `panels`. Row `order[i]` of the matrix is row `i` of the factor.
     ///
     /// # Errors
-    /// [`SolveError::Factorization`] when the panels are in no postorder.
+    /// [`SolveError::Factorization`] when the panels are in no postorder, [`SolveError::Memory`].
     pub(crate) fn new(pattern: &LowerPattern, order: &[u32], panels: &Panels) -> Result<Self, SolveError> {
         let count = panels.count();
-        let mut panel_of = vec![0u32; pattern.n];
+        let mut panel_of = memory::repeated(0u32, pattern.n)?;
         for s in 0..count {
             panel_of[panels.begin[s]..panels.begin[s + 1]].fill(s as u32);
         }
@@ -71,8 +72,8 @@ impl Tree {
             return Err(SolveError::Factorization { reason: "the ordering of the matrix is no postorder".into() });
         }
         tree.split(panels, &parents);
-        tree.find_relative(panels, &parents);
-        tree.find_targets(pattern, order, panels, &panel_of);
+        tree.find_relative(panels, &parents)?;
+        tree.find_targets(pattern, order, panels, &panel_of)?;
         Ok(tree)
     }
 
@@ -128,8 +129,8 @@ impl Tree {
         most
     }
 
-    fn find_relative(&mut self, panels: &Panels, parents: &[u32]) {
-        self.relative.reserve_exact(panels.rows.len());
+    fn find_relative(&mut self, panels: &Panels, parents: &[u32]) -> Result<(), SolveError> {
+        self.relative = memory::room(panels.rows.len())?;
         for (s, &parent) in parents.iter().enumerate() {
             if parent == NONE {
                 continue;
@@ -149,15 +150,23 @@ impl Tree {
                 }
             }
         }
+        Ok(())
     }
 
-    fn find_targets(&mut self, pattern: &LowerPattern, order: &[u32], panels: &Panels, panel_of: &[u32]) {
-        let mut place: Vec<u32> = (0..pattern.n as u32).collect();
+    fn find_targets(
+        &mut self,
+        pattern: &LowerPattern,
+        order: &[u32],
+        panels: &Panels,
+        panel_of: &[u32],
+    ) -> Result<(), SolveError> {
+        let mut place: Vec<u32> = memory::room(pattern.n)?;
+        place.extend(0..pattern.n as u32);
         for (k, &i) in order.iter().enumerate() {
             place[i as usize] = k as u32;
         }
         let count = panels.count();
-        let in_panels = Buckets::new(count, |visit| {
+        let in_panels = Buckets::try_new(count, |visit| {
             for j in 0..pattern.n {
                 for e in pattern.starts[j]..pattern.starts[j + 1] {
                     let (a, b) = (place[pattern.rows[e]], place[j]);
@@ -165,12 +174,11 @@ impl Tree {
                     visit(panel_of[column as usize] as usize, [e as u32, row, column]);
                 }
             }
-        });
+        })?;
         let at;
         (self.starts, at) = in_panels.into_parts();
-        let mut local = vec![0u32; pattern.n];
-        self.source.reserve_exact(at.len());
-        self.target.reserve_exact(at.len());
+        let mut local = memory::repeated(0u32, pattern.n)?;
+        (self.source, self.target) = (memory::room(at.len())?, memory::room(at.len())?);
         for s in 0..count {
             let (begin, end) = (panels.begin[s], panels.begin[s + 1]);
             let below = panels.below(s);
@@ -183,5 +191,6 @@ impl Tree {
                 self.target.push(((*column as usize - begin) * stride) as u32 + local[*row as usize]);
             }
         }
+        Ok(())
     }
 }

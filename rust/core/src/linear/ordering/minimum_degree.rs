@@ -6,6 +6,7 @@ use faer::sparse::SymbolicSparseColMatRef;
 
 use crate::error::SolveError;
 use crate::linear::pattern::LowerPattern;
+use crate::memory;
 
 /// The rows of a pattern in an order that approximate minimum degree finds.
 ///
@@ -14,9 +15,13 @@ use crate::linear::pattern::LowerPattern;
 pub fn minimum_degree(pattern: &LowerPattern) -> Result<Vec<u32>, SolveError> {
     let n = pattern.n;
     let view = SymbolicSparseColMatRef::new_checked(n, n, &pattern.starts, None, &pattern.rows);
-    let (mut forward, mut backward) = (vec![0usize; n], vec![0usize; n]);
-    let mut memory = MemBuffer::new(amd::order_scratch::<usize>(n, pattern.rows.len()));
-    amd::order(&mut forward, &mut backward, view, amd::Control::default(), MemStack::new(&mut memory))
+    let (mut forward, mut backward) = (memory::repeated(0usize, n)?, memory::repeated(0usize, n)?);
+    let scratch = amd::order_scratch::<usize>(n, pattern.rows.len());
+    let refused = |_| SolveError::Memory { needed: scratch.size_bytes(), limit: None };
+    let mut buffer = MemBuffer::try_new(scratch).map_err(refused)?;
+    amd::order(&mut forward, &mut backward, view, amd::Control::default(), MemStack::new(&mut buffer))
         .map_err(|e| SolveError::Factorization { reason: format!("{e:?}") })?;
-    Ok(forward.iter().map(|&i| i as u32).collect())
+    let mut order = memory::room(n)?;
+    order.extend(forward.iter().map(|&i| i as u32));
+    Ok(order)
 }

@@ -256,7 +256,7 @@ mod tests {
             linear_constraints: None,
             coupling: Coupling::Joint,
         };
-        let free = FreeOperator::new(&operator, &problem.fixed);
+        let free = FreeOperator::new(&operator, &problem.fixed).unwrap();
         let reduced = Reduced::<1>::new(&problem, &free, &[0]).unwrap();
         let mut sweep = Sweep::resume(&reduced, &[], |_| [[0.0]; BLOCK]);
         sweep.advance(&reduced, &[], &reduced.target, true);
@@ -281,7 +281,7 @@ mod tests {
             linear_constraints: None,
             coupling: Coupling::Joint,
         };
-        let free = FreeOperator::new(&operator, &problem.fixed);
+        let free = FreeOperator::new(&operator, &problem.fixed).unwrap();
         let reduced = Reduced::<2>::new(&problem, &free, &[0, 1]).unwrap();
         let w = &problem.weights;
         let r: Vec<f64> = w.iter().enumerate().map(|(b, w)| w * (0.5 + (b % 5) as f64)).collect();

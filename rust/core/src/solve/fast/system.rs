@@ -2,6 +2,8 @@
 
 use crate::error::SolveError;
 use crate::linear::cholesky::Cholesky;
+use crate::linear::pattern::LowerPattern;
+use crate::memory;
 use crate::solve::free_operator::FreeOperator;
 use crate::solve::normal_matrix::NormalMatrix;
 use crate::solve::primal_dual::Stiffness;
@@ -34,8 +36,10 @@ impl System {
     /// # Errors
     /// [`SolveError::Memory`] when the factor does not fit into `memory_limit` bytes.
     pub fn new(free: &FreeOperator, memory_limit: Option<usize>) -> Result<Self, SolveError> {
-        let normal = NormalMatrix::new(&free.operator);
-        let cholesky = Cholesky::analyze(normal.pattern().clone(), memory_limit)?;
+        let normal = NormalMatrix::new(&free.operator)?;
+        let LowerPattern { n, starts, rows } = normal.pattern();
+        let pattern = LowerPattern { n: *n, starts: memory::twin(starts)?, rows: memory::twin(rows)? };
+        let cholesky = Cholesky::analyze(pattern, memory_limit)?;
         Ok(Self { normal, cholesky, values: Vec::new(), proximal: Vec::new(), scale: 1.0, refined: false })
     }
 

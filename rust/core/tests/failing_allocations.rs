@@ -1,0 +1,106 @@
+//! One large allocation of a call fails, each in turn.
+//!
+//! In a child the call runs on one thread with an allocator that gives nothing for one allocation of at least [`LARGE`] bytes. It
+//! must end with a result or an error that says what is missing. Where the allocation cannot return an error the process ends, as
+//! Rust has it: that is why a call asks for all of it before ([`ridgeform_core::memory`]). Nothing else may happen: no panic, no
+//! result that says that it is none, no other error. What was found is printed; with `RIDGEFORM_FAIL=all` for every allocation.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod allocation_calls;
+
+use std::process::Command;
+
+use allocation_calls::{multiply, shape_for, Given, CALLS};
+use rayon::prelude::*;
+use ridgeform_core::error::SolveError;
+use ridgeform_core::Error;
+use ridgeform_failing_allocator::Failing;
+
+#[global_allocator]
+static ALLOCATOR: Failing = Failing::new();
+
+/// Names the case in the child.
+const CASE: &str = "RIDGEFORM_FAILING_ALLOCATION";
+
+/// With `all`, every allocation is failed, not some.
+const WHICH: &str = "RIDGEFORM_FAIL";
+
+/// What the system allocator takes from the system by itself, and not from what it keeps for small pieces.
+const LARGE: usize = 128 << 10;
+
+/// So many of a call are tried, evenly spread.
+const TRIED: usize = 3;
+
+/// Runs a case in the child: prints how it ended.
+fn run(name: &str, which: usize) {
+    let (_, side) = CALLS.into_iter().find(|(call, _)| *call == name).unwrap();
+    let given = Given::new(shape_for(name, side, 1.0).mesh().unwrap());
+    rayon::broadcast(|_| multiply());
+    multiply();
+    ALLOCATOR.fail(which, LARGE);
+    let outcome = given.call(name);
+    let count = ALLOCATOR.stop();
+    match outcome {
+        Ok(()) => println!("outcome: {count} result"),
+        Err(Error::Memory { .. } | Error::Solve(SolveError::Memory { .. })) => println!("outcome: {count} refused"),
+        Err(error) => println!("outcome: {count} {error}"),
+    }
+}
+
+/// How a call ends whose allocation `which` fails.
+#[derive(Debug, PartialEq)]
+enum End {
+    /// After so many large allocations.
+    Result(usize),
+    Refused,
+    /// The allocation could not return an error.
+    Aborted,
+    Fault(String),
+}
+
+fn end_of(name: &str, which: usize) -> End {
+    let child = Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "a_failed_allocation_is_refused_or_known", "--nocapture"])
+        .env(CASE, format!("{name}@{which}"))
+        .env("RAYON_NUM_THREADS", "1")
+        .output()
+        .unwrap();
+    let (text, errors) = (String::from_utf8_lossy(&child.stdout), String::from_utf8_lossy(&child.stderr));
+    let outcome = text.lines().find_map(|line| line.split("outcome: ").nth(1)).and_then(|rest| rest.split_once(' '));
+    match outcome {
+        Some((count, "result")) if child.status.success() => End::Result(count.parse().unwrap()),
+        Some((_, "refused")) if child.status.success() => End::Refused,
+        None if errors.contains("memory allocation of") => End::Aborted,
+        _ => End::Fault(format!("{name} at {which}: {} {text} {errors}", child.status)),
+    }
+}
+
+/// What was wrong with how a call ended. Its first large allocation is what it asks for all of itself, which is refused.
+fn faults_of(name: &str, is_all: bool) -> Vec<String> {
+    let count = match end_of(name, usize::MAX) {
+        End::Result(count) => count,
+        end => return vec![format!("{name} has no result: {end:?}")],
+    };
+    let step = if is_all { 1 } else { count.div_ceil(TRIED).max(1) };
+    let ends: Vec<End> = (0..count).step_by(step).map(|which| end_of(name, which)).collect();
+    let number = |wanted: &End| ends.iter().filter(|end| *end == wanted).count();
+    let (refused, aborted) = (number(&End::Refused), number(&End::Aborted));
+    println!("{name}: {count} large, {} tried, {refused} refused, {aborted} end the process", ends.len());
+    let first = (ends.first() != Some(&End::Refused)).then(|| format!("{name}: the first is {:?}", ends.first()));
+    let others = ends.into_iter().filter_map(|end| match end {
+        End::Fault(fault) => Some(fault),
+        _ => None,
+    });
+    others.chain(first).collect()
+}
+
+#[test]
+fn a_failed_allocation_is_refused_or_known() {
+    if let Ok(case) = std::env::var(CASE) {
+        let (name, which) = case.split_once('@').unwrap();
+        return run(name, which.parse().unwrap());
+    }
+    let is_all = std::env::var(WHICH).is_ok_and(|which| which == "all");
+    let faults: Vec<String> = CALLS.into_par_iter().flat_map(|(name, _)| faults_of(name, is_all)).collect();
+    assert!(faults.is_empty(), "{faults:?}");
+}
