@@ -24,13 +24,18 @@ def boxes(folder, count, suffix=".ply"):
     return paths
 
 
-def run(capfd, tool, *arguments):
-    """Exit code and records of a command with JSON, by the name of the input."""
+def records(capfd, *arguments):
+    """Exit code and records of a command with JSON."""
     batch.flush_output()
     capfd.readouterr()
-    code = batch.main([tool, *map(str, arguments), "--json"])
-    records = [json.loads(line) for line in capfd.readouterr().out.splitlines()]
-    return code, {Path(record["file"]).name: record for record in records}
+    code = batch.main([*map(str, arguments), "--json"])
+    return code, [json.loads(line) for line in capfd.readouterr().out.splitlines()]
+
+
+def run(capfd, tool, *arguments):
+    """The same, the records by the name of the input."""
+    code, found = records(capfd, tool, *arguments)
+    return code, {Path(record["file"]).name: record for record in found}
 
 
 def start(*arguments):

@@ -11,18 +11,15 @@ import bpy
 import hole_kit
 import numpy as np
 import pytest
+from batch_kit import records
 from bl_ext.user_default.ridgeform.framework import batch, files
 
 STEPS = ("--steps", "2")
 
 
 def run(capfd, *arguments):
-    """Exit code and records of a command with JSON."""
-    batch.flush_output()
-    capfd.readouterr()
-    code = batch.main(["stylize", *map(str, arguments), *STEPS, "--json"])
-    lines = capfd.readouterr().out.splitlines()
-    return code, [json.loads(line) for line in lines]
+    """Exit code and records of Stylize."""
+    return records(capfd, "stylize", *arguments, *STEPS)
 
 
 def saved(folder, *suffixes):

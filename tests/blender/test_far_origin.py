@@ -1,21 +1,16 @@
 """Files whose coordinates lie far from the origin: nothing is lost, or the record says how much."""
 
-import json
-
 import numpy as np
 import pytest
-from bl_ext.user_default.ridgeform.framework import batch, far_origin
+from batch_kit import records
+from bl_ext.user_default.ridgeform.framework import far_origin
 
 STEPS = ("--steps", "2")
 
 
 def run(capfd, *arguments):
-    """Exit code and records of a command with JSON."""
-    batch.flush_output()
-    capfd.readouterr()
-    code = batch.main(["stylize", *map(str, arguments), *STEPS, "--json"])
-    lines = capfd.readouterr().out.splitlines()
-    return code, [json.loads(line) for line in lines]
+    """Exit code and records of Stylize."""
+    return records(capfd, "stylize", *arguments, *STEPS)
 
 
 SHIFT = np.array([512345.0, 5572094.0, 312.0])
