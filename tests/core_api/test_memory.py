@@ -10,13 +10,14 @@ import pytest
 import ridgeform
 from known_shapes import shapes
 
-BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
+ROOT = Path(__file__).parents[2]
+PATHS = [str(ROOT / "benchmarks"), str(ROOT / "scripts")]
 
 ON_LINUX = pytest.mark.skipif(sys.platform != "linux", reason="limits of processes are read on Linux only")
 
 CAPPED = """
 import json, resource, sys
-sys.path.insert(0, {benchmarks!r})
+sys.path[:0] = {paths!r}
 import ridgeform
 from tool_calls import CALLS, bumpy_grid
 
@@ -58,7 +59,7 @@ def in_a_process(code):
 @ON_LINUX
 @pytest.mark.parametrize("room", [20, 60, 110, 300, 2500])
 def test_under_a_cap_every_call_ends_with_a_result_or_an_error(room):
-    outcomes = in_a_process(CAPPED.format(benchmarks=str(BENCHMARKS), room=room << 20, calls=CALLS))
+    outcomes = in_a_process(CAPPED.format(paths=PATHS, room=room << 20, calls=CALLS))
     allowed = {"result"} if room == 2500 else {"result", "MemoryLimitError", "MemoryError"}
     assert set(outcomes) == set(CALLS)
     assert set(outcomes.values()) <= allowed, outcomes
@@ -84,7 +85,7 @@ def test_what_is_free_falls_with_the_limit_of_the_process():
 @ON_LINUX
 @pytest.mark.parametrize("call", ["stylize", "denoise 3 columns", "hessian"])
 def test_estimates_are_within_a_quarter_of_what_is_taken(call):
-    path = f"import sys; sys.path.insert(0, {str(BENCHMARKS)!r})"
+    path = f"import sys; sys.path[:0] = {PATHS!r}"
     code = f"{path}; from peaks import peak; print(list(peak({call!r}, 40_000)))"
     taken, said = in_a_process(code)
     assert 0.75 * taken < said < 1.25 * taken

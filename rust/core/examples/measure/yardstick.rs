@@ -94,7 +94,7 @@ impl<const K: usize> Quadratic<K> {
             }
         }
         let diagonal: Vec<f64> = free.iter().map(|&i| fidelity * mass[i]).collect();
-        let normal = NormalMatrix::new(&operator).unwrap();
+        let normal = NormalMatrix::new(&operator)?;
         let cholesky = Cholesky::analyze(normal.pattern().clone(), None)?;
         let mut entries = Vec::new();
         normal.assemble(&operator, &per_face, &diagonal, &mut entries);
