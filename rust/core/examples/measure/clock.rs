@@ -2,10 +2,12 @@
 
 use std::time::Instant;
 
+use cpu_time::ProcessTime;
+
 use crate::input::Arguments;
 use crate::list;
 
-/// A sample lasts at least this long, in seconds: the scheduler counts in ticks of some milliseconds.
+/// A sample lasts at least this long, in seconds, so that what other processes do evens out.
 const LEAST: f64 = 0.1;
 
 /// Repeated measurements of one thing, in seconds.
@@ -55,14 +57,9 @@ impl Samples {
     }
 }
 
-/// Seconds that the threads of this process have run, from the scheduler of Linux.
+/// Seconds that the threads of this process have run, those that have ended too, as Clarabel's.
 fn processor_time() -> Option<f64> {
-    let mut nanoseconds = 0.0;
-    for task in std::fs::read_dir("/proc/self/task").ok()? {
-        let text = std::fs::read_to_string(task.ok()?.path().join("schedstat")).ok()?;
-        nanoseconds += text.split_whitespace().next()?.parse::<f64>().ok()?;
-    }
-    Some(1e-9 * nanoseconds)
+    Some(ProcessTime::try_now().ok()?.as_duration().as_secs_f64())
 }
 
 /// The most memory that this process has held so far, in bytes; 0 where the system does not tell.
