@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The batch command under the `bpy` package, from a checkout: `python -m addon stylize FILES -o OUT`."""
+"""The batch command where Blender is a module: `python -m addon stylize FILES -o OUT` from a checkout."""
 
+from . import registry
 from .framework import batch
 
 if __name__ == "__main__":
-    batch.run_as_module()
+    batch.run_as_module(registry.TOOLS, registry.COMMANDS)

@@ -89,7 +89,7 @@ def bundled_wheels(target: str) -> list[Path]:
 def stage(wheels: list[Path], targets: list[str]) -> None:
     """Lay out the extension's folder: the add-on, the wheels, the manifest with its gaps filled."""
     shutil.rmtree(STAGE, ignore_errors=True)
-    shutil.copytree(ROOT / "addon", STAGE, ignore=shutil.ignore_patterns("__pycache__", "__main__.py"))
+    shutil.copytree(ROOT / "addon", STAGE, ignore=shutil.ignore_patterns("__pycache__"))
     (STAGE / "wheels").mkdir()
     for wheel in wheels:
         shutil.copy2(wheel, STAGE / "wheels")

@@ -221,12 +221,9 @@ def _sentence(record: dict[str, object], steps: Sequence[Step]) -> str:
     return f"{where}: {again}{', '.join(parts)}, {record['seconds']:.1f} s{notes}"
 
 
-def run_as_module() -> None:
-    """Run the command line of this process, and end it: Blender as a module."""
-    # The registry imports this module.
-    from .. import registry  # noqa: PLC0415
-
-    offer(registry.TOOLS, registry.COMMANDS)
+def run_as_module(tools: Sequence[Tool], commands: Sequence[Command]) -> None:
+    """Run the command line of this process, with these tools and others, and end it: Blender as a module."""
+    offer(tools, commands)
     code = main(sys.argv[1:])
     sys.stdout.flush()
     sys.stderr.flush()

@@ -11,7 +11,6 @@ import queue
 import sys
 import threading
 from collections.abc import Sequence
-from importlib import import_module
 
 import bpy
 
@@ -36,7 +35,7 @@ def command(arguments: Sequence[str]) -> list[str]:
     if bpy.app.binary_path:
         return [bpy.app.binary_path, "--command", "ridgeform", *arguments]
     paths = [os.path.abspath(path) for path in sys.path]
-    return [sys.executable, "-c", MODULE.format(paths=paths, name=__name__), *arguments]
+    return [sys.executable, "-c", MODULE.format(paths=paths, name=PACKAGE), *arguments]
 
 
 def order(plan: Plan, threads: int, memory: int | None) -> dict[str, object]:
@@ -103,7 +102,3 @@ def limit_memory(more: int | None) -> None:
 def can_limit_memory() -> bool:
     """Whether the system keeps a process to a limit that the tools know of: Linux does."""
     return sys.platform.startswith("linux")
-
-
-if __name__ == "__main__":
-    import_module(f"{PACKAGE}.framework.batch").run_as_module()

@@ -40,7 +40,7 @@ def run(capfd, tool, *arguments):
 
 def start(*arguments):
     """The command in a process of its own."""
-    code = worker.MODULE.format(paths=sys.path, name=worker.__name__)
+    code = worker.MODULE.format(paths=sys.path, name=worker.PACKAGE)
     command = [sys.executable, "-c", code, *map(str, arguments)]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 

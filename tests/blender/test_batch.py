@@ -135,14 +135,6 @@ def warmed(folder):
     return path
 
 
-def run_tool(capfd, *arguments):
-    """Exit code and records of any command with JSON."""
-    batch.flush_output()
-    capfd.readouterr()
-    code = batch.main([*map(str, arguments), "--json"])
-    return code, [json.loads(line) for line in capfd.readouterr().out.splitlines()]
-
-
 @pytest.mark.parametrize(
     ("command", "options", "name"),
     [
@@ -157,7 +149,7 @@ def run_tool(capfd, *arguments):
 )
 def test_attributes_of_files(tmp_path, capfd, command, options, name):
     source, target = warmed(tmp_path), tmp_path / "out.blend"
-    code, (record,) = run_tool(capfd, command, source, "-o", target, "--attribute", "heat", *options)
+    code, (record,) = records(capfd, command, source, "-o", target, "--attribute", "heat", *options)
     assert code == 0, record
     (entry,) = record["meshes"]
     assert (entry["attribute"], entry["result"]) == ("heat", name)
@@ -174,7 +166,7 @@ def test_segments_of_files(tmp_path, capfd):
     source, target = tmp_path / "box.blend", tmp_path / "out.blend"
     files.write_file(source)
     options = ("--make", "materials", "--make", "seams", "--length-weight", "0.6")
-    code, (record,) = run_tool(capfd, "segment", source, "-o", target, *options)
+    code, (record,) = records(capfd, "segment", source, "-o", target, *options)
     assert code == 0, record
     assert (record["energy_after"], record["gap"]) == (None, None)
     (entry,) = record["meshes"]
@@ -183,7 +175,7 @@ def test_segments_of_files(tmp_path, capfd):
     (obj,) = files.read_file(target)
     assert len(obj.data.materials) == 6
     assert sum(edge.use_seam for edge in obj.data.edges) == 12 * 7
-    code, (record,) = run_tool(
+    code, (record,) = records(
         capfd, "segment", source, "-o", target, "--segments", "3", "--make", "face-sets"
     )
     assert record["meshes"][0]["segments"] == 3
@@ -203,7 +195,7 @@ def test_holes_of_files(tmp_path, capfd):
     source, target = tmp_path / "open.blend", tmp_path / "filled.blend"
     files.write_file(source)
     shape = ("--shape", "sharp", "--sharpness", "0.75", "--one-material", "--mark", "sharp")
-    code, (record,) = run_tool(capfd, "fill-holes", source, "-o", target, "--max-edges", "40", *shape)
+    code, (record,) = records(capfd, "fill-holes", source, "-o", target, "--max-edges", "40", *shape)
     assert code == 0, record
     entries = {entry["name"]: entry for entry in record["meshes"]}
     assert set(entries) == {"Open", "Sheet"}
@@ -219,14 +211,14 @@ def test_holes_of_files(tmp_path, capfd):
 
 def test_a_file_without_holes_is_an_error(tmp_path, capfd):
     (source,) = saved(tmp_path, ".ply")
-    code, (record,) = run_tool(capfd, "fill-holes", source, "-o", tmp_path / "out.ply")
+    code, (record,) = records(capfd, "fill-holes", source, "-o", tmp_path / "out.ply")
     assert code == 1
     assert "has no holes" in record["error"]
 
 
 def test_an_attribute_that_is_not_there_is_an_error_of_its_file(tmp_path, capfd):
     source = warmed(tmp_path)
-    code, (record,) = run_tool(
+    code, (record,) = records(
         capfd, "denoise-attribute", source, "-o", tmp_path / "out.blend", "--attribute", "cold"
     )
     assert code == 1

@@ -82,7 +82,7 @@ def test_what_is_wrong_is_said_when_a_job_is_submitted(tmp_path, arguments, name
 def test_the_commands_do_all_files_once_also_when_a_task_is_tried_again(tmp_path):
     sources = batch_kit.boxes(tmp_path / "in", 3)
     blender = tmp_path / "blender"
-    code = worker.MODULE.format(paths=sys.path, name=worker.__name__)
+    code = worker.MODULE.format(paths=sys.path, name=worker.PACKAGE)
     blender.write_text(
         f"#!{sys.executable}\nimport sys\nassert sys.argv.pop(1) == '--command'\n"
         f"assert sys.argv.pop(1) == 'ridgeform'\n{code}\n"

@@ -212,15 +212,7 @@ def test_a_panel_with_all_values_is_saved_as_it_is(tmp_path):
     assert isinstance(step.settings, SimpleNamespace)
 
 
-OPTIONAL = [
-    (tool, name)
-    for tool in registry.TOOLS
-    for name, setting in tool.settings.declared.items()
-    if setting.optional is not None
-]
-
-
-@pytest.mark.parametrize(("tool", "name"), OPTIONAL, ids=[f"{tool.key}-{name}" for tool, name in OPTIONAL])
+@kit.every_optional_number
 @pytest.mark.parametrize("counts", [True, False])
 @pytest.mark.parametrize("same", [True, False])
 def test_an_optional_number_goes_into_a_recipe_with_its_check_box(tool, name, counts, same):
