@@ -1,19 +1,19 @@
 """Numbers with a check box, which 0 stood for before, and the angle of segments."""
 
-import addon_kit
 import bpy
 import layout_kit
 import pytest
 from bl_ext.user_default.ridgeform.framework import former, rows
 from bl_ext.user_default.ridgeform.framework.settings import chosen, defaults_of, switch_of
 from bl_ext.user_default.ridgeform.segments.settings import SegmentSettings, segment_options
+from optional_kit import every_optional_number
 
 
 def panel_of(tool):
     return getattr(bpy.context.scene, tool.scene_property)
 
 
-@addon_kit.every_optional_number
+@every_optional_number
 def test_an_optional_number_has_a_check_box_in_its_row(tool, name):
     setting, box = tool.settings.declared[name], tool.settings.declared[switch_of(name)]
     assert (box.label, box.section) == (setting.label, setting.section)
@@ -28,7 +28,7 @@ def test_an_optional_number_has_a_check_box_in_its_row(tool, name):
     assert chosen(defaults_of(tool.settings, **{name: 3, switch_of(name): False}), name) is None
 
 
-@addon_kit.every_optional_number
+@every_optional_number
 def test_a_number_that_is_given_to_a_panel_counts_until_its_check_box_says_otherwise(tool, name):
     panel = panel_of(tool)
     for value, counts in ((1, True), (0, False)):

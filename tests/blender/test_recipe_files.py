@@ -13,6 +13,7 @@ from bl_ext.user_default.ridgeform import registry
 from bl_ext.user_default.ridgeform.framework import batch, files, flags
 from bl_ext.user_default.ridgeform.framework.settings import defaults_of
 from bl_ext.user_default.ridgeform.overnight import recipe
+from optional_kit import every_optional_number
 
 COMMANDS = {tool.command: tool for tool in registry.TOOLS}
 every_tool = pytest.mark.parametrize("tool", registry.TOOLS, ids=list(COMMANDS))
@@ -212,7 +213,7 @@ def test_a_panel_with_all_values_is_saved_as_it_is(tmp_path):
     assert isinstance(step.settings, SimpleNamespace)
 
 
-@kit.every_optional_number
+@every_optional_number
 @pytest.mark.parametrize("counts", [True, False])
 @pytest.mark.parametrize("same", [True, False])
 def test_an_optional_number_goes_into_a_recipe_with_its_check_box(tool, name, counts, same):
