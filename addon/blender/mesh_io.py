@@ -21,12 +21,14 @@ def flush_edit_mode(obj: bpy.types.Object) -> None:
 
 
 def is_out_of_reach(obj: bpy.types.Object) -> bool:
-    """Whether `object_mode` would leave the mesh of an object in Edit Mode.
+    """Whether `object_mode` would leave the mesh of an object in Edit Mode, or painted, or sculpted.
 
     Scripts can hide what is edited, or make another object the active one.
     """
     active = bpy.context.object
     visible = active is not None and active.visible_get() and obj.visible_get()
+    if obj.mode in PAINTING.values():
+        return not visible
     reached = bpy.context.mode == "EDIT_MESH" and obj.mode == "EDIT" and visible
     return obj.data.is_editmode and not reached
 
@@ -44,6 +46,10 @@ PAINTING = {
 def object_mode() -> Iterator[None]:
     """Leave the mode for all objects that are in it, and come back: much cannot be read or made there."""
     mode = PAINTING.get(bpy.context.mode, "EDIT" if bpy.context.mode == "EDIT_MESH" else None)
+    active = bpy.context.view_layer.objects.active
+    if active is None or not active.visible_get():
+        # For a hidden object Blender enters no mode, and leaves none but Edit Mode.
+        mode = None
     if mode is not None:
         bpy.ops.object.mode_set(mode="OBJECT")
     try:

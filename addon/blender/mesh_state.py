@@ -56,7 +56,7 @@ class MeshState:
         if obj.data is None or obj.data.as_pointer() != self._mesh:
             yield "it has another mesh"
         if mesh_io.is_out_of_reach(obj):
-            yield "it was hidden or is no longer active, in Edit Mode"
+            yield "it was hidden or is no longer active, and its mode cannot be left then"
         if not obj.data.is_editable:
             yield "it cannot be edited any more"
         for what, count in _counts(obj.data).items():

@@ -36,13 +36,14 @@ class Selection:
 def reason_against(obj: bpy.types.Object, needs: Needs = MOVES) -> str | None:
     """Why the mesh of this object cannot be worked on, and what to do about it; `None` if it can."""
     mesh, name, key = obj.data, obj.name, obj.active_shape_key
+    mode = obj.mode.replace("_", " ").title()
     reasons = (
         (mesh.library, f'"{name}" is linked from another file: make its mesh local first'),
         (mesh.override_library, f'"{name}" has overridden mesh data: make its mesh local first'),
         (not mesh.is_editable, f'"{name}" cannot be edited'),
         (
             mesh_io.is_out_of_reach(obj),
-            f'"{name}" is in Edit Mode, but hidden or not active: show it, and leave Edit Mode',
+            f'"{name}" is in {mode} Mode, but hidden or not active: show it, and leave {mode} Mode',
         ),
         (
             needs.coordinates and any(modifier.type == "MULTIRES" for modifier in obj.modifiers),
@@ -54,11 +55,22 @@ def reason_against(obj: bpy.types.Object, needs: Needs = MOVES) -> str | None:
         ),
         (not mesh.is_editmode and len(mesh.polygons) == 0, f'"{name}" has no faces'),
         (
+            _has_foreign_keys(mesh),
+            f'"{name}" has shape keys with another number of vertices, as scripts can leave them: '
+            "remove the shape keys first",
+        ),
+        (
             needs.coordinates and key and key.lock_shape,
             f'The active shape key of "{name}" is locked: unlock it first',
         ),
     )
     return next((reason for applies, reason in reasons if applies), None)
+
+
+def _has_foreign_keys(mesh: bpy.types.Mesh) -> bool:
+    """Whether a shape key is not one of this mesh: a script has added vertices, or made other ones."""
+    keys = () if mesh.shape_keys is None or not mesh.vertices else mesh.shape_keys.key_blocks
+    return any(len(key.data) != len(mesh.vertices) for key in keys)
 
 
 def mesh_objects(context: bpy.types.Context) -> list[bpy.types.Object]:

@@ -32,6 +32,29 @@ def test_it_is_refused(tool, make):
     assert "is in Edit Mode, but hidden or not active" in selection.reason_against(obj, needs)
 
 
+@pytest.mark.parametrize("mode", ["SCULPT", "WEIGHT_PAINT", "VERTEX_PAINT", "EDIT"])
+@pytest.mark.parametrize("tool", ["stylize", "segment", "cure_faults", "select_faults"])
+def test_what_is_hidden_in_any_mode_is_refused_with_a_sentence(mode, tool):
+    obj = open_box()
+    bpy.ops.object.mode_set(mode=mode)
+    obj.hide_set(True)
+    before = obj.mode, kit.coordinates(obj).tobytes()
+    with pytest.raises(RuntimeError) as refused:
+        getattr(bpy.ops.ridgeform, tool)()
+    assert "Traceback" not in str(refused.value)
+    assert (obj.mode, kit.coordinates(obj).tobytes()) == before
+
+
+@pytest.mark.parametrize("tool", ["stylize", "denoise", "fill_holes"])
+def test_what_is_hidden_while_it_is_sculpted_ends_a_run(tool):
+    obj = open_box()
+    bpy.ops.object.mode_set(mode="SCULPT")
+    session = Session(tool, [obj])
+    obj.hide_set(True)
+    assert session.finish() == {"CANCELLED"}
+    session.check_ended()
+
+
 @pytest.mark.parametrize("tool", modal_kit.TOOLS)
 @pytest.mark.parametrize("change", ["hide", "deactivate"])
 def test_it_ends_a_run_that_began_before(tool, change):

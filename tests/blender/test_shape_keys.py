@@ -141,3 +141,10 @@ def test_keys_without_points_are_no_fault(tool):
     with pytest.raises(RuntimeError, match='"Nothing"'):
         getattr(bpy.ops.ridgeform, tool)()
     assert mesh_io.key_coordinates(obj.data)["Later"].shape == (0, 3)
+
+
+def test_keys_of_fewer_vertices_than_the_mesh_are_refused(keyed):
+    """A script has added vertices, and Blender leaves the keys as they were."""
+    keyed.data.vertices.add(3)
+    with pytest.raises(RuntimeError, match="shape keys with another number of vertices"):
+        bpy.ops.ridgeform.stylize()
