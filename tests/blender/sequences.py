@@ -301,8 +301,12 @@ class Sequences(RuleBasedStateMachine):
             self.session.check_ended()
 
     def _push(self):
-        """An undo step, in Object Mode; while a run is on Blender makes none."""
-        if self.session is None and bpy.context.mode == "OBJECT":
+        """An undo step, in Object Mode; while a run is on Blender makes none.
+
+        None either of an object in Edit Mode that is no longer active: its mode would not come back.
+        """
+        edited = any(obj.mode == "EDIT" for obj in bpy.data.objects)
+        if self.session is None and bpy.context.mode == "OBJECT" and not edited:
             bpy.ops.ed.undo_push(message=str(self.place))
             self.steps = [*self.steps[: self.place + 1], everything()]
             self.place = len(self.steps) - 1
