@@ -21,7 +21,8 @@ class _Shown:
 
 def show(obj: bpy.types.Object, name: str) -> list[str]:
     """Show a color attribute in the viewport; returns notes."""
-    return display.show([(obj, name)], _Shown())[0]
+    with mesh_io.object_mode():
+        return display.show([(obj, name)], _Shown())[0]
 
 
 def write_corners(obj: bpy.types.Object, weld: Weld, corners: np.ndarray, source: str, alpha: float) -> str:

@@ -71,6 +71,18 @@ def test_with_the_mesh_active_it_is_the_same():
     assert np.abs(sides_of(obj)[0] - GREEN).max() < 1e-5
 
 
+@pytest.mark.parametrize("mode", ["EDIT", "VERTEX_PAINT", "SCULPT"])
+@pytest.mark.parametrize("tool", ["color_diffusion_curves", "redraw_diffusion_curves"])
+def test_the_result_is_shown_in_every_mode_of_the_mesh(mode, tool):
+    obj, child = drawn()
+    child.select_set(False)
+    obj.select_set(True)
+    bpy.context.view_layer.objects.active = obj
+    bpy.ops.object.mode_set(mode=mode)
+    assert getattr(bpy.ops.ridgeform, tool)(show=True) == {"FINISHED"}
+    assert obj.mode == mode
+
+
 def test_what_cannot_be_redrawn_keeps_its_colors():
     obj, child = drawn()
     before = point_values(child, "left")

@@ -17,7 +17,9 @@ COUNT = int(os.environ.get("RIDGEFORM_FUZZ_COUNT", "40"))
 STEPS = 40
 
 
-def test_no_sequence_ends_in_a_fault():
+def test_no_sequence_ends_in_a_fault(tmp_path, monkeypatch):
+    # Some operators write files, under whatever names they are given.
+    monkeypatch.chdir(tmp_path)
     chosen = settings(
         max_examples=COUNT,
         stateful_step_count=STEPS,
