@@ -3,10 +3,8 @@
 
 import argparse
 import time
-import traceback
 from pathlib import Path
 
-from ..blender.refusals import RefusedError
 from ..framework import batch, files
 from ..framework.tool import Command
 from .examine import examine
@@ -43,12 +41,8 @@ def _check_file(path: Path) -> tuple[dict[str, object], bool]:
             report = examine(obj)
             record["meshes"].append(report.as_dict())
             is_clean &= not any(report.count(severity) for severity in (Severity.STOPS, Severity.LIMITS))
-    except (files.FileError, RefusedError) as error:
-        record["error"] = str(error)
     except Exception as error:
-        # A fault of the program: the other files are still worth looking at.
-        traceback.print_exc()
-        record["error"] = f"{type(error).__name__}: {error}"
+        record["error"] = files.sentence_of(error)
     record["seconds"] = round(time.perf_counter() - begin, 3)
     return record, is_clean
 

@@ -49,7 +49,19 @@ class RIDGEFORM_OT_check(bpy.types.Operator):  # noqa: N801
         return {"FINISHED"}
 
 
-class RIDGEFORM_OT_select_faults(bpy.types.Operator):  # noqa: N801
+class _OnEditable:
+    """Mixin of operators on meshes that can be edited."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Whether there is one."""
+        objects, skipped = _editable(context)
+        if not objects:
+            cls.poll_message_set(skipped[0] if skipped else "Select a mesh object")
+        return bool(objects)
+
+
+class RIDGEFORM_OT_select_faults(_OnEditable, bpy.types.Operator):  # noqa: N801
     """Enter Edit Mode with exactly what was found selected"""
 
     bl_idname = "ridgeform.select_faults"
@@ -61,11 +73,6 @@ class RIDGEFORM_OT_select_faults(bpy.types.Operator):  # noqa: N801
         description="What is selected",
         items=[(kind.name, kind.label, kind.many.capitalize()) for kind in SELECTABLE],
     )
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether there is a mesh that can be edited."""
-        return _can_edit(cls, context)
 
     @classmethod
     def description(cls, _context: bpy.types.Context, properties: object) -> str:
@@ -87,7 +94,7 @@ class RIDGEFORM_OT_select_faults(bpy.types.Operator):  # noqa: N801
         return {"FINISHED"}
 
 
-class RIDGEFORM_OT_cure_faults(bpy.types.Operator):  # noqa: N801
+class RIDGEFORM_OT_cure_faults(_OnEditable, bpy.types.Operator):  # noqa: N801
     """Cure what was found in all selected meshes"""
 
     bl_idname = "ridgeform.cure_faults"
@@ -99,11 +106,6 @@ class RIDGEFORM_OT_cure_faults(bpy.types.Operator):  # noqa: N801
         description="What is cured",
         items=[(kind.name, kind.label, kind.cure_text) for kind in CURABLE],
     )
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether there is a mesh that can be edited."""
-        return _can_edit(cls, context)
 
     @classmethod
     def description(cls, _context: bpy.types.Context, properties: object) -> str:
@@ -152,13 +154,6 @@ def _editable(context: bpy.types.Context) -> tuple[list[bpy.types.Object], list[
 def _reason_against(obj: bpy.types.Object) -> str | None:
     # A mesh of loose edges alone is one to cure.
     return selection.reason_against(obj, NEEDS) if len(obj.data.polygons) or obj.data.is_editmode else None
-
-
-def _can_edit(cls: type, context: bpy.types.Context) -> bool:
-    objects, skipped = _editable(context)
-    if not objects:
-        cls.poll_message_set(skipped[0] if skipped else "Select a mesh object")
-    return bool(objects)
 
 
 OPERATORS = (RIDGEFORM_OT_check, RIDGEFORM_OT_select_faults, RIDGEFORM_OT_cure_faults)

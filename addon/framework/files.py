@@ -3,6 +3,7 @@
 
 import contextlib
 import re
+import traceback
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +11,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
+from ..blender.refusals import RefusedError
 from . import far_origin
 from .completeness import check_whole
 from .completeness_blend import IncompleteError
@@ -102,6 +104,14 @@ Moved = tuple[Path, np.ndarray]
 
 class FileError(Exception):
     """A file that cannot be read or written; the message says why."""
+
+
+def sentence_of(error: Exception) -> str:
+    """What a record says of an error; a fault of the program is printed, as the other files go on."""
+    if isinstance(error, FileError | RefusedError):
+        return str(error)
+    traceback.print_exception(error)
+    return f"{type(error).__name__}: {error}"
 
 
 def check_suffix(path: Path) -> str:

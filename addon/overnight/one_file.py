@@ -2,7 +2,6 @@
 """One file of a batch: read, given to one tool or several in a row, written, and what the record says."""
 
 import time
-import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -99,12 +98,8 @@ def _attempt(target: Target, plan: Plan, claim: Claim | None, watch: Watch) -> d
         record = made
         if claim is not None:
             claim.finish()
-    except (files.FileError, RefusedError) as error:
-        record["error"] = str(error)
     except Exception as error:
-        # A fault of the program: the other files are still worth doing.
-        traceback.print_exc()
-        record["error"] = f"{type(error).__name__}: {error}"
+        record["error"] = files.sentence_of(error)
     record["seconds"] = round(time.perf_counter() - begin, 3)
     return record
 
