@@ -1,6 +1,7 @@
 """Ridgeform: the L1 surface Hessian as a modeler's tool.
 
-Make a `Mesh` from arrays, then call a function per problem: `stylize` turns it piecewise flat, `segment`
+Make a `Mesh` from arrays, then call a function per problem: `stylize` turns it piecewise flat, `facet` makes
+flat polygons of it, `segment`
 finds the faces that it is made of and `parts` its limbs, `fill_holes` closes holes so that the ridges
 around them go on, `denoise` and `interpolate` find functions on it with sparse second derivatives,
 `vibration_modes` those of least energy, `diffusion_curves` the few curves that redraw a painted surface,
@@ -17,6 +18,7 @@ from types import BuiltinFunctionType
 from ._arguments import named
 from ._native import (
     DiffusionCurves,
+    Faceted,
     Filled,
     FilledHole,
     Hole,
@@ -36,6 +38,7 @@ from ._native import (
     denoise,
     diffusion_curves,
     energy,
+    facet,
     fill_holes,
     find_holes,
     hessian,
@@ -62,6 +65,7 @@ __all__ = [
     "ArgumentError",
     "Cancelled",
     "DiffusionCurves",
+    "Faceted",
     "Filled",
     "FilledHole",
     "Hole",
@@ -85,6 +89,7 @@ __all__ = [
     "denoise",
     "diffusion_curves",
     "energy",
+    "facet",
     "fill_holes",
     "find_holes",
     "hessian",

@@ -12,6 +12,7 @@ mod denoise;
 mod diffusion_curves;
 mod doorway;
 mod errors;
+mod facet;
 mod fill_holes;
 mod holes;
 mod interpolate;
@@ -45,6 +46,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<progress::Progress>()?;
     module.add_class::<segment::Segmentation>()?;
     module.add_class::<parts::Parts>()?;
+    module.add_class::<facet::Faceted>()?;
     module.add_class::<solution::Solution>()?;
     module.add_class::<holes::Hole>()?;
     module.add_class::<stylize::Stylized>()?;
@@ -68,6 +70,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(modes::vibration_modes, module)?)?;
     module.add_function(wrap_pyfunction!(segment::segment, module)?)?;
     module.add_function(wrap_pyfunction!(parts::parts, module)?)?;
+    module.add_function(wrap_pyfunction!(facet::facet, module)?)?;
     module.add_function(wrap_pyfunction!(stylize::stylize, module)?)?;
     module.add_function(wrap_pyfunction!(remesh::remesh, module)?)?;
     module.add_function(wrap_pyfunction!(diffusion_curves::diffusion_curves, module)?)?;

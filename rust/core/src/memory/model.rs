@@ -37,6 +37,8 @@ pub enum Tool {
     Segment,
     /// [`crate::tools::parts`].
     Parts,
+    /// [`crate::tools::facet`].
+    Facet,
     /// [`crate::tools::fill_holes`].
     FillHoles,
     /// [`crate::remesh::remesh`].
@@ -59,7 +61,7 @@ pub(super) struct Cost {
 
 impl Tool {
     /// Every tool by the name that users call it by.
-    pub const ALL: [(&'static str, Self); 22] = [
+    pub const ALL: [(&'static str, Self); 23] = [
         ("mesh", Self::Mesh),
         ("report", Self::Report),
         ("hessian", Self::Hessian),
@@ -76,6 +78,7 @@ impl Tool {
         ("vibration_modes_quadratic", Self::QuadraticModes),
         ("segment", Self::Segment),
         ("parts", Self::Parts),
+        ("facet", Self::Facet),
         ("fill_holes", Self::FillHoles),
         ("remesh", Self::Remesh),
         ("diffusion_curves", Self::DiffusionCurves),
@@ -117,6 +120,7 @@ impl Tool {
             Self::QuadraticModes => (830.0, 62.0, 30.0),
             Self::Segment => (2400.0, 75.0, 0.0),
             Self::Parts => (520.0, 0.0, 0.0),
+            Self::Facet => (1500.0, 0.0, 0.0),
             Self::FillHoles => (2500.0, 0.0, 0.0),
             Self::Remesh => (350.0, 0.0, 0.0),
             Self::DiffusionCurves => (1400.0, 160.0, 0.0),

@@ -141,6 +141,25 @@ impl ClosestPoint {
         best
     }
 
+    /// Visits the triangles whose boxes, or those of the leaf that they are in, meet a box.
+    pub fn visit_box(&self, low: Point, high: Point, visit: &mut impl FnMut(u32)) {
+        let mut stack = Vec::with_capacity(64);
+        if !self.nodes.is_empty() {
+            stack.push(0);
+        }
+        while let Some(n) = stack.pop() {
+            let node = &self.nodes[n];
+            if (0..3).any(|k| node.low[k] > high[k] || node.high[k] < low[k]) {
+                continue;
+            }
+            if node.count == 0 {
+                stack.extend([node.start as usize, n + 1]);
+                continue;
+            }
+            self.order[node.start as usize..(node.start + node.count) as usize].iter().for_each(|&t| visit(t));
+        }
+    }
+
     /// The corners of a triangle.
     #[must_use]
     pub fn triangle(&self, t: u32) -> [Point; 3] {

@@ -1,10 +1,11 @@
 //! What a user asks for, one file each: scattered data interpolation, denoising, vibration modes,
-//! stylization, segmentation, parts, diffusion curves.
+//! stylization, facets, segmentation, parts, diffusion curves.
 
 pub(crate) mod answer;
 mod denoise;
 mod diffusion_curves;
 mod energy_options;
+mod facet;
 mod fill_holes;
 mod heights;
 mod interpolate;
@@ -25,6 +26,7 @@ pub use diffusion_curves::{
     DiffusionCurves, DiffusionCurvesOptions, Redrawn, TracedCurve,
 };
 pub use energy_options::EnergyOptions;
+pub use facet::{facet, FacetMerges, FacetOptions, Faceted};
 pub use fill_holes::{
     fill_holes, filling_demand, FillHolesOptions, Filled, FilledHole, HoleStatus, LoopChoice, PatchShape, Sharpness,
 };

@@ -1,0 +1,51 @@
+//! How many facets.
+
+use super::constants::{ERROR, FLAT};
+use super::merging::Merges;
+
+/// What decides how many facets there are, lengths in the unit of the calculation.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Wanted {
+    Facets(usize),
+    Error(f64),
+    Found,
+}
+
+impl Merges {
+    /// Fewest and most regions of `n`.
+    pub(super) fn range(&self, n: usize) -> [usize; 2] {
+        [n - self.pairs.len(), n]
+    }
+
+    /// The root mean square distance from the planes of `count` regions of `n`, on faces of so much `area`.
+    fn distance(&self, n: usize, count: usize, area: f64) -> f64 {
+        let made = n - count;
+        let squares = if made == 0 { 0.0 } else { self.squared_distances[made - 1] };
+        (squares / area).sqrt()
+    }
+
+    /// The nearest number of regions, `count` or fewer, at which all are facets.
+    pub(super) fn whole(&self, n: usize, count: usize) -> usize {
+        let [fewest, most] = self.range(n);
+        let is_whole = |&count: &usize| count == n || self.is_whole[n - count - 1];
+        (fewest..=count.clamp(fewest, most)).rev().find(is_whole).unwrap_or(fewest)
+    }
+
+    /// How many of `n` regions to leave, on a mesh of so many vertices.
+    pub(super) fn count(&self, wanted: Wanted, n: usize, n_vertices: usize, area: f64) -> usize {
+        let [fewest, most] = self.range(n);
+        let within = |error: f64| (fewest..=most).find(|&count| self.distance(n, count, area) <= error).unwrap_or(most);
+        match wanted {
+            Wanted::Facets(count) => count.clamp(fewest, most),
+            Wanted::Error(error) => within(error),
+            Wanted::Found => {
+                let data = n_vertices as f64;
+                let unlikely = |&count: &usize| {
+                    data * self.distance(n, count, area).max(FLAT).powi(2).ln() + 3.0 * count as f64 * data.ln()
+                };
+                let counts = fewest..=within(ERROR);
+                counts.min_by(|a, b| unlikely(a).total_cmp(&unlikely(b))).unwrap_or(most)
+            }
+        }
+    }
+}

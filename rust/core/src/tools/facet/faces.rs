@@ -1,0 +1,76 @@
+//! The faces of the mesh, and the facet that each belongs to.
+
+use rayon::prelude::*;
+
+use super::faults::Inspection;
+use super::moments::Moments;
+use super::shape::Shape;
+use crate::mesh::vector::{area_vector, centroid, dot, Point};
+use crate::remesh::closest::ClosestPoint;
+
+/// Faces with less than this part of their facet's area say nothing about its plane.
+const LITTLE: f64 = 1e-3;
+
+/// The faces of a mesh, shared out among facets.
+#[derive(Debug)]
+pub(super) struct Faces {
+    places: Vec<[Point; 3]>,
+    pub centers: Vec<Point>,
+    pub moments: Vec<Moments>,
+    pub labels: Vec<u32>,
+    area: f64,
+}
+
+/// How far faces are from a surface of facets.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Distances {
+    /// Root of the mean square over the area.
+    pub rms: f64,
+    /// The largest of a center.
+    pub largest: f64,
+}
+
+impl Faces {
+    /// The faces with these places, each of the facet `labels` names.
+    pub(super) fn new(places: Vec<[Point; 3]>, labels: Vec<u32>) -> Self {
+        let moments: Vec<Moments> = places.iter().map(|&corners| Moments::of(corners)).collect();
+        let area = moments.iter().map(|m| m.area).sum();
+        Self { centers: places.iter().map(|&corners| centroid(corners)).collect(), places, moments, labels, area }
+    }
+
+    /// Gives every facet the integrals over its faces; over its polygon where they are too few.
+    pub(super) fn fit(&self, shape: &mut Shape) {
+        let mut sums = vec![Moments::default(); shape.facets.len()];
+        for (&label, moments) in self.labels.iter().zip(&self.moments) {
+            sums[label as usize] = sums[label as usize].plus(moments);
+        }
+        for (k, sum) in sums.into_iter().enumerate() {
+            let own = shape.polygon_moments(&shape.facets[k]);
+            shape.facets[k].moments = if sum.area > LITTLE * own.area { sum } else { own };
+        }
+    }
+
+    /// The facet nearest to each face among those that look to the same side, and how far that is.
+    pub(super) fn nearest(&self, shape: &Shape, inspection: &Inspection) -> (Vec<u32>, Distances) {
+        let tree = ClosestPoint::new(inspection.places(shape));
+        let faces_along = |k: u32, normal: Point| dot(shape.facets[k as usize].plane.normal, normal) > 0.0;
+        let found: Vec<(u32, f64)> = self
+            .places
+            .par_iter()
+            .enumerate()
+            .map(|(f, &corners)| {
+                let normal = area_vector(corners);
+                let center = self.centers[f];
+                let accept = |t: u32| faces_along(inspection.owners[t as usize], normal);
+                let near = tree.closest(center, None, accept);
+                let label = near.map_or(self.labels[f], |near| inspection.owners[near.triangle as usize]);
+                let guess = near.map(|near| near.triangle);
+                (label, tree.closest(center, guess, |_| true).map_or(0.0, |nearest| nearest.squared))
+            })
+            .collect();
+        let squares: f64 = found.iter().zip(&self.moments).map(|((_, squared), m)| squared * m.area).sum();
+        let largest = found.iter().map(|(_, squared)| squared.sqrt()).fold(0.0, f64::max);
+        let rms = (squares / self.area.max(f64::MIN_POSITIVE)).sqrt();
+        (found.into_iter().map(|(label, _)| label).collect(), Distances { rms, largest })
+    }
+}

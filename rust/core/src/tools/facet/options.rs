@@ -1,0 +1,43 @@
+//! How to make facets.
+
+use crate::mesh::Mesh;
+use crate::tools::options::{check_edge_weights, check_faces, SolveOptions};
+use crate::{Error, Result};
+
+/// How to make facets.
+#[derive(Debug, Clone, Default)]
+pub struct FacetOptions {
+    /// How many facets are wanted.
+    pub facets: Option<usize>,
+    /// The root mean square distance of the faces from the facets that is allowed, in the unit of the mesh, where `facets` is
+    /// `None`. Where both are: as many as the faces give evidence for (Bayesian information criterion, Schwarz 1978), at most as
+    /// many as half a percent of the diagonal of the bounding box needs.
+    pub error: Option<f64>,
+    /// What borders of facets cost along each edge, one row a face, column `i` opposite corner `i`; smaller attracts them. The
+    /// entry of either face counts.
+    pub edge_weights: Option<Vec<[f64; 3]>>,
+    /// The faces to make facets of, all where `None`; the others, and all vertices of theirs, stay.
+    pub faces: Option<Vec<bool>>,
+    /// Threads to use; all where `None`. The result does not depend on it.
+    pub threads: Option<usize>,
+}
+
+impl FacetOptions {
+    pub(super) fn check(&self, mesh: &Mesh) -> Result<()> {
+        let m = mesh.connectivity().n_faces();
+        if self.facets == Some(0) {
+            return Err(Error::argument("facets", "is 0; ask for at least one facet"));
+        }
+        if let Some(error) = self.error.filter(|error| !(*error > 0.0 && error.is_finite())) {
+            return Err(Error::argument("error", format!("is {error}; it must be positive, a distance")));
+        }
+        self.solve().settings()?;
+        check_edge_weights(self.edge_weights.as_deref(), m)?;
+        check_faces(self.faces.as_deref(), m)
+    }
+
+    /// The threads, checked where they are started.
+    pub(super) fn solve(&self) -> SolveOptions {
+        SolveOptions { threads: self.threads, ..SolveOptions::default() }
+    }
+}

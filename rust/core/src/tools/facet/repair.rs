@@ -1,0 +1,191 @@
+//! What is done about facets that do not come out sound: ridges that turned around become corners, and facets are divided along
+//! a diagonal.
+
+use std::collections::HashSet;
+
+use super::faces::Faces;
+use super::moments::Moments;
+use super::shape::{sides, Facet, Shape};
+use super::triangulation::triangles;
+use crate::mesh::vector::{between, cross, distance, dot, sub};
+
+/// Repairs `faulty` facets, as many as do not touch each other; returns whether anything was done.
+pub(super) fn repair(shape: &mut Shape, faces: &mut Faces, faulty: &[u32]) -> bool {
+    let mut touched: HashSet<u32> = HashSet::new();
+    let mut gone = Vec::new();
+    let mut is_repaired = false;
+    for &k in faulty {
+        if shape.facets[k as usize].corners().any(|c| touched.contains(&c)) {
+            continue;
+        }
+        let contracted = turned_ridges(shape, k).into_iter().find_map(|ends| {
+            let around = around(shape, ends);
+            if around.iter().any(|c| touched.contains(c)) {
+                return None;
+            }
+            contract(shape, ends).map(|vanished| (around, vanished))
+        });
+        match contracted {
+            Some((around, vanished)) => {
+                touched.extend(around);
+                gone.extend(vanished);
+                is_repaired = true;
+            }
+            None => {
+                touched.extend(shape.facets[k as usize].corners());
+                is_repaired |= divide(shape, faces, k) || hold(shape, k);
+            }
+        }
+    }
+    gone.sort_unstable();
+    gone.into_iter().rev().for_each(|k| remove(shape, faces, k));
+    faces.fit(shape);
+    is_repaired
+}
+
+/// The sides of a facet that run the other way than on the mesh, shortest first.
+fn turned_ridges(shape: &Shape, facet: u32) -> Vec<[u32; 2]> {
+    let is_turned = |&[a, b]: &[u32; 2]| {
+        dot(sub(shape.point(b), shape.point(a)), sub(shape.home(b), shape.home(a))) < 0.0
+            && !(shape.corners[a as usize].is_fixed || shape.corners[b as usize].is_fixed)
+    };
+    let mut turned: Vec<[u32; 2]> = shape.facets[facet as usize].sides().filter(is_turned).collect();
+    turned.sort_by(|x, y| {
+        let length = |&[a, b]: &[u32; 2]| distance(shape.home(a), shape.home(b));
+        length(x).total_cmp(&length(y))
+    });
+    turned
+}
+
+/// The corners of all facets at two of them.
+fn around(shape: &Shape, ends: [u32; 2]) -> Vec<u32> {
+    let at = |facet: &&Facet| facet.corners().any(|c| ends.contains(&c));
+    shape.facets.iter().filter(at).flat_map(Facet::corners).collect()
+}
+
+/// Makes one corner of the ends of a ridge, if every facet keeps three corners, but for one that may vanish: returned.
+fn contract(shape: &mut Shape, [a, b]: [u32; 2]) -> Option<Option<u32>> {
+    let mut vanishing = None;
+    for (k, facet) in (0..).zip(&shape.facets) {
+        let n_loops = facet.loops.iter().filter(|corners| corners.contains(&a) || corners.contains(&b)).count();
+        if n_loops > 1 {
+            return None;
+        }
+        for corners in facet.loops.iter().filter(|corners| corners.contains(&a) && corners.contains(&b)) {
+            if !sides(corners).any(|side| side == [a, b] || side == [b, a]) {
+                return None;
+            }
+            if corners.len() == 3 {
+                if facet.loops.len() > 1 || vanishing.is_some() {
+                    return None;
+                }
+                vanishing = Some(k);
+            }
+        }
+    }
+    if let Some(k) = vanishing {
+        // The facets behind its other two sides meet along one ridge then: not if they meet already.
+        let side_of = |[from, to]: [u32; 2]| shape.facets.iter().find(|f| f.sides().any(|side| side == [to, from]));
+        let others = shape.facets[k as usize].sides().filter(|side| !(side.contains(&a) && side.contains(&b)));
+        let behind: Vec<&Facet> = others.filter_map(side_of).collect();
+        if let [p, q] = behind[..] {
+            let of_first: HashSet<[u32; 2]> = p.sides().collect();
+            if std::ptr::eq(p, q) || q.sides().any(|[from, to]| of_first.contains(&[to, from])) {
+                return None;
+            }
+        }
+    }
+    // Whatever is next to both ends must be the third corner of a triangle that vanishes: its sides become one otherwise.
+    let beside = |c: u32| -> HashSet<u32> {
+        let sides = shape.facets.iter().flat_map(Facet::sides).filter(|side| side.contains(&c));
+        sides.flatten().filter(|&other| other != c).collect()
+    };
+    let third = |k: u32| shape.facets[k as usize].corners().find(|c| *c != a && *c != b);
+    if beside(a).intersection(&beside(b)).any(|&c| vanishing.and_then(third) != Some(c)) {
+        return None;
+    }
+    let other = shape.corners[b as usize];
+    let corner = &mut shape.corners[a as usize];
+    corner.point = between(corner.point, other.point, 0.5);
+    corner.home = between(corner.home, other.home, 0.5);
+    for corners in shape.facets.iter_mut().flat_map(|facet| &mut facet.loops) {
+        corners.iter_mut().filter(|c| **c == b).for_each(|c| *c = a);
+        corners.dedup();
+        if corners.len() > 1 && corners[0] == corners[corners.len() - 1] {
+            corners.pop();
+        }
+    }
+    Some(vanishing)
+}
+
+/// Takes a facet away; its faces go to the neighbor whose plane is nearest.
+fn remove(shape: &mut Shape, faces: &mut Faces, k: u32) {
+    let corners: HashSet<u32> = shape.facets[k as usize].corners().collect();
+    let is_near = |facet: &Facet| facet.corners().any(|c| corners.contains(&c));
+    let near: Vec<u32> =
+        (0..).zip(&shape.facets).filter(|(j, facet)| *j != k && is_near(facet)).map(|(j, _)| j).collect();
+    for (label, &center) in faces.labels.iter_mut().zip(&faces.centers).filter(|(label, _)| **label == k) {
+        let off = |j: u32| shape.facets[j as usize].plane.height(center).abs();
+        *label = near.iter().copied().min_by(|&i, &j| off(i).total_cmp(&off(j))).unwrap_or(0);
+    }
+    let last = shape.facets.len() as u32 - 1;
+    shape.facets.swap_remove(k as usize);
+    faces.labels.iter_mut().filter(|label| **label == last).for_each(|label| *label = k);
+}
+
+/// Divides a facet without holes in two along the diagonal that leaves the flattest parts, both sound where there is one.
+fn divide(shape: &mut Shape, faces: &mut Faces, k: u32) -> bool {
+    let facet = shape.facets[k as usize].clone();
+    let n = facet.loops[0].len();
+    if facet.loops.len() != 1 || n < 4 {
+        return false;
+    }
+    let corners = &facet.loops[0];
+    let own: Vec<usize> = (0..faces.labels.len()).filter(|&f| faces.labels[f] == k).collect();
+    let home = shape.at_home();
+    let taken = shape.all_sides();
+    let mut best: Option<((bool, f64), [Facet; 2], Vec<bool>)> = None;
+    for i in 0..n {
+        for j in i + 2..n.min(n + i - 1) {
+            let (a, b) = (corners[i], corners[j]);
+            if taken.contains(&[a, b]) || taken.contains(&[b, a]) {
+                continue;
+            }
+            // The first part lies to the right of the way from `a` to `b`.
+            let wall = cross(sub(home.point(b), home.point(a)), facet.plane.normal);
+            let is_first: Vec<bool> =
+                own.iter().map(|&f| dot(sub(faces.centers[f], home.point(a)), wall) > 0.0).collect();
+            let part = |range: std::ops::Range<usize>, first: bool| {
+                let loops = vec![range.map(|x| corners[x % n]).collect()];
+                let mut part = Facet { loops, plane: facet.plane, moments: Moments::default() };
+                let polygon = home.polygon_moments(&part);
+                part.plane = polygon.fit().plane;
+                let is_sound = triangles(&home, &part).is_some();
+                let of_part = own.iter().zip(&is_first).filter(|(_, &is_first)| is_first == first);
+                let sum = of_part.fold(Moments::default(), |sum, (&f, _)| sum.plus(&faces.moments[f]));
+                let energy = sum.fit().energy + polygon.fit().energy;
+                (Facet { plane: polygon.fit().plane, moments: polygon, ..part }, is_sound, energy)
+            };
+            let (first, second) = (part(i..j + 1, true), part(j..n + i + 1, false));
+            let rank = (!(first.1 && second.1), first.2 + second.2);
+            if best.as_ref().is_none_or(|(least, ..)| (rank.0, rank.1) < (least.0, least.1)) {
+                best = Some((rank, [first.0, second.0], is_first));
+            }
+        }
+    }
+    let Some((_, [first, second], is_first)) = best else { return false };
+    let fresh = shape.facets.len() as u32;
+    for (&f, _) in own.iter().zip(is_first).filter(|(_, is_first)| !is_first) {
+        faces.labels[f] = fresh;
+    }
+    shape.facets[k as usize] = first;
+    shape.facets.push(second);
+    true
+}
+
+/// Holds the corners of a facet more firmly.
+pub(super) fn hold(shape: &mut Shape, k: u32) -> bool {
+    let corners: Vec<u32> = shape.facets[k as usize].corners().collect();
+    corners.iter().for_each(|&c| shape.corners[c as usize].firmness *= super::constants::FIRMER);
+    true
+}

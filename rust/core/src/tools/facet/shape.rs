@@ -1,0 +1,171 @@
+//! Corners, and facets as loops of them.
+
+use std::collections::{HashMap, HashSet};
+
+use super::moments::{Moments, Plane};
+use super::regions::{Regions, Ridge, OUTSIDE};
+use crate::mesh::vector::{add, distance, scale, Point};
+use crate::remesh::closest::closest_on_segment;
+
+/// A point where facets meet.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Corner {
+    pub point: Point,
+    /// Where it was on the mesh.
+    pub home: Point,
+    /// How many times as firmly as others it is held.
+    pub firmness: f64,
+    /// Never moved.
+    pub is_fixed: bool,
+    /// The vertex of the mesh.
+    pub vertex: u32,
+}
+
+/// A facet: its loops run counterclockwise around it, seen from outside, and clockwise around its holes.
+#[derive(Debug, Clone)]
+pub(super) struct Facet {
+    pub loops: Vec<Vec<u32>>,
+    pub plane: Plane,
+    /// Of the faces that it stands for.
+    pub moments: Moments,
+}
+
+impl Facet {
+    /// Its corners.
+    pub(super) fn corners(&self) -> impl Iterator<Item = u32> + '_ {
+        self.loops.iter().flatten().copied()
+    }
+
+    /// Its sides, from corner to corner.
+    pub(super) fn sides(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+        self.loops.iter().flat_map(|corners| sides(corners))
+    }
+
+    pub(super) fn is_triangle(&self) -> bool {
+        self.loops.len() == 1 && self.loops[0].len() == 3
+    }
+}
+
+/// The sides of a loop.
+pub(super) fn sides(corners: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
+    (0..corners.len()).map(|i| [corners[i], corners[(i + 1) % corners.len()]])
+}
+
+/// A surface of facets.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Shape {
+    pub corners: Vec<Corner>,
+    pub facets: Vec<Facet>,
+}
+
+impl Shape {
+    /// The facets that `regions` are, which have `moments`. What lies along the mesh's boundary keeps within `tolerance` of it.
+    pub(super) fn new(
+        regions: &Regions<'_>,
+        moments: &[Moments],
+        positions: &[Point],
+        is_fixed: impl Fn(u32) -> bool,
+        tolerance: f64,
+    ) -> Self {
+        let mut shape = Self::default();
+        let mut names: HashMap<u32, u32> = HashMap::new();
+        for (region, moments) in (0..).zip(moments) {
+            let mut loops = Vec::new();
+            for ridges in regions.loops(region).unwrap_or_default() {
+                let vertices = polygon(regions, region, &ridges, positions, tolerance);
+                let mut name = |v: u32| {
+                    *names.entry(v).or_insert_with(|| {
+                        let point = positions[v as usize];
+                        let is_fixed = is_fixed(v);
+                        shape.corners.push(Corner { point, home: point, firmness: 1.0, is_fixed, vertex: v });
+                        shape.corners.len() as u32 - 1
+                    })
+                };
+                loops.push(vertices.into_iter().map(&mut name).collect());
+            }
+            shape.facets.push(Facet { loops, plane: moments.fit().plane, moments: *moments });
+        }
+        shape
+    }
+
+    pub(super) fn point(&self, corner: u32) -> Point {
+        self.corners[corner as usize].point
+    }
+
+    pub(super) fn home(&self, corner: u32) -> Point {
+        self.corners[corner as usize].home
+    }
+
+    /// The same with every corner where it was on the mesh.
+    pub(super) fn at_home(&self) -> Self {
+        let mut shape = self.clone();
+        shape.corners.iter_mut().for_each(|corner| corner.point = corner.home);
+        shape
+    }
+
+    /// The integrals over the polygon of a facet, flat or not, as a fan around the mean of its corners.
+    pub(super) fn polygon_moments(&self, facet: &Facet) -> Moments {
+        let n = facet.corners().count().max(1) as f64;
+        let middle = scale(facet.corners().fold([0.0; 3], |sum, c| add(sum, self.point(c))), 1.0 / n);
+        let triangle = |[a, b]: [u32; 2]| Moments::of([middle, self.point(a), self.point(b)]);
+        facet.sides().fold(Moments::default(), |sum, side| sum.plus(&triangle(side)))
+    }
+
+    /// The largest distance of a corner from the plane of one of its facets.
+    pub(super) fn off_planes(&self) -> f64 {
+        let off = |facet: &Facet| facet.corners().map(|c| facet.plane.height(self.point(c)).abs()).fold(0.0, f64::max);
+        self.facets.iter().map(off).fold(0.0, f64::max)
+    }
+
+    /// Whether one of the facets has the side `[a, b]` in this direction.
+    pub(super) fn all_sides(&self) -> HashSet<[u32; 2]> {
+        self.facets.iter().flat_map(Facet::sides).collect()
+    }
+}
+
+/// The vertices of a loop that become corners.
+fn polygon(regions: &Regions<'_>, region: u32, ridges: &[Ridge], positions: &[Point], tolerance: f64) -> Vec<u32> {
+    let along = |ridge: &Ridge| {
+        let run = regions.run(region, ridge);
+        if ridge.neighbor == OUTSIDE {
+            simplified(&run, positions, tolerance)
+        } else {
+            vec![ridge.from]
+        }
+    };
+    let corners: Vec<u32> = ridges.iter().flat_map(along).collect();
+    if corners.len() >= 3 {
+        return corners;
+    }
+    // Two triangles on top of each other have no corner at all.
+    ridges.iter().flat_map(|ridge| regions.run(region, ridge).split_off(1)).collect()
+}
+
+/// The vertices of a run that keep it within `tolerance`, at least three of one that is closed, without the last [Douglas and
+/// Peucker 1973].
+fn simplified(run: &[u32], positions: &[Point], tolerance: f64) -> Vec<u32> {
+    let at = |i: usize| positions[run[i] as usize];
+    let off = |i: usize, a: usize, b: usize| distance(at(i), closest_on_segment(at(i), at(a), at(b)));
+    let last = run.len() - 1;
+    let farthest = |from: usize, to: usize, far: &dyn Fn(usize) -> f64| {
+        (from..to).max_by(|&i, &j| far(i).total_cmp(&far(j)).then(j.cmp(&i)))
+    };
+    let mut marks = vec![0, last];
+    if run[0] == run[last] && last >= 3 {
+        let opposite = farthest(1, last, &|i| distance(at(i), at(0))).unwrap_or(1);
+        let third = farthest(1, last, &|i| if i == opposite { -1.0 } else { off(i, 0, opposite) }).unwrap_or(1);
+        marks.extend([opposite, third]);
+        marks.sort_unstable();
+    }
+    let mut kept = vec![false; run.len()];
+    marks.iter().for_each(|&i| kept[i] = true);
+    let mut pieces: Vec<(usize, usize)> = marks.windows(2).map(|pair| (pair[0], pair[1])).collect();
+    while let Some((a, b)) = pieces.pop() {
+        let Some(far) = farthest(a + 1, b, &|i| off(i, a, b)) else { continue };
+        if off(far, a, b) > tolerance {
+            kept[far] = true;
+            pieces.extend([(a, far), (far, b)]);
+        }
+    }
+    (0..last).filter(|&i| kept[i]).map(|i| run[i]).collect()
+}

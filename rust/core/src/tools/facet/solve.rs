@@ -1,0 +1,189 @@
+//! Planes that fit their faces while every corner lies on the planes of all its facets.
+//!
+//! Minimizes `Σ_P ∫_P (n_P · x − o_P)² + stay Σ_c a_c ‖x_c − x̄_c‖²` subject to `n_P · x_c = o_P` wherever `c` is a corner of `P`, over planes and
+//! corners together, by Newton's method on the conditions of optimality (sequential quadratic programming, Gauss and Newton's
+//! Hessian: Nocedal and Wright 2006, chapter 18). The Hessian is one block for each plane and each corner, so a step is one sparse
+//! system over the pairs of facet and corner.
+
+use super::constants::{DAMPING, FARTHEST, FLAT, STEPS};
+use super::moments::{quadratic, Plane};
+use super::shape::Shape;
+use super::triangulation::axes;
+use crate::error::SolveError;
+use crate::linear::cholesky::Cholesky;
+use crate::linear::pattern::LowerPattern;
+use crate::mesh::vector::{add, area_vector, dot, norm, scale, sub, unit, Point};
+
+/// Added to the diagonal of the system, as a part of it: constraints may depend on each other.
+const REGULAR: f64 = 1e-10;
+
+/// A step that leaves more than this part of the distances is followed by one half as long.
+const SLOW: f64 = 0.7;
+
+/// The shortest step, as a part of Newton's.
+const SHORTEST: f64 = 0.1;
+
+/// A facet at a corner.
+#[derive(Clone, Copy)]
+struct Incidence {
+    facet: usize,
+    corner: usize,
+}
+
+/// One plane in a step: turned by the first two unknowns, pushed by the third.
+struct Turning {
+    axes: [Point; 2],
+    center: Point,
+    /// The height of the center.
+    height: f64,
+    inverse: [Point; 3],
+    gradient: Point,
+}
+
+/// Flattens the facets of `shape`, near where its corners are now; returns the largest distance of a corner from a plane.
+pub(super) fn flatten(shape: &mut Shape, stay: f64) -> Result<f64, SolveError> {
+    set_triangles(shape);
+    let targets: Vec<Point> = shape.corners.iter().map(|corner| corner.point).collect();
+    let of_facet = |(facet, f): (usize, &super::shape::Facet)| {
+        f.corners().map(|c| Incidence { facet, corner: c as usize }).collect::<Vec<_>>()
+    };
+    let incidences: Vec<Incidence> = shape.facets.iter().enumerate().flat_map(of_facet).collect();
+    let mut share = vec![0.0; targets.len()];
+    let mut at = (vec![Vec::new(); targets.len()], vec![Vec::new(); shape.facets.len()]);
+    for (k, i) in incidences.iter().enumerate() {
+        let facet = &shape.facets[i.facet];
+        share[i.corner] += facet.moments.area / facet.corners().count() as f64;
+        at.0[i.corner].push(k);
+        at.1[i.facet].push(k);
+    }
+    let weights: Vec<f64> = shape.corners.iter().zip(&share).map(|(c, share)| c.firmness * stay * share).collect();
+    let mobility: Vec<f64> = shape
+        .corners
+        .iter()
+        .zip(&weights)
+        .map(|(corner, &weight)| if corner.is_fixed || weight <= 0.0 { 0.0 } else { 1.0 / weight })
+        .collect();
+    let pattern = pattern(&incidences, &at.0, &at.1);
+    let (starts, rows) = (pattern.starts.clone(), pattern.rows.clone());
+    let mut cholesky = Cholesky::analyze(pattern, None)?;
+    let (mut last, mut part) = (f64::INFINITY, 1.0_f64);
+    for _ in 0..STEPS {
+        let turning: Vec<Turning> = shape.facets.iter().map(Turning::new).collect();
+        let of_plane = |i: &Incidence| turning[i.facet].derivative(shape.corners[i.corner].point);
+        let (of_planes, of_corners): (Vec<Point>, Vec<Point>) =
+            incidences.iter().map(|i| (of_plane(i), shape.facets[i.facet].plane.normal)).unzip();
+        let mut values = vec![0.0; rows.len()];
+        for k in 0..incidences.len() {
+            for e in starts[k]..starts[k + 1] {
+                let (i, j) = (incidences[k], incidences[rows[e]]);
+                if i.facet == j.facet {
+                    values[e] += quadratic(&turning[i.facet].inverse, of_planes[rows[e]], of_planes[k]);
+                }
+                if i.corner == j.corner {
+                    values[e] += mobility[i.corner] * dot(of_corners[rows[e]], of_corners[k]);
+                }
+            }
+            values[starts[k]] *= 1.0 + REGULAR;
+        }
+        let pull = |c: usize| scale(sub(targets[c], shape.corners[c].point), weights[c] * mobility[c]);
+        let fall = |f: &Turning| f.inverse.map(|row| -dot(row, f.gradient));
+        let mut multipliers: Vec<[f64; 1]> = incidences
+            .iter()
+            .enumerate()
+            .map(|(k, i)| {
+                let height = shape.facets[i.facet].plane.height(shape.corners[i.corner].point);
+                [height + dot(of_planes[k], fall(&turning[i.facet])) + dot(of_corners[k], pull(i.corner))]
+            })
+            .collect();
+        cholesky.factorize(&values)?;
+        cholesky.solve(&mut multipliers);
+        let mut moves: Vec<Point> = (0..targets.len()).map(pull).collect();
+        let mut turns: Vec<Point> = turning.iter().map(fall).collect();
+        for (k, (i, [multiplier])) in incidences.iter().zip(&multipliers).enumerate() {
+            moves[i.corner] = sub(moves[i.corner], scale(of_corners[k], multiplier * mobility[i.corner]));
+            let turned = turning[i.facet].inverse.map(|row| dot(row, of_planes[k]));
+            turns[i.facet] = sub(turns[i.facet], scale(turned, *multiplier));
+        }
+        let off = shape.off_planes();
+        part = if off > SLOW * last { (0.5 * part).max(SHORTEST) } else { (2.0 * part).min(1.0) };
+        last = off;
+        let farthest = moves.iter().map(|m| norm(*m)).fold(0.0, f64::max);
+        let turn = turns.iter().map(|t| t[0].hypot(t[1])).fold(0.0, f64::max);
+        let taken = part.min(FARTHEST[0] / farthest).min(FARTHEST[1] / turn);
+        if !taken.is_finite() {
+            break;
+        }
+        shape.corners.iter_mut().zip(&moves).for_each(|(c, m)| c.point = add(c.point, scale(*m, taken)));
+        for ((facet, plane), turn) in shape.facets.iter_mut().zip(&turning).zip(&turns) {
+            facet.plane = plane.turned(facet.plane.normal, scale(*turn, taken));
+        }
+        if taken >= 1.0 && shape.off_planes() < 0.01 * FLAT {
+            break;
+        }
+    }
+    set_triangles(shape);
+    Ok(shape.off_planes())
+}
+
+/// Triangles are flat as they are: their planes follow their corners.
+fn set_triangles(shape: &mut Shape) {
+    let corners = &shape.corners;
+    for facet in shape.facets.iter_mut().filter(|facet| facet.is_triangle()) {
+        let [a, b, c] = [0, 1, 2].map(|i| corners[facet.loops[0][i] as usize].point);
+        let area = area_vector([a, b, c]);
+        if norm(area) > 0.0 {
+            facet.plane = Plane::through(a, unit(area));
+        }
+    }
+}
+
+/// Pairs have an entry where they share the facet or the corner.
+fn pattern(incidences: &[Incidence], at_corners: &[Vec<usize>], at_facets: &[Vec<usize>]) -> LowerPattern {
+    let (mut starts, mut rows) = (vec![0], Vec::new());
+    for (k, i) in incidences.iter().enumerate() {
+        let both = at_corners[i.corner].iter().chain(&at_facets[i.facet]);
+        let mut column: Vec<usize> = both.copied().filter(|&row| row >= k).collect();
+        column.sort_unstable();
+        column.dedup();
+        rows.extend(column);
+        starts.push(rows.len());
+    }
+    LowerPattern { n: incidences.len(), starts, rows }
+}
+
+impl Turning {
+    fn new(facet: &super::shape::Facet) -> Self {
+        let Plane { normal, .. } = facet.plane;
+        let [x, y] = axes(normal);
+        let (center, spread, area) = (facet.moments.center(), facet.moments.spread(), facet.moments.area);
+        let height = facet.plane.height(center);
+        let trace = spread[0][0] + spread[1][1] + spread[2][2];
+        // On the unit sphere the energy bends by what it is along the normal less.
+        let least = quadratic(&spread, normal, normal);
+        let damping = DAMPING * trace + f64::MIN_POSITIVE;
+        let along = |u: Point| (quadratic(&spread, u, u) - least).max(0.0) + damping;
+        let (xx, yy, xy) = (along(x), along(y), quadratic(&spread, x, y));
+        let determinant = xx * yy - xy * xy;
+        let (ixx, iyy, ixy) = if determinant > damping * damping {
+            (yy / determinant, xx / determinant, -xy / determinant)
+        } else {
+            (1.0 / xx, 1.0 / yy, 0.0)
+        };
+        let inverse = [[ixx, ixy, 0.0], [ixy, iyy, 0.0], [0.0, 0.0, 1.0 / area.max(f64::MIN_POSITIVE)]];
+        let gradient = [quadratic(&spread, normal, x), quadratic(&spread, normal, y), area * height];
+        Self { axes: [x, y], center, height, inverse, gradient }
+    }
+
+    /// How the height of a point over the plane changes with the unknowns.
+    fn derivative(&self, point: Point) -> Point {
+        let d = sub(point, self.center);
+        [dot(self.axes[0], d), dot(self.axes[1], d), 1.0]
+    }
+
+    /// The plane after a change of the unknowns.
+    fn turned(&self, normal: Point, change: Point) -> Plane {
+        let tilt = add(scale(self.axes[0], change[0]), scale(self.axes[1], change[1]));
+        let normal = unit(add(normal, tilt));
+        Plane { normal, offset: dot(normal, self.center) - self.height - change[2] }
+    }
+}

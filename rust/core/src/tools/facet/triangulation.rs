@@ -1,0 +1,148 @@
+//! Facets as triangles, and as polygons without holes.
+
+use std::collections::{HashMap, HashSet};
+
+use spade::handles::FixedVertexHandle;
+use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
+
+use super::shape::{sides, Facet, Shape};
+use crate::mesh::vector::{cross, dot, unit, Point};
+
+/// Triangles cover a facet whose area they have to this part.
+const COVERED: f64 = 1e-9;
+
+/// Two unit vectors that span the plane with this normal: seen from its tip, the second is to the left of the first.
+pub(super) fn axes(normal: Point) -> [Point; 2] {
+    let least = (0..3).fold(0, |least, i| if normal[i].abs() < normal[least].abs() { i } else { least });
+    let mut along = [0.0; 3];
+    along[least] = 1.0;
+    let x = unit(cross(along, normal));
+    [x, cross(normal, x)]
+}
+
+/// The constrained Delaunay triangulation of a facet's loops in its plane; `None` where the loops cross, run the wrong way
+/// around, or enclose nothing.
+pub(super) fn triangles(shape: &Shape, facet: &Facet) -> Option<Vec<[u32; 3]>> {
+    let [x, y] = axes(facet.plane.normal);
+    let flat = |c: u32| [dot(x, shape.point(c)), dot(y, shape.point(c))];
+    let twice = |[p, q, r]: [[f64; 2]; 3]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    let first = flat(facet.corners().next()?);
+    let area: f64 = facet.sides().map(|[a, b]| twice([first, flat(a), flat(b)])).sum();
+    if area.is_nan() || area <= 0.0 {
+        return None;
+    }
+    if facet.is_triangle() {
+        return Some(vec![[facet.loops[0][0], facet.loops[0][1], facet.loops[0][2]]]);
+    }
+    let mut delaunay = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
+    let mut names: Vec<u32> = Vec::new();
+    let mut handles: HashMap<u32, FixedVertexHandle> = HashMap::new();
+    for c in facet.corners() {
+        let [u, v] = flat(c);
+        let handle = delaunay.insert(Point2::new(u, v)).ok()?;
+        if handle.index() != names.len() {
+            return None;
+        }
+        names.push(c);
+        handles.insert(c, handle);
+    }
+    for [a, b] in facet.sides() {
+        let (a, b) = (handles[&a], handles[&b]);
+        if !delaunay.can_add_constraint(a, b) {
+            return None;
+        }
+        delaunay.add_constraint(a, b);
+    }
+    let sides: HashSet<[u32; 2]> = facet.sides().collect();
+    let named = |from: FixedVertexHandle, to: FixedVertexHandle| [names[from.index()], names[to.index()]];
+    // What lies on the left of a side is inside, and what is next to that.
+    let mut inside = vec![false; delaunay.num_all_faces()];
+    let mut stack = Vec::new();
+    for face in delaunay.inner_faces() {
+        if face.adjacent_edges().iter().any(|e| sides.contains(&named(e.from().fix(), e.to().fix()))) {
+            inside[face.fix().index()] = true;
+            stack.push(face.fix());
+        }
+    }
+    while let Some(face) = stack.pop() {
+        for edge in delaunay.face(face).adjacent_edges() {
+            let [a, b] = named(edge.from().fix(), edge.to().fix());
+            if sides.contains(&[a, b]) {
+                continue;
+            }
+            let other = edge.rev().face().as_inner()?.fix();
+            if sides.contains(&[b, a]) {
+                return None;
+            }
+            if !std::mem::replace(&mut inside[other.index()], true) {
+                stack.push(other);
+            }
+        }
+    }
+    let within = delaunay.inner_faces().filter(|face| inside[face.fix().index()]);
+    let triangles: Vec<[u32; 3]> = within.map(|face| face.vertices().map(|v| names[v.fix().index()])).collect();
+    let covered: f64 = triangles.iter().map(|t| twice(t.map(flat))).sum();
+    ((covered - area).abs() <= COVERED * area).then_some(triangles)
+}
+
+/// Triangles for a facet whatever its loops do: they close the surface, and may overlap.
+pub(super) fn forced(facet: &Facet) -> Vec<[u32; 3]> {
+    let mut ring: Vec<u32> = facet.loops.first().cloned().unwrap_or_default();
+    for hole in facet.loops.iter().skip(1) {
+        // Out to the hole, around it, and back.
+        let back = [hole[0], ring[0]];
+        ring.extend([ring[0]]);
+        ring.extend(hole);
+        ring.extend(back);
+        ring.pop();
+    }
+    (1..ring.len().saturating_sub(1))
+        .map(|i| [ring[0], ring[i], ring[i + 1]])
+        .filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
+        .collect()
+}
+
+/// Joins the triangles of one facet to as few polygons as have no holes and meet no corner twice.
+pub(super) fn polygons(triangles: &[[u32; 3]]) -> Vec<Vec<u32>> {
+    let mut rings: Vec<Vec<u32>> = triangles.iter().map(|t| t.to_vec()).collect();
+    let mut owner: HashMap<[u32; 2], usize> = HashMap::new();
+    for (k, ring) in rings.iter().enumerate() {
+        sides(ring).for_each(|side| _ = owner.insert(side, k));
+    }
+    for side in triangles.iter().flat_map(|t| sides(t).collect::<Vec<_>>()) {
+        let [a, b] = side;
+        let (Some(&p), Some(&q)) = (owner.get(&[a, b]), owner.get(&[b, a])) else { continue };
+        if p == q {
+            continue;
+        }
+        let Some(joined) = joined(&rings[p], &rings[q]) else { continue };
+        sides(&rings[p]).chain(sides(&rings[q])).for_each(|side| _ = owner.remove(&side));
+        sides(&joined).for_each(|side| _ = owner.insert(side, p));
+        rings[p] = joined;
+        rings[q] = Vec::new();
+    }
+    rings.retain(|ring| !ring.is_empty());
+    rings
+}
+
+/// One polygon of two that share one run of sides and no other corner.
+fn joined(p: &[u32], q: &[u32]) -> Option<Vec<u32>> {
+    let others: HashSet<[u32; 2]> = sides(q).collect();
+    let shared = |[a, b]: [u32; 2]| others.contains(&[b, a]);
+    let n = p.len();
+    // The first side of `p` after what is shared.
+    let start = (0..n).find(|&i| shared([p[(i + n - 1) % n], p[i]]) && !shared([p[i], p[(i + 1) % n]]))?;
+    let own: Vec<u32> = (0..n).map(|i| p[(start + i) % n]).collect();
+    let n_shared = sides(&own).filter(|&side| shared(side)).count();
+    let (kept, hidden) = own.split_at(n - n_shared + 1);
+    let begin = q.iter().position(|&c| c == kept[kept.len() - 1])?;
+    let rest: Vec<u32> = (0..q.len()).map(|i| q[(begin + i) % q.len()]).take(q.len() - n_shared + 1).collect();
+    // Both are runs from end to end: what they have in common otherwise is met twice.
+    if rest[rest.len() - 1] != kept[0] || sides(&own).skip(kept.len() - 1).any(|side| !shared(side)) {
+        return None;
+    }
+    let met: HashSet<u32> = kept.iter().chain(hidden).copied().collect();
+    let inner = &rest[1..rest.len() - 1];
+    (!inner.iter().any(|c| met.contains(c)) && kept.len() + inner.len() >= 3)
+        .then(|| kept.iter().chain(inner).copied().collect())
+}

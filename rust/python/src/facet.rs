@@ -1,0 +1,187 @@
+//! `facet`: a mesh as flat polygons with straight ridges.
+
+use numpy::{IntoPyArray, PyArray1, PyArray2};
+use pyo3::prelude::*;
+use ridgeform_core::tools::{self, FacetMerges, FacetOptions};
+
+use crate::mesh::Mesh;
+use crate::numbers::at_least;
+use crate::progress::{handle, Progress};
+use crate::{arrays, doorway};
+
+/// What `facet` returns: a mesh of flat polygons, and what of the other mesh each is.
+#[pyclass(frozen, module = "ridgeform")]
+pub struct Faceted {
+    /// The corners of the facets, (v,3) float64, in the mesh's unit.
+    #[pyo3(get)]
+    vertices: Py<PyArray2<f64>>,
+    /// The vertex of the mesh where each vertex comes from, (v,) int32.
+    #[pyo3(get)]
+    origins: Py<PyArray1<i32>>,
+    /// The vertices of the polygons, one after the other, (l,) int32, counterclockwise seen from outside.
+    #[pyo3(get)]
+    polygon_vertices: Py<PyArray1<i32>>,
+    /// Where each polygon starts among `polygon_vertices`, and at the end l, (p+1,) int32.
+    #[pyo3(get)]
+    polygon_starts: Py<PyArray1<i32>>,
+    /// The facet of each polygon, (p,) int32; a facet with holes is several polygons.
+    #[pyo3(get)]
+    polygon_facets: Py<PyArray1<i32>>,
+    /// The same surface as triangles, (t,3) int32.
+    #[pyo3(get)]
+    faces: Py<PyArray2<i32>>,
+    /// The facet of each triangle, (t,) int32.
+    #[pyo3(get)]
+    face_facets: Py<PyArray1<i32>>,
+    /// The facet nearest to each face of the mesh, (m,) int32; -1 for faces that name a vertex twice.
+    #[pyo3(get)]
+    labels: Py<PyArray1<i32>>,
+    /// The plane of each facet, (k,4) float64: a unit normal that points outside, and the distance from the origin along it.
+    #[pyo3(get)]
+    planes: Py<PyArray2<f64>>,
+    /// Number of facets that were made; `planes` has further ones for faces that were to stay.
+    #[pyo3(get)]
+    n_facets: usize,
+    /// Root mean square distance from the mesh's faces to the facets.
+    #[pyo3(get)]
+    rms: f64,
+    /// The largest distance from the middle of a face to the facets.
+    #[pyo3(get)]
+    largest: f64,
+    /// Pairs of facets that pass through each other and do not on the mesh.
+    #[pyo3(get)]
+    n_crossings: usize,
+    /// "solved", or "stopped" (`Progress.finish` was called).
+    #[pyo3(get)]
+    status: &'static str,
+    mesh: Py<Mesh>,
+    options: FacetOptions,
+    merges: FacetMerges,
+}
+
+#[pymethods]
+impl Faceted {
+    /// The same mesh with another number of facets: fast, since the order in which faces merge is known.
+    ///
+    /// Parameters
+    /// ----------
+    /// facets, error, progress : as of `facet`
+    ///
+    /// Returns
+    /// -------
+    /// Faceted
+    ///
+    /// Raises
+    /// ------
+    /// ArgumentError, Cancelled
+    #[pyo3(signature = (*, facets=None, error=None, progress=None))]
+    fn at(
+        &self,
+        py: Python<'_>,
+        facets: Option<i64>,
+        error: Option<f64>,
+        progress: Option<&Bound<'_, Progress>>,
+    ) -> PyResult<Self> {
+        let facets = facets.map(|count| at_least(py, "facets", count, 1)).transpose()?;
+        let options = FacetOptions { facets, error, ..self.options.clone() };
+        run(py, self.mesh.clone_ref(py), Some(&self.merges), options, progress)
+    }
+
+    fn __repr__(&self) -> String {
+        let crossing = if self.n_crossings > 0 { format!(", {} crossing", self.n_crossings) } else { String::new() };
+        format!(
+            "<ridgeform.Faceted: {} facets, RMS distance {:.3e}{crossing}, {}>",
+            self.n_facets, self.rms, self.status
+        )
+    }
+}
+
+fn run(
+    py: Python<'_>,
+    mesh: Py<Mesh>,
+    merges: Option<&FacetMerges>,
+    options: FacetOptions,
+    progress: Option<&Bound<'_, Progress>>,
+) -> PyResult<Faceted> {
+    let progress = handle(progress);
+    let inner = mesh.get().inner();
+    let found = doorway::call(py, &progress, || tools::facet(inner, merges, &options, &progress))?;
+    let mut starts = vec![0];
+    found.polygons.iter().for_each(|polygon| starts.push(starts[starts.len() - 1] + polygon.len() as u32));
+    Ok(Faceted {
+        vertices: arrays::float_rows(py, &found.vertices)?.unbind(),
+        origins: arrays::index_array(py, &found.origins)?.unbind(),
+        polygon_vertices: arrays::index_array(py, &found.polygons.concat())?.unbind(),
+        polygon_starts: arrays::index_array(py, &starts)?.unbind(),
+        polygon_facets: arrays::index_array(py, &found.polygon_facets)?.unbind(),
+        faces: arrays::index_rows(py, &found.faces)?.unbind(),
+        face_facets: arrays::index_array(py, &found.face_facets)?.unbind(),
+        labels: found.labels.into_pyarray(py).unbind(),
+        planes: arrays::float_rows(py, &found.planes)?.unbind(),
+        n_facets: found.n_facets,
+        rms: found.rms,
+        largest: found.largest,
+        n_crossings: found.n_crossings,
+        status: found.status.name(),
+        mesh,
+        options,
+        merges: found.merges,
+    })
+}
+
+/// Make a mesh of flat polygons with straight ridges, as a low-poly artist models.
+///
+/// Faces merge into regions, always those that lie best on one plane, as long as the regions can be the facets of a
+/// polyhedron. Then planes and corners are found together, so that every corner lies on the planes of all its facets, and
+/// faces and planes take turns until the planes are nearest. Facets that would cross are repaired or divided; what is closed
+/// stays closed. `stylize` first where the mesh is round: it decides where the ridges run.
+///
+/// Parameters
+/// ----------
+/// mesh : Mesh with positions
+/// facets : number of facets wanted, or None: as `error` has it. It is met unless the shape has no fewer, or facets had to be
+///     divided
+/// error : root mean square distance from the mesh that is allowed, in its unit, or None: as many facets as the faces give
+///     evidence for (Bayesian information criterion), at most as many as 0.5 % of the diagonal of the bounding box needs
+/// edge_weights : (m,3) array ≥ 0, what borders of facets cost along edges, column i opposite corner i: 1 is neutral,
+///     smaller attracts them; the smaller entry of both faces counts
+/// faces : faces to make facets of, (m,) booleans or (j,) indices; None for all. The others, and all vertices of theirs, stay
+/// threads : int or None
+/// progress : Progress or None
+///
+/// Returns
+/// -------
+/// Faceted
+///
+/// Raises
+/// ------
+/// ArgumentError, MeshError (no positions, no face with area), MemoryLimitError, Cancelled
+///
+/// References
+/// ----------
+/// Merging: Garland, Willmott and Heckbert, Hierarchical face clustering on polygonal surfaces, 2001. Faces and planes in
+/// turns: Cohen-Steiner, Alliez and Desbrun, Variational shape approximation, 2004.
+#[pyfunction]
+#[pyo3(signature = (mesh, *, facets=None, error=None, edge_weights=None, faces=None, threads=None, progress=None))]
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn facet(
+    py: Python<'_>,
+    mesh: &Bound<'_, Mesh>,
+    facets: Option<i64>,
+    error: Option<f64>,
+    edge_weights: Option<&Bound<'_, PyAny>>,
+    faces: Option<&Bound<'_, PyAny>>,
+    threads: Option<i64>,
+    progress: Option<&Bound<'_, Progress>>,
+) -> PyResult<Faceted> {
+    let m = mesh.get().n_faces();
+    let rows = |given: &Bound<'_, PyAny>| arrays::finite_floats("edge_weights", given)?.rows::<3>(py, "edge_weights");
+    let options = FacetOptions {
+        facets: facets.map(|count| at_least(py, "facets", count, 1)).transpose()?,
+        error,
+        edge_weights: edge_weights.map(rows).transpose()?,
+        faces: faces.map(|given| arrays::mask("faces", given, m, "face")).transpose()?,
+        threads: threads.map(|count| at_least(py, "threads", count, 1)).transpose()?,
+    };
+    run(py, mesh.clone().unbind(), None, options, progress)
+}
