@@ -83,8 +83,9 @@ def api_page() -> str:
         sys.path.insert(0, str(WHEEL_SITE))
     import ridgeform  # noqa: PLC0415
 
-    stubs = ast.parse((WHEEL_SITE / "ridgeform/_native.pyi").read_text(encoding="utf-8"))
-    nodes = {node.name: node for node in stubs.body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+    stubs = [path.read_text(encoding="utf-8") for path in sorted((WHEEL_SITE / "ridgeform").glob("*.pyi"))]
+    declared = [node for stub in stubs for node in ast.parse(stub).body]
+    nodes = {node.name: node for node in declared if isinstance(node, ast.FunctionDef | ast.ClassDef)}
     cells = example_cells()
     grouped = {name for names in GROUPS.values() for name in names}
     groups = {**GROUPS, "More": tuple(name for name in nodes if name not in grouped)}

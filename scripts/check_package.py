@@ -75,6 +75,7 @@ def faults_of_wheel(name: str, data: bytes) -> list[str]:
         elif (found := platform_of_native(wheel.read(native[0])[:4096])) != target:
             faults.append(f"its native module is for {found or 'no platform'}, its tag for {target}")
     for wanted in (
+        r"ridgeform/_classes\.pyi",
         r"ridgeform/_native\.pyi",
         r"ridgeform/py\.typed",
         r".+/licenses/rust/LICENSE-MIT",

@@ -31,6 +31,7 @@ def wheel(header, name=None, without=""):
     info = f"ridgeform-{version()}.dist-info"
     files = {
         f"ridgeform/{name or set_version.native_name(version())}.{suffix}": header,
+        "ridgeform/_classes.pyi": b"",
         "ridgeform/_native.pyi": b"",
         "ridgeform/py.typed": b"",
         f"{info}/licenses/rust/LICENSE-MIT": b"",

@@ -48,22 +48,28 @@ def drawn_settings(operator, choice):
         for each in getattr(bpy.ops.ridgeform, operator).get_rna_type().properties
         if not each.is_readonly and not each.is_hidden and each.identifier != "rna_type"
     ]
-    settings = {}
-    for each in choice.sample(properties, min(len(properties), choice.randrange(4))):
-        if each.type == "BOOLEAN":
-            settings[each.identifier] = choice.random() < 0.5
-        elif each.type == "INT":
-            high = min(each.soft_max, BOUNDS.get(each.identifier, 30))
-            settings[each.identifier] = choice.randint(each.soft_min, max(high, each.soft_min))
-        elif each.type == "FLOAT":
-            settings[each.identifier] = choice.uniform(each.soft_min, each.soft_max)
-        elif each.type == "ENUM":
-            names = [item.identifier for item in each.enum_items]
-            many = {name for name in names if choice.random() < 0.4}
-            settings[each.identifier] = many if each.is_enum_flag else choice.choice(names)
-        elif each.type == "STRING":
-            settings[each.identifier] = choice.choice(WORDS)
+    chosen = choice.sample(properties, min(len(properties), choice.randrange(4)))
+    settings = {each.identifier: drawn_value(each, choice) for each in chosen}
     return {"steps": 3, **settings} if operator == "stylize" else settings
+
+
+def drawn_value(kind, choice):
+    """A value of one property: of a color or a vector as many numbers as it has."""
+    if kind.type == "STRING":
+        return choice.choice(WORDS)
+    if kind.type == "ENUM":
+        names = [item.identifier for item in kind.enum_items]
+        if kind.is_enum_flag:
+            return {name for name in names if choice.random() < 0.4}
+        return choice.choice(names)
+    if kind.type == "BOOLEAN":
+        draw = functools.partial(choice.choice, [False, True])
+    elif kind.type == "INT":
+        high = min(kind.soft_max, BOUNDS.get(kind.identifier, 30))
+        draw = functools.partial(choice.randint, kind.soft_min, max(high, kind.soft_min))
+    else:
+        draw = functools.partial(choice.uniform, kind.soft_min, kind.soft_max)
+    return [draw() for _ in range(kind.array_length)] if kind.is_array else draw()
 
 
 def note(*words):
@@ -127,9 +133,10 @@ class Sequences(RuleBasedStateMachine):
     def select(self, mask, active):
         """Select some objects."""
         note("select", mask, active)
-        for index, obj in enumerate(meshes()):
+        found = meshes()
+        for index, obj in enumerate(found):
             obj.select_set(bool(mask >> index & 1))
-        bpy.context.view_layer.objects.active = meshes()[active % len(meshes())]
+        bpy.context.view_layer.objects.active = found[active % len(found)]
         self._push()
 
     @rule(mode=st.sampled_from(MODES))
@@ -337,8 +344,11 @@ class Sequences(RuleBasedStateMachine):
 
 def meshes():
     """The mesh objects of the view layer."""
-    # One that was removed stays in the view layer, as None, until that is brought up to date.
-    return [obj for obj in bpy.context.view_layer.objects if obj and obj.type == "MESH"]
+    # One that was removed stays in the view layer, as None, until that is brought up to date; so does one
+    # that was unlinked.
+    return [
+        obj for obj in bpy.context.view_layer.objects if obj and obj.type == "MESH" and obj.users_collection
+    ]
 
 
 def everything():

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 import ridgeform
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from known_shapes import shapes
 from reference import block_norms, dense_hessian
 

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 import ridgeform
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from known_shapes import shapes
 
 

@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 import ridgeform
 
-STUBS = ast.parse((Path(ridgeform.__file__).parent / "_native.pyi").read_text())
-FUNCTIONS = {node.name: node for node in STUBS.body if isinstance(node, ast.FunctionDef)}
-CLASSES = {node.name: node for node in STUBS.body if isinstance(node, ast.ClassDef)}
+STUBS = sorted(Path(ridgeform.__file__).parent.glob("*.pyi"))
+NODES = [node for path in STUBS for node in ast.parse(path.read_text()).body]
+FUNCTIONS = {node.name: node for node in NODES if isinstance(node, ast.FunctionDef)}
+CLASSES = {node.name: node for node in NODES if isinstance(node, ast.ClassDef)}
 
 
 def parameters_of_stub(node):
