@@ -19,6 +19,7 @@ pub(super) struct Faces {
     pub moments: Vec<Moments>,
     pub labels: Vec<u32>,
     area: f64,
+    tree: ClosestPoint,
 }
 
 /// How far faces are from a surface of facets.
@@ -35,7 +36,13 @@ impl Faces {
     pub(super) fn new(places: Vec<[Point; 3]>, labels: Vec<u32>) -> Self {
         let moments: Vec<Moments> = places.iter().map(|&corners| Moments::of(corners)).collect();
         let area = moments.iter().map(|m| m.area).sum();
-        Self { centers: places.iter().map(|&corners| centroid(corners)).collect(), places, moments, labels, area }
+        let tree = ClosestPoint::new(places.clone());
+        Self { centers: places.iter().map(|&corners| centroid(corners)).collect(), places, moments, labels, area, tree }
+    }
+
+    /// The point of the mesh nearest to another.
+    pub(super) fn on_mesh(&self, point: Point) -> Point {
+        self.tree.closest(point, None, |_| true).map_or(point, |near| near.point)
     }
 
     /// Gives every facet the integrals over its faces; over its polygon where they are too few.

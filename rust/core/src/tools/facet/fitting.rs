@@ -2,16 +2,15 @@
 
 use std::collections::HashSet;
 
-use super::constants::{FLAT, REPAIRS, ROUNDS, STAY, TRIES};
+use super::constants::{AT_CORNERS, FLAT, PULL, REPAIRS, ROUNDS, STAY, TRIES};
 use super::faces::Faces;
 use super::faults::Inspection;
-use super::moments::Moments;
+use super::moments::{Moments, Plane};
 use super::repair::{hold, repair};
-use super::shape::{Facet, Shape};
+use super::shape::{Corner, Facet, Shape};
 use super::solve::flatten;
-use crate::mesh::vector::{area_vector, norm, unit};
+use crate::mesh::vector::{area_vector, between, distance, norm, unit, Point};
 use crate::progress::Progress;
-use crate::tools::facet::moments::Plane;
 use crate::Result;
 
 /// Flattens the facets near where they were on the mesh, and repairs those that cross themselves or others.
@@ -22,7 +21,8 @@ pub(super) fn settle(shape: &mut Shape, faces: &mut Faces, progress: &Progress) 
         shape.facets.iter_mut().for_each(|facet| facet.plane = facet.moments.fit().plane);
         // What crosses on the mesh itself is not held against the facets.
         let before = Inspection::new(shape, true).pairs;
-        flatten(shape, STAY[0])?;
+        let homes: Vec<Point> = shape.corners.iter().map(|corner| corner.home).collect();
+        flatten(shape, STAY[0], &homes)?;
         let faulty = Inspection::new(shape, false).faults(&before);
         if faulty.is_empty() || round == REPAIRS || progress.is_finishing() || !repair(shape, faces, &faulty) {
             break;
@@ -31,35 +31,55 @@ pub(super) fn settle(shape: &mut Shape, faces: &mut Faces, progress: &Progress) 
     Ok(())
 }
 
-/// Gives every face to the nearest facet and fits the planes anew, in turns, as long as facets stay sound.
+/// Gives every face to the nearest facet and fits the planes anew, in turns, as long as facets stay sound; the nearest shape stays.
 pub(super) fn refine(shape: &mut Shape, faces: &mut Faces, progress: &Progress) -> Result<()> {
+    let mut inspection = Inspection::new(shape, true);
+    let (mut labels, mut least) = measured(shape, faces, &inspection);
+    let mut best = shape.clone();
     for _ in 0..ROUNDS {
-        let inspection = Inspection::new(shape, true);
-        let excused: HashSet<[u32; 2]> = inspection.pairs.clone();
-        let crossed: HashSet<u32> = inspection.crossed.iter().copied().collect();
-        faces.labels = faces.nearest(shape, &inspection).0;
+        faces.labels = labels;
         faces.fit(shape);
-        let mut is_better = false;
-        for _ in 0..TRIES {
-            progress.check()?;
-            let mut trial = shape.clone();
-            let off = flatten(&mut trial, STAY[1])?;
-            let mut faulty = Inspection::new(&trial, false).faults(&excused);
-            faulty.retain(|k| !crossed.contains(k));
-            if faulty.is_empty() {
-                is_better = off <= FLAT.max(shape.off_planes());
-                if is_better {
-                    *shape = trial;
-                }
-                break;
-            }
-            faulty.into_iter().for_each(|k| _ = hold(shape, k));
+        let Some(next) = fitted(shape, faces, &inspection, progress)? else { break };
+        *shape = next;
+        inspection = Inspection::new(shape, true);
+        let distance;
+        (labels, distance) = measured(shape, faces, &inspection);
+        if distance < least {
+            (least, best) = (distance, shape.clone());
         }
-        if !is_better || progress.is_finishing() {
+        if progress.is_finishing() {
             break;
         }
     }
+    *shape = best;
     Ok(())
+}
+
+/// The facet nearest to each face, and the distance of both surfaces from each other: from the faces to the facets, and from the
+/// corners to the mesh, where facets are farthest from it.
+fn measured(shape: &Shape, faces: &Faces, inspection: &Inspection) -> (Vec<u32>, f64) {
+    let (labels, distances) = faces.nearest(shape, inspection);
+    let off = |corner: &Corner| distance(corner.point, faces.on_mesh(corner.point)).powi(2);
+    let corners = shape.corners.iter().map(off).sum::<f64>() / shape.corners.len().max(1) as f64;
+    (labels, (distances.rms.powi(2) + AT_CORNERS * corners).sqrt())
+}
+
+/// The shape with planes fitted to its faces, if that can be had without facets that cross where none did.
+fn fitted(shape: &mut Shape, faces: &Faces, before: &Inspection, progress: &Progress) -> Result<Option<Shape>> {
+    let aim = |corner: &Corner| between(corner.point, faces.on_mesh(corner.point), PULL);
+    let aims: Vec<Point> = shape.corners.iter().map(aim).collect();
+    for _ in 0..TRIES {
+        progress.check()?;
+        let mut trial = shape.clone();
+        let off = flatten(&mut trial, STAY[1], &aims)?;
+        let mut faulty = Inspection::new(&trial, false).faults(&before.pairs);
+        faulty.retain(|k| !before.crossed.contains(k));
+        if faulty.is_empty() {
+            return Ok((off <= FLAT.max(shape.off_planes())).then_some(trial));
+        }
+        faulty.into_iter().for_each(|k| hold(shape, k));
+    }
+    Ok(None)
 }
 
 /// Leaves triangles of the facets that did not come out flat or simple.

@@ -205,7 +205,9 @@ impl<'a> Job<'a> {
                 Wanted::Facets(wanted) => {
                     let made = found.n_facets + n_held;
                     let off = wanted.clamp(fewest, most) as f64 - made as f64;
-                    (off.abs(), (count as f64 + off).round())
+                    // Repairs that failed leave many triangles, which say little.
+                    let most = 4.0 + 0.2 * count as f64;
+                    (off.abs(), count as f64 + off.clamp(-most, most).round())
                 }
                 Wanted::Error(error) => {
                     let over = found.distances.rms / error;

@@ -3,6 +3,7 @@
 
 use std::collections::HashSet;
 
+use super::constants::FIRMER;
 use super::faces::Faces;
 use super::moments::Moments;
 use super::shape::{sides, Facet, Shape};
@@ -33,7 +34,10 @@ pub(super) fn repair(shape: &mut Shape, faces: &mut Faces, faulty: &[u32]) -> bo
             }
             None => {
                 touched.extend(shape.facets[k as usize].corners());
-                is_repaired |= divide(shape, faces, k) || hold(shape, k);
+                is_repaired = true;
+                if !divide(shape, faces, k) {
+                    hold(shape, k);
+                }
             }
         }
     }
@@ -133,10 +137,17 @@ fn remove(shape: &mut Shape, faces: &mut Faces, k: u32) {
     faces.labels.iter_mut().filter(|label| **label == last).for_each(|label| *label = k);
 }
 
+/// A way to divide a facet: whether a part is unsound, and how much the parts are off planes; the parts; of which its faces are.
+struct Cut {
+    rank: (bool, f64),
+    parts: [Facet; 2],
+    is_first: Vec<bool>,
+}
+
 /// Divides a facet without holes in two along the diagonal that leaves the flattest parts, both sound where there is one.
 fn divide(shape: &mut Shape, faces: &mut Faces, k: u32) -> bool {
     let facet = shape.facets[k as usize].clone();
-    let n = facet.loops[0].len();
+    let n = facet.corners().count();
     if facet.loops.len() != 1 || n < 4 {
         return false;
     }
@@ -144,7 +155,7 @@ fn divide(shape: &mut Shape, faces: &mut Faces, k: u32) -> bool {
     let own: Vec<usize> = (0..faces.labels.len()).filter(|&f| faces.labels[f] == k).collect();
     let home = shape.at_home();
     let taken = shape.all_sides();
-    let mut best: Option<((bool, f64), [Facet; 2], Vec<bool>)> = None;
+    let mut best: Option<Cut> = None;
     for i in 0..n {
         for j in i + 2..n.min(n + i - 1) {
             let (a, b) = (corners[i], corners[j]);
@@ -168,12 +179,12 @@ fn divide(shape: &mut Shape, faces: &mut Faces, k: u32) -> bool {
             };
             let (first, second) = (part(i..j + 1, true), part(j..n + i + 1, false));
             let rank = (!(first.1 && second.1), first.2 + second.2);
-            if best.as_ref().is_none_or(|(least, ..)| (rank.0, rank.1) < (least.0, least.1)) {
-                best = Some((rank, [first.0, second.0], is_first));
+            if best.as_ref().is_none_or(|cut| rank < cut.rank) {
+                best = Some(Cut { rank, parts: [first.0, second.0], is_first });
             }
         }
     }
-    let Some((_, [first, second], is_first)) = best else { return false };
+    let Some(Cut { parts: [first, second], is_first, .. }) = best else { return false };
     let fresh = shape.facets.len() as u32;
     for (&f, _) in own.iter().zip(is_first).filter(|(_, is_first)| !is_first) {
         faces.labels[f] = fresh;
@@ -184,8 +195,7 @@ fn divide(shape: &mut Shape, faces: &mut Faces, k: u32) -> bool {
 }
 
 /// Holds the corners of a facet more firmly.
-pub(super) fn hold(shape: &mut Shape, k: u32) -> bool {
+pub(super) fn hold(shape: &mut Shape, k: u32) {
     let corners: Vec<u32> = shape.facets[k as usize].corners().collect();
-    corners.iter().for_each(|&c| shape.corners[c as usize].firmness *= super::constants::FIRMER);
-    true
+    corners.iter().for_each(|&c| shape.corners[c as usize].firmness *= FIRMER);
 }

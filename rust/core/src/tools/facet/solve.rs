@@ -5,7 +5,7 @@
 //! Hessian: Nocedal and Wright 2006, chapter 18). The Hessian is one block for each plane and each corner, so a step is one sparse
 //! system over the pairs of facet and corner.
 
-use super::constants::{DAMPING, FARTHEST, FLAT, STEPS};
+use super::constants::{DAMPING, FARTHEST, FLAT, REGULAR, SLACK, SLOW, STEPS};
 use super::moments::{quadratic, Plane};
 use super::shape::Shape;
 use super::triangulation::axes;
@@ -13,15 +13,6 @@ use crate::error::SolveError;
 use crate::linear::cholesky::Cholesky;
 use crate::linear::pattern::LowerPattern;
 use crate::mesh::vector::{add, area_vector, dot, norm, scale, sub, unit, Point};
-
-/// Added to the diagonal of the system, as a part of it: constraints may depend on each other.
-const REGULAR: f64 = 1e-10;
-
-/// A step that leaves more than this part of the distances is followed by one half as long.
-const SLOW: f64 = 0.7;
-
-/// The shortest step, as a part of Newton's.
-const SHORTEST: f64 = 0.1;
 
 /// A facet at a corner.
 #[derive(Clone, Copy)]
@@ -40,10 +31,9 @@ struct Turning {
     gradient: Point,
 }
 
-/// Flattens the facets of `shape`, near where its corners are now; returns the largest distance of a corner from a plane.
-pub(super) fn flatten(shape: &mut Shape, stay: f64) -> Result<f64, SolveError> {
+/// Flattens the facets of `shape`, with corners near `targets`; returns the largest distance of a corner from a plane.
+pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point]) -> Result<f64, SolveError> {
     set_triangles(shape);
-    let targets: Vec<Point> = shape.corners.iter().map(|corner| corner.point).collect();
     let of_facet = |(facet, f): (usize, &super::shape::Facet)| {
         f.corners().map(|c| Incidence { facet, corner: c as usize }).collect::<Vec<_>>()
     };
@@ -66,8 +56,13 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64) -> Result<f64, SolveError> {
     let pattern = pattern(&incidences, &at.0, &at.1);
     let (starts, rows) = (pattern.starts.clone(), pattern.rows.clone());
     let mut cholesky = Cholesky::analyze(pattern, None)?;
-    let (mut last, mut part) = (f64::INFINITY, 1.0_f64);
-    for _ in 0..STEPS {
+    let (mut last, mut slack) = (f64::INFINITY, SLACK[usize::from(shape.off_planes() < FLAT)]);
+    for step in 0..2 * STEPS {
+        // The last ones make the least changes that flatten.
+        let only_flattens = step >= STEPS;
+        if only_flattens {
+            slack = REGULAR;
+        }
         let turning: Vec<Turning> = shape.facets.iter().map(Turning::new).collect();
         let of_plane = |i: &Incidence| turning[i.facet].derivative(shape.corners[i.corner].point);
         let (of_planes, of_corners): (Vec<Point>, Vec<Point>) =
@@ -83,10 +78,17 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64) -> Result<f64, SolveError> {
                     values[e] += mobility[i.corner] * dot(of_corners[rows[e]], of_corners[k]);
                 }
             }
-            values[starts[k]] *= 1.0 + REGULAR;
+            values[starts[k]] *= 1.0 + slack;
         }
-        let pull = |c: usize| scale(sub(targets[c], shape.corners[c].point), weights[c] * mobility[c]);
-        let fall = |f: &Turning| f.inverse.map(|row| -dot(row, f.gradient));
+        let pull = |c: usize| {
+            let is_pulled = !only_flattens && mobility[c] > 0.0;
+            if is_pulled {
+                sub(targets[c], shape.corners[c].point)
+            } else {
+                [0.0; 3]
+            }
+        };
+        let fall = |f: &Turning| f.inverse.map(|row| if only_flattens { 0.0 } else { -dot(row, f.gradient) });
         let mut multipliers: Vec<[f64; 1]> = incidences
             .iter()
             .enumerate()
@@ -105,11 +107,11 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64) -> Result<f64, SolveError> {
             turns[i.facet] = sub(turns[i.facet], scale(turned, *multiplier));
         }
         let off = shape.off_planes();
-        part = if off > SLOW * last { (0.5 * part).max(SHORTEST) } else { (2.0 * part).min(1.0) };
+        slack = if off > SLOW * last { (4.0 * slack).min(1.0) } else { (0.1 * slack).max(REGULAR) };
         last = off;
         let farthest = moves.iter().map(|m| norm(*m)).fold(0.0, f64::max);
         let turn = turns.iter().map(|t| t[0].hypot(t[1])).fold(0.0, f64::max);
-        let taken = part.min(FARTHEST[0] / farthest).min(FARTHEST[1] / turn);
+        let taken = 1.0_f64.min(FARTHEST[0] / farthest).min(FARTHEST[1] / turn);
         if !taken.is_finite() {
             break;
         }
@@ -117,7 +119,7 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64) -> Result<f64, SolveError> {
         for ((facet, plane), turn) in shape.facets.iter_mut().zip(&turning).zip(&turns) {
             facet.plane = plane.turned(facet.plane.normal, scale(*turn, taken));
         }
-        if taken >= 1.0 && shape.off_planes() < 0.01 * FLAT {
+        if only_flattens && shape.off_planes() < 1e-3 * FLAT {
             break;
         }
     }
