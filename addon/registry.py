@@ -22,6 +22,7 @@ from .overnight import recipe_operators
 NAMES = (
     "stylize",
     "holes",
+    "facets",
     "segments",
     "attributes",
     "diffusion",

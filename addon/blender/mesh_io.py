@@ -351,6 +351,13 @@ def mark_edges(mesh: bpy.types.Mesh, ridges: np.ndarray, kinds: Iterable[str]) -
         mesh.update()
 
 
+def mark_seams(mesh: bpy.types.Mesh, borders: np.ndarray) -> None:
+    """Mark the edges (k,) bool of a mesh in Object Mode as seams; other edges keep their marks."""
+    marked = np.zeros(len(mesh.edges), bool)
+    mesh.edges.foreach_get("use_seam", marked)
+    mesh.edges.foreach_set("use_seam", marked | borders)
+
+
 def _mark_edge_attribute(mesh: bpy.types.Mesh, ridges: np.ndarray, kind: str) -> None:
     name, data_type = EDGE_MARKS[kind]
     attribute = mesh.attributes.get(name) or mesh.attributes.new(name, data_type, "EDGE")

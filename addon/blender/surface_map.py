@@ -21,7 +21,7 @@ class SurfaceMap:
         """The nearest triangle (k,) of each point (k, 3) and the barycentric coordinates (k, 3) in it."""
         found = [self._whole.find_nearest(point) for point in points.tolist()]
         triangle = np.array([hit[2] for hit in found], np.int64)
-        return triangle, self._barycentric(triangle, np.array([hit[0][:] for hit in found]))
+        return triangle, self._barycentric(triangle, np.array([hit[0][:] for hit in found]).reshape(-1, 3))
 
     def nearest_on_chart_of(self, triangle: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """As `nearest`, but each point (k, 3) looks only on the chart of the triangle (k,) given for it."""

@@ -157,16 +157,15 @@ def given_flags(values: object, settings: type[Settings]) -> dict[str, object]:
         word = flag_of(name, setting)
         if word is None:
             continue
+        if any(getattr(values, other) != implied for other, implied in setting.implies.items()):
+            continue
         if setting.optional is not None:
             counts = chosen(values, name) is not None
             changed = _written(setting, value) != _written(setting, setting.default)
             if counts != setting.optional or (counts and changed):
                 # Zero is none.
                 given[word] = _written(setting, value) if counts else 0
-        elif setting.implies:
-            if all(getattr(values, other) == implied for other, implied in setting.implies.items()):
-                given[word] = _written(setting, value)
-        elif _written(setting, value) != _written(setting, setting.default):
+        elif setting.implies or _written(setting, value) != _written(setting, setting.default):
             given[word] = _written(setting, value)
     for name, (other, _) in settings.follows.items():
         setting = settings.declared[name]

@@ -22,6 +22,13 @@ def ridge_weights_of(painted: np.ndarray, triangles: np.ndarray, avoid: bool) ->
     return RIDGE_PULL ** (exponent if avoid else -exponent)
 
 
+def edge_weights_of(painted: np.ndarray, triangles: np.ndarray, avoid: bool) -> np.ndarray:
+    """The same for the edges (m, 3) of the triangles, column i opposite corner i."""
+    exponent = painted.astype(np.float64)[triangles]
+    exponent = 0.5 * (exponent[:, [1, 2, 0]] + exponent[:, [2, 0, 1]])
+    return RIDGE_PULL ** (exponent if avoid else -exponent)
+
+
 RIDGE_GROUP = vertex_group(
     "Ridges", "Vertex group painted where ridges should form. Unpainted areas are neutral"
 )

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the wheel gets of the mesh of an object: its surface, split seams welded, and painted weights."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import bpy
@@ -10,7 +11,7 @@ import ridgeform
 from ..blender import mesh_io, modifiers
 from ..blender.refusals import RefusedError
 from ..blender.welding import Weld, flip_note, mirrored, seam_note, topology_notes, weld_seams
-from .shared_settings import ridge_weights_of
+from .shared_settings import edge_weights_of, ridge_weights_of
 
 
 @dataclass
@@ -88,7 +89,24 @@ def painted_ridges(
 
     `None` without paint; `RefusedError` if the object has no such group.
     """
+    return _painted(ridge_weights_of, obj, settings, triangles, weld)
+
+
+def painted_edges(
+    obj: bpy.types.Object, settings: object, triangles: np.ndarray, weld: Weld
+) -> np.ndarray | None:
+    """The weights (l, 3) that ridge paint gives the edges of the welded triangles, as `painted_ridges`."""
+    return _painted(edge_weights_of, obj, settings, triangles, weld)
+
+
+def _painted(
+    weights_of: Callable[[np.ndarray, np.ndarray, bool], np.ndarray],
+    obj: bpy.types.Object,
+    settings: object,
+    triangles: np.ndarray,
+    weld: Weld,
+) -> np.ndarray | None:
     if not settings.ridge_group:
         return None
     painted = group_weights(obj, settings.ridge_group)
-    return ridge_weights_of(painted, triangles[weld.rows], settings.avoid_ridges)
+    return weights_of(painted, triangles[weld.rows], settings.avoid_ridges)

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Segmenting a shape or an attribute: Rowe et al. 2024, eq. (41), the selected faces only in Edit Mode."""
 
-import hashlib
-from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -17,6 +15,7 @@ from ..blender.refusals import RefusedError
 from ..blender.selection import Needs
 from ..blender.welding import Weld
 from ..framework.job import Task
+from ..framework.results import Results
 from ..framework.run import Part, Run, counted, meshes_phrase
 from ..framework.sources import (
     as_argument,
@@ -31,8 +30,6 @@ from .settings import by_count, of_parts, parts_options, segment_options
 
 SUFFIX = "_sharpened"
 KEY_NAME = "Sharpened"
-MEMORY = 4
-"""Results that are kept, so that their number of segments changes at once; each is as large as its mesh."""
 
 
 @dataclass(kw_only=True)
@@ -250,42 +247,21 @@ def _course(found: ridgeform.Segmentation) -> dict[str, object]:
 
 Found = ridgeform.Segmentation | ridgeform.Parts
 
-_known: OrderedDict[bytes, Found] = OrderedDict()
+_known = Results()
 
 
 def forget() -> None:
     """Let go of the results that are kept."""
-    _known.clear()
+    _known.forget()
 
 
 def _segmented(
     surface: Surface, kind: str, options: dict[str, object], progress: ridgeform.Progress
 ) -> Found:
-    """The result for a mesh and options; the same ones again are found by all that goes in, bit by bit."""
-    key = _digest(surface, options | {"kind": kind})
-    if key in _known:
-        _known.move_to_end(key)
-        return _known[key]
+    """The result for a mesh and options."""
     call = ridgeform.parts if kind == "PARTS" else ridgeform.segment
-    found = call(surface.mesh, progress=progress, **options)
-    if found.status != "stopped":
-        _known[key] = found
-        while len(_known) > MEMORY:
-            _known.popitem(last=False)
-    return found
-
-
-def _digest(surface: Surface, options: dict[str, object]) -> bytes:
-    total = hashlib.blake2b(surface.mesh.vertices.tobytes())
-    total.update(surface.mesh.faces.tobytes())
-    for name in sorted(options):
-        value = options[name]
-        total.update(name.encode())
-        if isinstance(value, np.ndarray):
-            total.update(repr((value.dtype.str, value.shape)).encode() + value.tobytes())
-        else:
-            total.update(repr(value).encode())
-    return total.digest()
+    given = options | {"kind": kind}
+    return _known.of(surface.mesh, given, lambda: call(surface.mesh, progress=progress, **options))[0]
 
 
 def _areas(mesh: ridgeform.Mesh) -> np.ndarray:

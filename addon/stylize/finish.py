@@ -11,9 +11,10 @@ import bpy
 import numpy as np
 import ridgeform
 
-from ..blender import blending, mesh_io
-from ..blender.mesh_layers import numbered_edges
+from ..blender import blending, mesh_io, rebuilding
 from ..blender.welding import Weld
+from ..framework import faceting
+from ..framework.faceting import Facetable
 from ..framework.settings import chosen
 from . import reduction
 from .ridges import Edges
@@ -37,12 +38,19 @@ class Source:
     weld: Weld
     free: np.ndarray
     """Which vertices (n,) bool may move."""
-    reducible: reduction.Reducible | None = None
+    reducible: rebuilding.Before | None = None
     """What its triangles are reduced from, if they are to be."""
+    facetable: Facetable | None = None
+    """What facets are made from, if they are to be."""
     refusal: str | None = None
-    """Why they will not be, although they are to be."""
+    """Why it keeps its faces, although they are to be replaced."""
     edges: Edges | None = None
     """Its edges, if ridges are to be marked."""
+
+    @property
+    def before(self) -> rebuilding.Before | None:
+        """What lies on the mesh whose faces are to be replaced."""
+        return self.reducible if self.facetable is None else self.facetable.before
 
     def merged(self, vertices: np.ndarray) -> np.ndarray:
         """Coordinates (n, 3) float32 from welded vertices, with the old bits where none may move."""
@@ -65,13 +73,20 @@ class Finished:
     coordinates: np.ndarray
     """The coordinates (n, 3) float32."""
     notes: list[str] = field(default_factory=list)
-    reduced: reduction.Reduced | None = None
+    rebuilt: rebuilding.Rebuilt | None = None
+    """The mesh with other faces, if it gets any."""
+    n_facets: int | None = None
+    """How many of them are facets, if facets were made."""
     ridges: np.ndarray | None = None
-    """The edges (k,) bool to be marked, of a reduced mesh in the order of `numbered_edges`."""
+    """The edges (k,) bool to be marked, of other faces in their order."""
 
 
 def finished(
-    source: Source, flow: ridgeform.Stylized, settings: object, check: Callable[[], None] = lambda: None
+    source: Source,
+    flow: ridgeform.Stylized,
+    settings: object,
+    progress: ridgeform.Progress | None = None,
+    check: Callable[[], None] = lambda: None,
 ) -> Finished:
     """What is to be written of a flow's result; `check` may raise to stop."""
     note = _note(flow, settings)
@@ -87,23 +102,54 @@ def finished(
             source.reducible, made.coordinates, settings.reduce_ratio, ~source.free, check
         )
         made.notes.append(reduced if isinstance(reduced, str) else reduced.note)
-        made.reduced = None if isinstance(reduced, str) else reduced
+        made.rebuilt = None if isinstance(reduced, str) else reduced
     check()
-    if source.edges is not None:
+    if source.facetable is not None:
+        _make_facets(source, made, settings, progress, check)
+    elif source.edges is not None:
         made.ridges = _ridges(source, made, chosen(settings, "mark_angle"))
     return made
 
 
+def _make_facets(
+    source: Source,
+    made: Finished,
+    settings: object,
+    progress: ridgeform.Progress,
+    check: Callable[[], None],
+) -> None:
+    places = source.facetable.weld.places(made.coordinates)
+    mesh = ridgeform.Mesh(places, source.facetable.weld.triangles)
+    found, facet_mesh = faceting.facets_of(
+        source.facetable,
+        mesh,
+        made.coordinates,
+        facets=chosen(settings, "facets"),
+        flat="SHARP" in settings.marks,
+        progress=progress,
+        check=check,
+    )
+    made.rebuilt, made.n_facets = facet_mesh.rebuilt, int(found.n_facets)
+    made.notes += faceting.notes(found, chosen(settings, "facets"))
+    if source.edges is not None:
+        made.ridges, least = facet_mesh.ridges(), chosen(settings, "mark_angle")
+        if least is not None:
+            made.ridges &= _edges(made.rebuilt).ridges(made.rebuilt.points, least)
+
+
+def _edges(rebuilt: rebuilding.Rebuilt) -> Edges:
+    faces = rebuilt.faces
+    return Edges(faces.edges, (faces.starts, faces.corners, faces.corner_edges))
+
+
 def _ridges(source: Source, made: Finished, least: float | None) -> np.ndarray:
-    if made.reduced is None:
+    if made.rebuilt is None:
         return source.edges.ridges(made.coordinates, least) & source.free[source.edges.ends].all(axis=1)
-    faces, points = made.reduced.faces, made.reduced.points.astype(np.float32)
-    ends, edge = numbered_edges(faces)
-    edges = Edges(ends, (np.arange(0, faces.size, 3), faces.ravel(), edge))
+    faces, points = made.rebuilt.faces, made.rebuilt.points.astype(np.float32)
     # What is left of a facet is a few triangles, and nothing between facets is round.
-    ridges = edges.ridges(points, ONE_FACET if least is None else least)
+    ridges = _edges(made.rebuilt).ridges(points, ONE_FACET if least is None else least)
     held = np.isin(_rows(points), _rows(made.coordinates[~source.free]))
-    return ridges & ~held[ends].any(axis=1)
+    return ridges & ~held[faces.edges].any(axis=1)
 
 
 def _rows(points: np.ndarray) -> np.ndarray:
@@ -121,8 +167,8 @@ def write(obj: bpy.types.Object, source: Source, made: Finished, settings: objec
     else:
         source.coordinates.write(made.coordinates)
     ridges = made.ridges
-    if made.reduced is not None:
-        rows = reduction.write(obj, made.reduced)
+    if made.rebuilt is not None:
+        rows = rebuilding.write(obj, made.rebuilt)
         ridges = None if ridges is None else ridges[rows]
     if ridges is not None:
         mesh_io.mark_edges(obj.data, ridges, settings.marks)

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..blender.mesh_layers import MARKS, Layer, Layers, Triangulation
+from ..blender.carrying import Triangulation
+from ..blender.mesh_layers import MARKS, Layer, Layers
 from ..blender.welding import Weld, connected_parts
 
 

@@ -3,13 +3,15 @@
 
 import importlib.util
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import bpy
 import numpy as np
 
-from ..blender import mesh_io, mesh_layers
-from ..blender.mesh_state import ChangedError
+from ..blender import rebuilding
+from ..blender.carrying import MarkedEdges, carried
+from ..blender.polygons import Polygons
+from ..blender.rebuilding import Before, Rebuilt
 from ..blender.surface_map import SurfaceMap
 from ..blender.welding import weld_seams
 from .kept_edges import kept_edges, regions_of
@@ -21,63 +23,26 @@ MORE = 1.1
 """So many times as many triangles as were asked for are worth a word."""
 
 
-@dataclass
-class Reducible:
-    """A mesh as it is before it is reduced: its triangles, and all that lies on it."""
-
-    old: mesh_layers.Triangulation
-    layers: mesh_layers.Layers
-    losses: list[str]
-    """Sentences on what no reduced mesh keeps."""
-
-
-@dataclass
-class Reduced:
-    """What a mesh becomes: points (p, 3), triangles (q, 3), and what lies on them."""
-
-    points: np.ndarray
-    faces: np.ndarray
-    layers: mesh_layers.Layers
-    note: str
-
-
 def reason_against(mesh: bpy.types.Mesh, leaves_mesh: bool = False) -> str | None:
     """Why the triangles of a mesh cannot be reduced; `None` if they can.
 
     `leaves_mesh`: the mesh is to stay as it is.
     """
-    if mesh.is_editmode:
-        return "its triangles were not reduced, because that works only in Object Mode"
-    if leaves_mesh:
-        return "its triangles were not reduced, because Result leaves the mesh as it is"
-    if mesh.shape_keys is not None:
-        return "its triangles were not reduced, because the mesh has shape keys"
+    reason = rebuilding.reason_against(mesh, leaves_mesh)
+    if reason is not None:
+        return f"its triangles were not reduced, because {reason}"
     if importlib.util.find_spec("fast_simplification") is None:
         return "its triangles were not reduced, because the module fast-simplification is not installed"
     return None
 
 
-def read(obj: bpy.types.Object) -> Reducible:
-    """Read the mesh of an object, which `reason_against` has nothing against."""
-    mesh = obj.data
-    triangles = mesh_io.triangles(mesh)
-    old = mesh_layers.Triangulation(
-        triangles,
-        mesh_io.triangle_corners(mesh),
-        mesh_io.triangle_faces(mesh),
-        mesh_io.edges(mesh),
-        mesh_io.positions(mesh).astype(np.float64),
-    )
-    return Reducible(old, mesh_layers.read_layers(obj), _losses(mesh, triangles))
-
-
 def reduce(
-    source: Reducible,
+    source: Before,
     coordinates: np.ndarray,
     ratio: float,
     held: np.ndarray,
     check: Callable[[], None] = lambda: None,
-) -> Reduced | str:
+) -> Rebuilt | str:
     """Simplify a mesh that has moved to coordinates (n, 3) to `ratio` of its triangles; else why not.
 
     Vertices `held` (n,) bool stay, and so do borders, marks, and the borders of materials and UV islands,
@@ -120,34 +85,23 @@ def reduce(
         region[unknown] = chart[surface.nearest(points[faces[unknown]].mean(axis=1))[0]]
     first = np.empty(len(weld.triangles) + 1, np.int64)
     first[chart] = np.arange(len(triangles))
-    anchors = mesh_layers.Anchors(first[region], ends, kept.of_mesh[made.edge])
+    marked = MarkedEdges(ends, kept.of_mesh[made.edge])
     check()
-    layers = mesh_layers.carried(source.layers, old, surface, points, faces, anchors=anchors)
+    polygons = Polygons.of_triangles(faces)
+    layers = carried(source.layers, old, surface, points, polygons, anchors=first[region], marked=marked)
     said = [f"reduced from {len(triangles)} to {len(faces)} triangles"]
     if len(faces) > MORE * wanted:
         said.append(f"{wanted} were asked for, but borders, marks, and masks keep their vertices")
-    return Reduced(points, faces, layers, "; ".join([*said, *source.losses]))
+    return Rebuilt(points, polygons, layers, "; ".join([*said, *_losses(source)]))
 
 
-def check(obj: bpy.types.Object, source: Reducible) -> None:
-    """`ChangedError` if other things lie on the mesh of an object than were read, which would be lost."""
-    if not source.layers.same_as(mesh_layers.read_layers(obj)):
-        raise ChangedError(
-            f'"{obj.name}" was changed meanwhile, its attributes are others: it stays as it is now'
-        )
-
-
-def write(obj: bpy.types.Object, reduced: Reduced) -> np.ndarray:
-    """Give the mesh of an object its reduced faces; the row of each edge (k,) as `replace_faces` has it."""
-    return mesh_layers.replace_faces(obj, reduced.points, reduced.faces, reduced.layers)
-
-
-def _losses(mesh: bpy.types.Mesh, triangles: np.ndarray) -> list[str]:
-    loose = int((np.bincount(triangles.ravel(), minlength=len(mesh.vertices)) == 0).sum())
+def _losses(before: Before) -> list[str]:
+    """Sentences on what no reduced mesh keeps."""
+    triangles = before.old.triangles
     facts = (
-        (len(mesh.polygons) != len(triangles), "quads and n-gons became triangles"),
-        (loose > 0, f"vertices without a face were dropped ({loose})"),
-        (mesh.has_custom_normals, "custom normals were dropped"),
+        (int(before.old.faces.max(initial=-1)) + 1 != len(triangles), "quads and n-gons became triangles"),
+        (before.n_loose > 0, f"vertices without a face were dropped ({before.n_loose})"),
+        (before.has_normals, "custom normals were dropped"),
     )
     return [sentence for applies, sentence in facts if applies]
 

@@ -62,6 +62,12 @@ class StylizeSettings(Settings):
         (
             ("KEEP", "Keep Mesh", "Keep vertices and faces, and move the vertices only"),
             (
+                "FACETS",
+                "Facets",
+                "Make one flat polygon of each facet, with straight ridges between them. For meshes without "
+                "shape keys, in Object Mode",
+            ),
+            (
                 "LOW_POLY",
                 "Low Poly",
                 "Simplify the result: flat facets need few triangles. Quads and n-gons become triangles. "
@@ -81,6 +87,19 @@ class StylizeSettings(Settings):
         flag="--reduce",
         metavar="RATIO",
         implies={"finish": "LOW_POLY"},
+    )
+    facets: integer(
+        "Facets",
+        "Number of facets",
+        default=100,
+        min=1,
+        max=1_000_000,
+        soft_min=4,
+        soft_max=500,
+        shown=lambda settings: settings.finish == "FACETS",
+        implies={"finish": "FACETS"},
+        optional=False,
+        otherwise="there are as many as the shape gives evidence for",
     )
     steps: integer(
         "Steps",

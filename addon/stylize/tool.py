@@ -10,8 +10,9 @@ import bpy
 import numpy as np
 import ridgeform
 
-from ..blender import mesh_io, modifiers
+from ..blender import mesh_io, modifiers, rebuilding
 from ..blender.refusals import RefusedError
+from ..framework import faceting
 from ..framework.job import Task
 from ..framework.preflight import uneven_scale
 from ..framework.run import Part, Run, counted, meshes_phrase
@@ -90,12 +91,12 @@ class Stylization(Run):
 
     def replaces_faces(self, part: FlowPart) -> bool:
         """Whether the finish made other faces."""
-        return part.task.result is not None and part.task.result.reduced is not None
+        return part.task.result is not None and part.task.result.rebuilt is not None
 
     def check(self, part: FlowPart) -> None:
         """What lies on a mesh whose faces are replaced must be what was carried over."""
         if self.replaces_faces(part):
-            reduction.check(part.object, part.source.reducible)
+            rebuilding.check(part.object, part.source.before)
 
     def kept_settings(self) -> dict[str, object]:
         """The steps that were made, if the flow was told to keep them: to be repeated."""
@@ -117,9 +118,9 @@ class Stylization(Run):
 
     def figures(self, part: FlowPart) -> dict[str, object]:
         """What the flow did: facets, movement, energy before and after, the largest gap, steps."""
-        result = part.task.result.flow
+        result, made = part.task.result.flow, part.task.result.n_facets
         return {
-            "facets": int(result.n_facets),
+            "facets": int(result.n_facets) if made is None else made,
             "flat_share": float(result.flat_share[-1]),
             "moved": part.source.moved(result.vertices),
             "energy_before": float(result.energy[0]),
@@ -181,10 +182,7 @@ def _prepare(obj: bpy.types.Object, settings: object) -> FlowPart:
     if not moving.all():
         options["fixed"] = ~moving
     source = Source(coordinates, weld, moving[weld.vertex])
-    if settings.finish == "LOW_POLY":
-        source.refusal = reduction.reason_against(mesh, leaves_mesh=settings.output != "POSITIONS")
-        if source.refusal is None:
-            source.reducible = reduction.read(obj)
+    _prepare_finish(obj, settings, source)
     if settings.marks:
         source.edges = Edges(mesh_io.edges(mesh), mesh_io.face_corners(mesh))
     del options["iterations"]
@@ -204,6 +202,24 @@ def _prepare(obj: bpy.types.Object, settings: object) -> FlowPart:
     return part
 
 
+def _prepare_finish(obj: bpy.types.Object, settings: object, source: Source) -> None:
+    """Read what the faces of a mesh are replaced from, if they are to be and can be."""
+    leaves_mesh = settings.output != "POSITIONS"
+    if settings.finish == "LOW_POLY":
+        source.refusal = reduction.reason_against(obj.data, leaves_mesh)
+        if source.refusal is None:
+            source.reducible = rebuilding.read(obj)
+    elif settings.finish == "FACETS":
+        reason = rebuilding.reason_against(obj.data, leaves_mesh)
+        if reason is not None:
+            source.refusal = f"facets were not made, because {reason}"
+            return
+        starts, corners, _ = mesh_io.face_corners(obj.data)
+        taking = np.logical_and.reduceat(source.free[corners], starts)
+        half, _ = welded(obj, source.coordinates.original)
+        source.facetable = faceting.read(obj, half, taking)
+
+
 def _stylized(part: FlowPart, settings: object, progress: ridgeform.Progress) -> finish.Finished:
     """The flow of a mesh, and what is made of its result: in the thread of the job."""
     task, source, flow = part.task, part.source, part.flow
@@ -216,4 +232,6 @@ def _stylized(part: FlowPart, settings: object, progress: ridgeform.Progress) ->
     task.check()
     if source.reducible is not None:
         task.stage = "reducing the triangles"
-    return finish.finished(source, result, settings, task.check)
+    elif source.facetable is not None:
+        task.stage = "making facets"
+    return finish.finished(source, result, settings, task.progress, task.check)

@@ -5,7 +5,7 @@ import bpy
 import fast_simplification
 import numpy as np
 import pytest
-from bl_ext.user_default.ridgeform.blender import mesh_io
+from bl_ext.user_default.ridgeform.blender import mesh_io, rebuilding
 from bl_ext.user_default.ridgeform.framework import job
 from bl_ext.user_default.ridgeform.stylize import curves, reduction, simplify
 from bl_ext.user_default.ridgeform.stylize.collapse import Fans
@@ -81,8 +81,8 @@ def test_neighboring_tiles_still_meet():
 def test_a_straight_border_only_loses_vertices_on_its_lines():
     obj = sheet(height=0.0)
     before = kit.coordinates(obj)
-    made = reduction.reduce(reduction.read(obj), before, 0.1, np.zeros(len(before), bool))
-    outline = made.points[border(made.faces)]
+    made = reduction.reduce(rebuilding.read(obj), before, 0.1, np.zeros(len(before), bool))
+    outline = made.points[border(made.faces.corners.reshape(-1, 3))]
     assert on_rim(outline.reshape(-1, 3)).all() and on_rim(outline.mean(axis=1)).all()
     assert len(outline) < 0.5 * 4 * N
     far = np.abs(before[:, :2] - 0.5).min(axis=1) > 0.49

@@ -352,7 +352,7 @@ def test_escape_leaves_everything_and_enter_keeps_what_is_reached():
     known = len(tool._known)
     finished = tool.Segmenting([obj], defaults_of(SegmentSettings, length_weight=0.45, epsilon_end=0.1))
     finished.job.run()
-    assert len(tool._known) == min(known + 1, tool.MEMORY)
+    assert len(tool._known) == min(known + 1, tool._known.MOST)
 
 
 def test_undo_takes_slots_attribute_and_seams_back():

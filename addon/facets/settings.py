@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The settings of facets: how many, what they are made of, and where."""
+
+from ..framework import shared_settings as shared
+from ..framework.settings import Settings, boolean, choice, integer, number, vertex_group
+
+WHERE = "Where"
+
+
+def by_count(settings: object) -> bool:
+    """Whether the number of facets is chosen."""
+    return settings.mode == "COUNT"
+
+
+def by_error(settings: object) -> bool:
+    """Whether the distance from the mesh is."""
+    return settings.mode == "ERROR"
+
+
+class FacetSettings(Settings):
+    """The settings of facets."""
+
+    mode: choice(
+        "Mode",
+        "What determines how many facets there are",
+        (
+            ("AUTO", "Automatic", "As many as the shape gives evidence for"),
+            ("COUNT", "Count", "As many as you choose"),
+            ("ERROR", "Error", "As many as it takes to stay that close to the mesh"),
+        ),
+        default="AUTO",
+        expand=True,
+        flag=None,
+    )
+    facets: integer(
+        "Facets",
+        "Number of facets. A mesh is computed only once, then other numbers are quick",
+        default=60,
+        min=1,
+        max=1_000_000,
+        soft_min=4,
+        soft_max=500,
+        shown=by_count,
+        flag="--facets",
+        implies={"mode": "COUNT"},
+    )
+    error: number(
+        "Error",
+        "Distance from the mesh that is allowed, root mean square, in percent of its size (the diagonal of "
+        "its bounding box)",
+        default=0.5,
+        min=0.0001,
+        max=100.0,
+        soft_min=0.05,
+        soft_max=5.0,
+        precision=2,
+        subtype="PERCENTAGE",
+        shown=by_error,
+        flag="--error",
+        metavar="PERCENT",
+        implies={"mode": "ERROR"},
+    )
+    topology: choice(
+        "Topology",
+        "What facets are made of",
+        (
+            ("POLYGONS", "Polygons", "One flat n-gon for each facet; several where it has a hole"),
+            ("TRIANGLES", "Triangles", "Triangles in the plane of each facet"),
+        ),
+        default="POLYGONS",
+        expand=True,
+    )
+    marks: shared.MARKS.but(
+        default={"SHARP"},
+        description="Mark the edges between facets; with Sharp, facets are shaded flat. Existing marks stay",
+    )
+    mark_seams: boolean(
+        "Seams",
+        "Mark the edges between facets as seams for unwrapping",
+        flag="--seams",
+    )
+    strength_group: vertex_group(
+        "Mask",
+        "Vertex group that determines where to make facets. Faces with a vertex outside of it stay as they "
+        "are",
+        section=WHERE,
+    )
+    ridge_group: shared.RIDGE_GROUP.but(
+        section=WHERE,
+        description="Vertex group painted where ridges should run. Unpainted areas are neutral",
+    )
+    avoid_ridges: shared.AVOID_RIDGES.but(section=WHERE)
+
+
+PRESETS = {
+    "Automatic": {"mode": "AUTO", "facets": 60},
+    "Low Poly": {"mode": "COUNT", "facets": 150},
+    "Gemstone": {"mode": "COUNT", "facets": 30},
+    "Close Fit": {"mode": "ERROR", "error": 0.1},
+}
+"""Shipped presets: what the shape suggests; a game prop; few and large; hardly to be told from the mesh."""

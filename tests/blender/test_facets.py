@@ -1,0 +1,341 @@
+"""Facet and Finish: Facets: what meshes become, and what stays of them."""
+
+import addon_kit as kit
+import bpy
+import numpy as np
+import pytest
+import ridgeform
+from bl_ext.user_default.ridgeform.blender import mesh_io
+from bl_ext.user_default.ridgeform.framework import job
+
+
+def facet(**settings):
+    """Press the button with these settings."""
+    assert bpy.ops.ridgeform.facet(**settings) == {"FINISHED"}
+    return job.last_summary()
+
+
+def ball(kind="uv", name="Ball"):
+    """A sphere, shaded smooth."""
+    if kind == "uv":
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=24, ring_count=16)
+    else:
+        bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=4)
+    bpy.ops.object.shade_smooth()
+    bpy.context.object.name = name
+    return bpy.context.object
+
+
+def off_planes(mesh):
+    """How far corners of faces are from the planes of these, at most."""
+    worst = 0.0
+    for face in mesh.polygons:
+        places = np.array([mesh.vertices[vertex].co for vertex in face.vertices])
+        worst = max(worst, np.abs((places - places.mean(axis=0)) @ np.array(face.normal)).max())
+    return worst
+
+
+def is_closed(mesh):
+    """Whether each edge has two faces, which run along it in opposite ways."""
+    _, corners, edges = mesh_io.face_corners(mesh)
+    first = mesh_io.edges(mesh)[edges, 0] == corners
+    return (np.bincount(edges[first]) == 1).all() and (np.bincount(edges[~first]) == 1).all()
+
+
+def read_all(mesh):
+    """All that lies on a mesh, as bytes."""
+    named = {}
+    for attribute in mesh.attributes:
+        prop = "vector" if attribute.data_type in {"FLOAT2", "FLOAT_VECTOR"} else "value"
+        prop = "color" if "COLOR" in attribute.data_type else prop
+        named[attribute.name] = [
+            tuple(value) if hasattr(value, "__len__") else value
+            for value in (getattr(item, prop) for item in attribute.data)
+        ]
+    return named
+
+
+def test_a_subdivided_cube_becomes_six_quads():
+    obj = kit.bumpy_box(noise=0.0)
+    facet()
+    mesh = obj.data
+    assert sorted(len(face.vertices) for face in mesh.polygons) == [4] * 6
+    assert len(mesh.vertices) == 8 and is_closed(mesh)
+    np.testing.assert_allclose(np.abs(kit.coordinates(obj)), 1.0, atol=1e-6)
+    assert all(edge.use_edge_sharp for edge in mesh.edges) and len(mesh.edges) == 12
+
+
+@pytest.mark.parametrize("topology", ["POLYGONS", "TRIANGLES"])
+@pytest.mark.parametrize("make", [ball, lambda: ball("ico"), kit.bumpy_box, kit.ngon_prism])
+def test_facets_are_flat_and_closed_and_as_many_as_wanted(make, topology):
+    obj = make()
+    (entry,) = facet(mode="COUNT", facets=30, topology=topology)
+    mesh = obj.data
+    assert entry["facets"] == 30 and entry["faces"] == len(mesh.polygons)
+    assert is_closed(mesh) and not mesh.validate()
+    assert off_planes(mesh) < 1e-5
+    sizes = {len(face.vertices) for face in mesh.polygons}
+    assert sizes == {3} if topology == "TRIANGLES" else len(mesh.polygons) == 30
+
+
+def test_the_mesh_is_what_the_package_gives():
+    obj = kit.bumpy_box()
+    before = ridgeform.Mesh(kit.coordinates(obj), mesh_io.triangles(obj.data))
+    facet(mode="COUNT", facets=20)
+    found = ridgeform.facet(before, facets=20)
+    sizes = [len(face.vertices) for face in obj.data.polygons]
+    assert sizes == np.diff(found.polygon_starts).tolist()
+    corners = kit.coordinates(obj)[mesh_io.corner_vertices(obj.data)]
+    np.testing.assert_array_equal(corners, found.vertices[found.polygon_vertices].astype(np.float32))
+
+
+def test_planes_look_flat_at_once_and_only_if_wanted():
+    obj = ball()
+    facet(mode="COUNT", facets=40)
+    mesh = obj.data
+    assert not any(face.use_smooth for face in mesh.polygons)
+    assert all(edge.use_edge_sharp for edge in mesh.edges) and not any(edge.use_seam for edge in mesh.edges)
+    kit.empty_scene()
+    obj = ball()
+    facet(mode="COUNT", facets=40, marks=set(), mark_seams=True)
+    assert all(face.use_smooth for face in obj.data.polygons)
+    assert all(edge.use_seam for edge in obj.data.edges)
+    assert not any(edge.use_edge_sharp for edge in obj.data.edges)
+
+
+def test_in_triangles_only_borders_of_facets_are_marked():
+    obj = kit.bumpy_box(noise=0.0)
+    facet(topology="TRIANGLES")
+    assert len(obj.data.polygons) == 12
+    assert sum(edge.use_edge_sharp for edge in obj.data.edges) == 12
+
+
+def layered_box():
+    """A box with everything on it: two materials, UVs, colors, weights, attributes of all domains."""
+    obj = kit.bumpy_box(cuts=6)
+    mesh = obj.data
+    for name in "AB":
+        mesh.materials.append(bpy.data.materials.new(name))
+    places = kit.coordinates(obj)
+    for face in mesh.polygons:
+        face.material_index = int(face.center.z > 0.9)
+    colors = mesh.color_attributes.new("Paint", "FLOAT_COLOR", "CORNER")
+    for corner, color in zip(mesh.loops, colors.data, strict=True):
+        color.color = (*(0.5 * places[corner.vertex_index] + 0.5), 1.0)
+    tall = mesh.attributes.new("height", "FLOAT", "POINT")
+    tall.data.foreach_set("value", np.ascontiguousarray(places[:, 2]))
+    side = mesh.attributes.new("side", "INT", "FACE")
+    side.data.foreach_set("value", [int(np.argmax(np.abs(face.normal))) for face in mesh.polygons])
+    group = obj.vertex_groups.new(name="Up")
+    for vertex, place in enumerate(places):
+        group.add([vertex], float(np.clip(0.5 + 0.5 * place[2], 0, 1)), "REPLACE")
+    return obj
+
+
+def test_all_that_lies_on_a_mesh_is_carried_over():
+    obj = layered_box()
+    facet(mode="COUNT", facets=6)
+    mesh, places = obj.data, kit.coordinates(obj)
+    assert len(mesh.polygons) == 6
+    assert [slot.name for slot in mesh.materials] == ["A", "B"]
+    for face in mesh.polygons:
+        assert face.material_index == int(face.center.z > 0.9)
+        assert mesh.attributes["side"].data[face.index].value == np.argmax(np.abs(face.normal))
+    for corner, color, uv in zip(
+        mesh.loops, mesh.color_attributes["Paint"].data, mesh.uv_layers[0].data, strict=True
+    ):
+        wanted = 0.5 * places[corner.vertex_index] + 0.5
+        np.testing.assert_allclose(np.array(color.color)[:3], wanted, atol=0.05)
+        assert min(uv.uv) >= 0.0 and max(uv.uv) <= 1.0
+    heights = [value.value for value in mesh.attributes["height"].data]
+    np.testing.assert_allclose(heights, places[:, 2], atol=0.1)
+    weights = mesh_io.group_weights(obj, "Up")
+    np.testing.assert_allclose(weights, 0.5 + 0.5 * places[:, 2], atol=0.06)
+
+
+def test_uvs_of_a_face_are_of_one_island():
+    # Blender's cube has its six sides beside each other in a cross: a corner on another island is far off.
+    obj = layered_box()
+    facet(mode="COUNT", facets=6)
+    for face in obj.data.polygons:
+        uvs = np.array([obj.data.uv_layers[0].data[corner].uv for corner in face.loop_indices])
+        np.testing.assert_allclose(np.ptp(uvs, axis=0), 0.25, atol=0.03)
+
+
+def kept_things(obj, inside):
+    """What lies on the faces whose corners are all where `inside` says, named by places."""
+    mesh, places = obj.data, [tuple(vertex.co) for vertex in obj.data.vertices]
+    uv, paint = mesh.uv_layers[0].data, mesh.color_attributes["Paint"].data
+    things = set()
+    for face in mesh.polygons:
+        if all(inside(np.array(places[vertex])) for vertex in face.vertices):
+            corners = tuple(
+                (places[mesh.loops[c].vertex_index], tuple(uv[c].uv), tuple(paint[c].color))
+                for c in face.loop_indices
+            )
+            side = mesh.attributes["side"].data[face.index].value
+            things.add((face.material_index, face.use_smooth, side, corners))
+    for edge in mesh.edges:
+        ends = sorted(places[vertex] for vertex in edge.vertices)
+        if all(inside(np.array(end)) for end in ends):
+            things.add((edge.use_seam, edge.use_edge_sharp, *ends))
+    for vertex, weight in zip(mesh.vertices, mesh_io.group_weights(obj, "Up"), strict=True):
+        if inside(np.array(vertex.co)):
+            things.add((tuple(vertex.co), float(weight)))
+    return things
+
+
+def low(place):
+    return place[2] < 0.2
+
+
+@pytest.mark.parametrize("how", ["mask", "selection"])
+def test_the_rest_stays_in_every_bit(how):
+    obj = layered_box()
+    mesh = obj.data
+    mesh.edges[3].use_seam = True
+    before, settings = kept_things(obj, low), {}
+    if how == "mask":
+        group = obj.vertex_groups.new(name="Free")
+        free = [vertex.index for vertex in mesh.vertices if not low(vertex.co)]
+        group.add(free, 1.0, "REPLACE")
+        settings["strength_group"] = "Free"
+    else:
+        for face in mesh.polygons:
+            face.select = not any(low(mesh.vertices[vertex].co) for vertex in face.vertices)
+        for vertex in mesh.vertices:
+            vertex.select = not low(vertex.co)
+        for edge in mesh.edges:
+            edge.select = all(mesh.vertices[vertex].select for vertex in edge.vertices)
+        bpy.ops.object.mode_set(mode="EDIT")
+    n = len(mesh.polygons)
+    facet(mode="COUNT", facets=12, **settings)
+    if how == "selection":
+        assert bpy.context.mode == "EDIT_MESH"
+        bpy.ops.object.mode_set(mode="OBJECT")
+    assert before <= kept_things(obj, low)
+    assert is_closed(mesh) and len(mesh.polygons) < n
+    selected = [face.select for face in mesh.polygons]
+    assert how == "mask" or (any(selected) and not all(selected))
+
+
+def test_loose_parts_stay():
+    obj = kit.bumpy_box(noise=0.0)
+    mesh = obj.data
+    n = len(mesh.vertices)
+    mesh.vertices.add(2)
+    mesh.edges.add(1)
+    mesh.vertices[n].co, mesh.vertices[n + 1].co = (3, 0, 0), (4, 0, 0)
+    mesh.edges[-1].vertices = (n, n + 1)
+    facet()
+    assert len(mesh.vertices) == 10 and len(mesh.edges) == 13 and len(mesh.polygons) == 6
+
+
+def test_a_mirrored_half_stays_on_its_plane_and_closes():
+    obj = ball()
+    mesh = obj.data
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.mesh.bisect(plane_co=(0, 0, 0), plane_no=(1, 0, 0), clear_inner=True)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    obj.modifiers.new("Mirror", "MIRROR")
+    facet(mode="COUNT", facets=25)
+    ends = mesh_io.edges(mesh)[np.bincount(mesh_io.corner_edges(mesh)) == 1]
+    assert len(ends) and (kit.coordinates(obj)[ends, 0] == 0.0).all()
+    assert off_planes(mesh) < 1e-5
+    whole = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    assert is_closed(whole)
+
+
+def test_several_objects_and_linked_ones():
+    one, two = kit.bumpy_box("One"), kit.ngon_prism("Two")
+    one.select_set(True)
+    entries = facet(mode="COUNT", facets=10)
+    assert {entry["name"]: entry["facets"] for entry in entries} == {"One": 10, "Two": 10}
+    assert is_closed(one.data) and is_closed(two.data)
+
+
+def test_shape_keys_are_refused_and_stay():
+    obj = kit.bumpy_box()
+    obj.shape_key_add(name="Basis")
+    before = read_all(obj.data)
+    with pytest.raises(RuntimeError, match="has shape keys"):
+        bpy.ops.ridgeform.facet()
+    assert read_all(obj.data) == before
+
+
+@pytest.mark.parametrize("what", ["nan", "empty mask", "no group", "flat"])
+def test_bad_input_costs_nothing(what):
+    obj = kit.bumpy_box()
+    settings = {}
+    if what == "nan":
+        obj.data.vertices[5].co.x = np.nan
+    elif what == "flat":
+        kit.set_coordinates(obj, np.zeros((len(obj.data.vertices), 3)))
+    else:
+        if what == "empty mask":
+            obj.vertex_groups.new(name="Mask")
+        settings["strength_group"] = "Mask"
+    before = [repr(row) for row in read_all(obj.data).items()]
+    with pytest.raises(RuntimeError, match=r"Error: "):
+        bpy.ops.ridgeform.facet(**settings)
+    assert [repr(row) for row in read_all(obj.data).items()] == before
+
+
+def test_undo_brings_everything_back_in_one_step():
+    obj = layered_box()
+    bpy.ops.ed.undo_push(message="Before")
+    before, name = read_all(obj.data), obj.name
+    facet(mode="COUNT", facets=8)
+    bpy.ops.ed.undo_push(message="Facet")
+    assert len(obj.data.polygons) < 20
+    bpy.ops.ed.undo()
+    assert read_all(bpy.data.objects[name].data) == before
+
+
+def test_painted_ridges_attract_borders():
+    (x, y) = np.meshgrid(np.linspace(-1, 1, 33), np.linspace(-1, 1, 33), indexing="ij")
+    points = np.stack([x.ravel(), y.ravel(), (0.15 * x**2).ravel()], axis=1)
+    a = (33 * np.arange(32)[:, None] + np.arange(32)).ravel()
+    faces = np.stack([a, a + 33, a + 34, a + 1], axis=1)
+    seen = []
+    for settings in ({}, {"ridge_group": "Line"}):
+        kit.empty_scene()
+        obj = kit.add_object("Sheet", points, faces.tolist())
+        group = obj.vertex_groups.new(name="Line")
+        group.add(np.flatnonzero(np.abs(points[:, 0] - 0.375) < 1e-9).tolist(), 1.0, "REPLACE")
+        facet(mode="COUNT", facets=2, **settings)
+        edge = next(edge for edge in obj.data.edges if edge.use_edge_sharp)
+        seen.append(abs(np.mean([obj.data.vertices[v].co.x for v in edge.vertices]) - 0.375))
+    assert seen[1] < seen[0]
+
+
+def test_finish_facets_makes_facets_of_the_flow():
+    obj = ball("ico")
+    given = {"steps": 5, "finish": "FACETS"}
+    assert bpy.ops.ridgeform.stylize(facets=40, use_facets=True, **given) == {"FINISHED"}
+    (entry,) = job.last_summary()
+    assert entry["facets"] == 40 and len(obj.data.polygons) == 40
+    assert is_closed(obj.data) and off_planes(obj.data) < 1e-5
+    assert all(edge.use_edge_sharp for edge in obj.data.edges)
+
+
+def test_finish_facets_is_the_flow_and_then_facets():
+    one, two = kit.bumpy_box("One", cuts=6), None
+    given = {"steps": 4, "strength": 0.4}
+    bpy.ops.ridgeform.stylize(finish="FACETS", **given)
+    made = kit.coordinates(one)
+    kit.empty_scene()
+    two = kit.bumpy_box("Two", cuts=6)
+    bpy.ops.ridgeform.stylize(marks=set(), **given)
+    facet()
+    np.testing.assert_array_equal(made, kit.coordinates(two))
+
+
+def test_finish_facets_says_why_not():
+    obj = kit.bumpy_box()
+    n = len(obj.data.polygons)
+    bpy.ops.ridgeform.stylize(steps=1, finish="FACETS", output="SHAPE_KEY")
+    (entry,) = job.last_summary()
+    assert any("facets were not made, because" in note for note in entry["warnings"])
+    assert len(obj.data.polygons) == n
