@@ -148,6 +148,20 @@ def duplicate_faces(mesh: MeshArrays, target: np.ndarray) -> np.ndarray:
     return np.sort(np.concatenate(found)) if found else np.empty(0, np.int64)
 
 
+def doubled_faces(mesh: MeshArrays, target: np.ndarray, duplicates: np.ndarray) -> np.ndarray:
+    """Faces that lie on another one from a common edge on, with other corners, as a second lid does.
+
+    That is once vertices are welded (n,) and without the duplicates, which are named as such.
+    """
+    if len(duplicates) == 0 and (target == np.arange(len(target))).all():
+        return np.unique(mesh.triangle_faces[mesh.report.doubled_faces])
+    triangles = target[mesh.triangles]
+    a, b, c = triangles.T
+    kept = ~np.isin(mesh.triangle_faces, duplicates) & (a != b) & (b != c) & (c != a)
+    report = ridgeform.Mesh(mesh.places, triangles[kept]).report
+    return np.unique(mesh.triangle_faces[kept][report.doubled_faces])
+
+
 def uneven_ngons(mesh: MeshArrays) -> np.ndarray:
     """Faces of five corners and more whose triangles are turned against each other."""
     large = mesh.sizes > 4

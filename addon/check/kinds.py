@@ -111,6 +111,15 @@ KINDS = (
         cure_text="Remove all but the first of the faces in one place",
     ),
     Kind(
+        name="doubled_faces",
+        label="Overlapping Faces",
+        one="face that lies on another",
+        many="faces that lie on others",
+        severity=Severity.LIMITS,
+        tools="Their edges count as borders: delete one of two",
+        domain=Domain.FACE,
+    ),
+    Kind(
         name="one_sided",
         label="One-Sided",
         one="edge where a surface has no outside",

@@ -18,6 +18,7 @@ SEAM = ([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0], [2, 0
         [[0, 1, 2, 3], [4, 6, 7, 5]])  # fmt: skip
 T_JUNCTION = ([[0, 0, 0], [2, 0, 0], [2, 1, 0], [0, 1, 0], [0, -1, 0], [1, -1, 0], [2, -1, 0], [1, 0, 0]],
               [[0, 1, 2, 3], [4, 5, 7, 0], [5, 6, 1, 7]])  # fmt: skip
+SECOND_LID = [*SIDES, [1, 5, 3], [5, 7, 3]]
 BOW_TIE = ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]], [[0, 1, 2], [0, 3, 4]])
 
 FAULTS = {
@@ -27,6 +28,7 @@ FAULTS = {
     "t_junctions": (*T_JUNCTION, 1),
     "flipped_faces": (CUBE, [*SIDES[:5], SIDES[5][::-1]], 1),
     "duplicate_faces": (CUBE, [*SIDES, SIDES[2]], 1),
+    "doubled_faces": (CUBE, SECOND_LID, 3),
     "degenerate_faces": ([*CUBE, [0, 0, 5], [0, 0, 6], [0, 0, 7]], [*SIDES, [8, 9, 10]], 1),
     "loose_vertices": ([*CUBE, [5, 5, 5], [6, 5, 5]], SIDES, 2),
     "not_finite": ([*CUBE[:7], [1, 1, np.nan]], SIDES, 1),
@@ -34,7 +36,10 @@ FAULTS = {
     "far_away": (CUBE + 1e5, SIDES, 1),
 }
 """Vertices, faces, and how many there are of the fault."""
-TOGETHER = {"duplicate_faces": {"nonmanifold_edges", "flipped_faces"}}
+TOGETHER = {
+    "duplicate_faces": {"nonmanifold_edges", "flipped_faces"},
+    "doubled_faces": {"nonmanifold_edges"},
+}
 """What is found with it, for there it is."""
 
 
@@ -128,6 +133,21 @@ def test_many_junctions_are_those_that_were_made():
     # Corners of the two rows that are nearly in one place are no junctions.
     assert found <= inner
     assert len(found) > 0.95 * len(inner)
+
+
+def test_faces_that_lie_on_others_are_told_from_duplicates():
+    """A lid, the same again, and one that is cut otherwise; as a soup too; next to it a fin is none."""
+    faces = [*SECOND_LID, SIDES[5]]
+    soup = np.concatenate([CUBE[face] for face in faces])
+    ends = np.cumsum([len(face) for face in faces])
+    apart = [list(range(end - len(face), end)) for face, end in zip(faces, ends, strict=True)]
+    for vertices, corners in ((CUBE, faces), (soup, apart)):
+        report = check.examine(kit.add_object("Mesh", vertices, corners))
+        assert report["duplicate_faces"].elements.tolist() == [8]
+        assert report["doubled_faces"].elements.tolist() == [5, 6, 7]
+    fin = kit.add_object("Fin", [*CUBE, [0.5, 2, 0.5]], [*SIDES, [1, 5, 8]])
+    assert check.examine(fin)["doubled_faces"] is None
+    assert check.examine(fin)["nonmanifold_edges"].count == 1
 
 
 def test_the_operator_reports_and_returns():
