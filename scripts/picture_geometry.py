@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
@@ -97,34 +98,37 @@ DOT_CORNERS = 16
 
 
 @dataclass(frozen=True)
-class Lines:
-    """Segments `(k, 2, 3)` drawn over a surface, of a linear RGB color, so many pixels wide."""
+class Mark(ABC):
+    """What is drawn over a surface, of a linear RGB color, so many pixels wide."""
 
-    segments: Array
+    places: Array
     color: tuple[float, float, float] = (0.015, 0.017, 0.022)
     pixels: float = 1.6
 
+    @abstractmethod
     def drawn(self, axes: Array, units_per_pixel: float) -> tuple[Array, Indices]:
         """Vertices and faces turned to the camera."""
-        ends = np.asarray(self.segments, dtype=float).reshape(-1, 3)
+
+
+class Lines(Mark):
+    """Segments `(k, 2, 3)`."""
+
+    def drawn(self, axes: Array, units_per_pixel: float) -> tuple[Array, Indices]:
+        """Vertices and faces turned to the camera."""
+        ends = np.asarray(self.places, dtype=float).reshape(-1, 3)
         edges = np.arange(len(ends)).reshape(-1, 2)
         return ribbons(ends, edges, axes, self.pixels * units_per_pixel)
 
 
-@dataclass(frozen=True)
-class Dots:
-    """Points `(k, 3)` drawn over a surface as disks, of a linear RGB color, so many pixels across."""
-
-    points: Array
-    color: tuple[float, float, float] = (0.6, 0.01, 0.015)
-    pixels: float = 7.0
+class Dots(Mark):
+    """Points `(k, 3)` as disks."""
 
     def drawn(self, axes: Array, units_per_pixel: float) -> tuple[Array, Indices]:
         """Vertices and faces turned to the camera, lifted by their own width."""
         angle = 2 * np.pi * np.arange(DOT_CORNERS) / DOT_CORNERS
         width = self.pixels * units_per_pixel
         rim = 0.5 * width * (np.outer(np.cos(angle), axes[0]) + np.outer(np.sin(angle), axes[1]))
-        points = np.asarray(self.points, dtype=float)[:, None] + rim + width * axes[2]
+        points = np.asarray(self.places, dtype=float)[:, None] + rim + width * axes[2]
         k = np.arange(1, DOT_CORNERS - 1)
         fan = np.stack([np.zeros_like(k), k, k + 1], axis=1)
         faces = DOT_CORNERS * np.arange(len(points))[:, None, None] + fan

@@ -21,8 +21,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from picture_geometry import (
     CLAY,
-    Dots,
     Lines,
+    Mark,
     camera_axes,
     face_normals,
     facet_colors,
@@ -64,7 +64,7 @@ def render(
     color: ArrayLike = CLAY,
     lit: bool = True,
     ridges: float | None = None,
-    marks: Sequence[Lines | Dots] = (),
+    marks: Sequence[Mark] = (),
     engine: str = "AUTO",
 ) -> Pixels:
     """Draw a triangle mesh flat-shaded: `(height, width, 4)` sRGB bytes, saved as PNG if `path` is given.

@@ -22,10 +22,7 @@ class RIDGEFORM_OT_show_attribute(bpy.types.Operator):  # noqa: N801
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether there is a mesh to show; the tooltip says why not."""
-        reason = selection.reason_disabled(context, Denoising.needs)
-        if reason is not None:
-            cls.poll_message_set(reason)
-        return reason is None
+        return selection.can_start(cls, selection.reason_disabled(context, Denoising.needs))
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Show the attribute of every mesh that has it."""

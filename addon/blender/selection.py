@@ -99,6 +99,13 @@ def usable(objects: Iterable[bpy.types.Object], needs: Needs = MOVES) -> Selecti
     return selection
 
 
+def can_start(operator: type[bpy.types.Operator], reason: str | None) -> bool:
+    """Whether an operator can start: without a reason against it, which otherwise its tooltip says."""
+    if reason is not None:
+        operator.poll_message_set(reason)
+    return reason is None
+
+
 def reason_disabled(context: bpy.types.Context, needs: Needs = MOVES) -> str | None:
     """Why a tool cannot start here, for the tooltip of its button; `None` if it can."""
     if context.mode not in MODES:

@@ -13,6 +13,7 @@ import numpy as np
 from bpy.app.handlers import persistent
 
 from ..blender import mesh_io
+from ..blender.handlers import Handlers
 from ..framework import modal
 from .examine import examine
 from .kinds import Report
@@ -166,24 +167,19 @@ def _look() -> float | None:
     return None
 
 
-_HANDLERS = (
-    (bpy.app.handlers.depsgraph_update_post, _on_update),
-    (bpy.app.handlers.undo_post, _on_undo),
-    (bpy.app.handlers.redo_post, _on_undo),
-    (bpy.app.handlers.load_post, _on_load),
+_handlers = Handlers(
+    depsgraph_update_post=_on_update, undo_post=_on_undo, redo_post=_on_undo, load_post=_on_load
 )
 
 
 def register() -> None:
     """Have Blender say what changes."""
-    for handlers, call in _HANDLERS:
-        handlers.append(call)
+    _handlers.add()
 
 
 def unregister() -> None:
     """Have it say no more, and forget all."""
-    for handlers, call in _HANDLERS:
-        handlers.remove(call)
+    _handlers.remove()
     if bpy.app.timers.is_registered(_look):
         bpy.app.timers.unregister(_look)
     _checked.clear()

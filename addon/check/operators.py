@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The operators that check meshes, select what was found, and cure it."""
 
+from collections.abc import Sequence
+
 import bpy
 from bpy.props import EnumProperty
 
@@ -8,7 +10,7 @@ from ..blender import mesh_io, selection
 from ..blender.refusals import RefusedError
 from . import cures, known
 from .examine import NEEDS, examine
-from .kinds import KIND, KINDS, Domain, Severity
+from .kinds import KIND, KINDS, Domain, Kind, Severity
 from .select import select
 
 SELECTABLE = tuple(kind for kind in KINDS if kind.domain is not Domain.NONE)
@@ -35,10 +37,7 @@ class RIDGEFORM_OT_check(bpy.types.Operator):  # noqa: N801
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether there is a mesh to look at."""
-        if not meshes_of(context):
-            cls.poll_message_set("Select a mesh object")
-            return False
-        return True
+        return selection.can_start(cls, None if meshes_of(context) else "Select a mesh object")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Look at all of them, and report."""
@@ -56,9 +55,13 @@ class _OnEditable:
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether there is one."""
         objects, skipped = _editable(context)
-        if not objects:
-            cls.poll_message_set(skipped[0] if skipped else "Select a mesh object")
-        return bool(objects)
+        return selection.can_start(cls, None if objects else [*skipped, "Select a mesh object"][0])
+
+
+def _fault(description: str, kinds: Sequence[tuple[Kind, str]]) -> object:
+    """A property that is one of these kinds of faults, each with its tooltip."""
+    items = [(kind.name, kind.label, text) for kind, text in kinds]
+    return EnumProperty(name="Fault", description=description, items=items)
 
 
 class RIDGEFORM_OT_select_faults(_OnEditable, bpy.types.Operator):  # noqa: N801
@@ -68,11 +71,7 @@ class RIDGEFORM_OT_select_faults(_OnEditable, bpy.types.Operator):  # noqa: N801
     bl_label = "Select Faults"
     bl_options = {"REGISTER", "UNDO"}
 
-    kind: EnumProperty(
-        name="Fault",
-        description="What is selected",
-        items=[(kind.name, kind.label, kind.many.capitalize()) for kind in SELECTABLE],
-    )
+    kind: _fault("What is selected", [(kind, kind.many.capitalize()) for kind in SELECTABLE])
 
     @classmethod
     def description(cls, _context: bpy.types.Context, properties: object) -> str:
@@ -101,11 +100,7 @@ class RIDGEFORM_OT_cure_faults(_OnEditable, bpy.types.Operator):  # noqa: N801
     bl_label = "Cure Faults"
     bl_options = {"REGISTER", "UNDO"}
 
-    kind: EnumProperty(
-        name="Fault",
-        description="What is cured",
-        items=[(kind.name, kind.label, kind.cure_text) for kind in CURABLE],
-    )
+    kind: _fault("What is cured", [(kind, kind.cure_text) for kind in CURABLE])
 
     @classmethod
     def description(cls, _context: bpy.types.Context, properties: object) -> str:

@@ -3,6 +3,7 @@
 
 import bpy
 
+from ..framework.sidebar import InTab
 from . import known
 from .kinds import Domain, Finding, Report, Severity
 from .operators import RIDGEFORM_OT_check, RIDGEFORM_OT_cure_faults, RIDGEFORM_OT_select_faults
@@ -10,14 +11,11 @@ from .operators import RIDGEFORM_OT_check, RIDGEFORM_OT_cure_faults, RIDGEFORM_O
 ICONS = {Severity.STOPS: "ERROR", Severity.LIMITS: "INFO", Severity.HANDLED: "CHECKMARK"}
 
 
-class RIDGEFORM_PT_check(bpy.types.Panel):  # noqa: N801
+class RIDGEFORM_PT_check(InTab, bpy.types.Panel):  # noqa: N801
     """What is wrong with the active mesh for these tools, and what to do about it"""
 
     bl_idname = "RIDGEFORM_PT_check"
     bl_label = "Check Mesh"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Ridgeform"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:

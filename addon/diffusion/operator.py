@@ -8,7 +8,7 @@ import ridgeform
 from bpy.props import BoolProperty, FloatProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from ..blender import mesh_io
+from ..blender import mesh_io, selection
 from ..blender.refusals import RefusedError
 from ..framework.run import counted
 from ..framework.writing import write_text
@@ -38,13 +38,7 @@ class OnCurves:
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether there are curves; the tooltip says why not."""
         pair = pair_of(context)
-        if isinstance(pair, str):
-            cls.poll_message_set(pair)
-            return False
-        reason = cls.reason_against(pair[0])
-        if reason is not None:
-            cls.poll_message_set(reason)
-        return reason is None
+        return selection.can_start(cls, pair if isinstance(pair, str) else cls.reason_against(pair[0]))
 
     @classmethod
     def reason_against(cls, _obj: bpy.types.Object) -> str | None:

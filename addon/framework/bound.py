@@ -224,7 +224,16 @@ class ChangingRun(ModalRun):
         return run
 
 
-class RIDGEFORM_OT_change_result(ChangingRun, bpy.types.Operator):  # noqa: N801
+class _WhileBound:
+    """Mixin for operators on the result that the panel is bound to."""
+
+    @classmethod
+    def poll(cls, _context: bpy.types.Context) -> bool:
+        """Whether the panel is bound to a result."""
+        return _bound is not None and not modal.is_running()
+
+
+class RIDGEFORM_OT_change_result(_WhileBound, ChangingRun, bpy.types.Operator):  # noqa: N801
     """Start again from the original, with the settings that the panel has now"""
 
     bl_idname = "ridgeform.change_result"
@@ -232,23 +241,13 @@ class RIDGEFORM_OT_change_result(ChangingRun, bpy.types.Operator):  # noqa: N801
     # Not REGISTER: the redo panel is that of the first run, and goes back to before it.
     bl_options = {"UNDO", "INTERNAL"}
 
-    @classmethod
-    def poll(cls, _context: bpy.types.Context) -> bool:
-        """Whether the panel is bound to a result."""
-        return _bound is not None and not modal.is_running()
 
-
-class RIDGEFORM_OT_apply_result(bpy.types.Operator):  # noqa: N801
+class RIDGEFORM_OT_apply_result(_WhileBound, bpy.types.Operator):  # noqa: N801
     """Keep the result as it is: settings no longer change it"""
 
     bl_idname = "ridgeform.apply_result"
     bl_label = "Apply"
     bl_options = {"INTERNAL"}
-
-    @classmethod
-    def poll(cls, _context: bpy.types.Context) -> bool:
-        """Whether the panel is bound to a result."""
-        return _bound is not None and not modal.is_running()
 
     def execute(self, _context: bpy.types.Context) -> set[str]:
         """End it."""

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 import bpy
 from bpy.app.handlers import persistent
 
+from ..blender.handlers import Handlers
 from ..blender.mesh_state import ChangedError
 from ..blender.refusals import RefusedError
 from .job import hide_summary
@@ -292,12 +293,7 @@ def _put_back_all(*_arguments: object) -> None:
 
 
 # Objects do not outlive a file or an undo step, so no run may.
-_HANDLERS = (
-    (bpy.app.handlers.load_pre, _abort_all),
-    (bpy.app.handlers.undo_pre, _abort_all),
-    (bpy.app.handlers.redo_pre, _abort_all),
-    (bpy.app.handlers.save_pre, _put_back_all),
-)
+_handlers = Handlers(load_pre=_abort_all, undo_pre=_abort_all, redo_pre=_abort_all, save_pre=_put_back_all)
 
 
 def is_running() -> bool:
@@ -307,12 +303,10 @@ def is_running() -> bool:
 
 def register() -> None:
     """Have runs stopped before a file is opened or a step undone."""
-    for handlers, call in _HANDLERS:
-        handlers.append(call)
+    _handlers.add()
 
 
 def unregister() -> None:
     """Stop the runs, and no longer watch Blender's files and undo steps."""
     _abort_all()
-    for handlers, call in _HANDLERS:
-        handlers.remove(call)
+    _handlers.remove()

@@ -27,12 +27,17 @@ def offer_lines(lines: Sequence[Callable[[bpy.types.UILayout, object], None]]) -
     _lines[:] = lines
 
 
-class _ToolPanel:
-    """Mixin for a panel of a tool, or a part of one."""
+class InTab:
+    """Mixin for a panel in the tab."""
 
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = "Ridgeform"
+
+
+class _ToolPanel(InTab):
+    """Mixin for a panel of a tool, or a part of one."""
+
     tool: ClassVar[object]
     section = ""
 
@@ -141,12 +146,8 @@ def _group_idname(label: str) -> str:
     return f"RIDGEFORM_PT_{label.lower().replace(' ', '_')}"
 
 
-class _GroupPanel:
+class _GroupPanel(InTab):
     """Mixin for a panel that has nothing but other panels."""
-
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Ridgeform"
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw nothing."""

@@ -41,10 +41,7 @@ class ToolOperator(ModalRun):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether there is a mesh to work on; the tooltip says why not."""
-        reason = selection.reason_disabled(context, cls.tool.run.needs)
-        if reason is not None:
-            cls.poll_message_set(reason)
-        return reason is None
+        return selection.can_start(cls, selection.reason_disabled(context, cls.tool.run.needs))
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Do the whole job at once."""

@@ -11,6 +11,7 @@ from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from ..framework import former
 from ..framework.settings import values_of
+from ..framework.sidebar import InTab
 from ..framework.tool import Tool
 from ..framework.writing import write_text
 from . import recipe
@@ -74,12 +75,9 @@ class _LoadRecipe(ImportHelper):
         return {"FINISHED"}
 
 
-class _RecipePanel:
+class _RecipePanel(InTab):
     """Mixin for the panel with the two buttons."""
 
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Ridgeform"
     bl_label = "Recipe"
     bl_options = {"DEFAULT_CLOSED"}
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pictures
 from numpy.typing import NDArray
-from picture_geometry import Dots, Lines
+from picture_geometry import Dots, Lines, Mark
 from picture_isolines import bands, isolines
 
 from addon.blender import ramp
@@ -20,6 +20,8 @@ Pixels = NDArray[np.uint8]
 LEVELS = 16
 HOLE = (0.55, 0.02, 0.03)
 """Linear RGB of the border of what is unknown."""
+KNOWN = (0.6, 0.01, 0.015)
+"""Linear RGB of the dots where something is known."""
 LINE = Lines(np.empty((0, 2, 3)), pixels=1.3)
 FROM_ABOVE = {"view": (0.0, 0.0, 1.0), "up": (0.0, 1.0, 0.0)}
 TEXT_PIXELS = 14
@@ -52,11 +54,11 @@ def painted(
     color = ramp.colors_at(colors, band / max(len(levels), 1))[:, :3]
     if look.get("lit", True):
         color = BRIGHTNESS * color
-    marks: list[Lines | Dots] = [Lines(isolines(vertices, faces, values, levels), pixels=LINE.pixels)]
+    marks: list[Mark] = [Lines(isolines(vertices, faces, values, levels), pixels=LINE.pixels)]
     if hole is not None:
         marks.append(Lines(vertices[border(faces[hole])], HOLE, 3.0))
     if known is not None:
-        marks.append(Dots(known))
+        marks.append(Dots(known, KNOWN, 7.0))
     return pictures.render(pieces, piece_faces, color=color, marks=marks, **({"frame": vertices} | look))
 
 

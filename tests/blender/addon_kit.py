@@ -1,5 +1,9 @@
 """Meshes and readings that the tests of the add-on share."""
 
+import contextlib
+from collections.abc import Iterator
+
+import bmesh
 import bpy
 import numpy as np
 
@@ -79,6 +83,18 @@ def add_key(obj: bpy.types.Object, name: str, offset: np.ndarray) -> bpy.types.S
     key = obj.shape_key_add(name=name, from_mix=False)
     key.data.foreach_set("co", (coordinates(obj) + offset).astype(np.float32).ravel())
     return key
+
+
+@contextlib.contextmanager
+def edited(obj: bpy.types.Object) -> Iterator[bmesh.types.BMesh]:
+    """The mesh of an object, to be edited; it is written back at the end."""
+    mesh = bmesh.new()
+    mesh.from_mesh(obj.data)
+    for elements in (mesh.verts, mesh.edges, mesh.faces):
+        elements.ensure_lookup_table()
+    yield mesh
+    mesh.to_mesh(obj.data)
+    mesh.free()
 
 
 def same_bits(a: np.ndarray, b: np.ndarray) -> bool:

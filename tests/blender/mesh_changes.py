@@ -1,5 +1,6 @@
 """What scripts, timers and other windows can do to a mesh that a tool is at work on."""
 
+import addon_kit as kit
 import bmesh
 import bpy
 
@@ -11,12 +12,8 @@ def add_vertices(obj):
 
 def delete_faces(obj):
     """Fewer faces."""
-    edited = bmesh.new()
-    edited.from_mesh(obj.data)
-    edited.faces.ensure_lookup_table()
-    bmesh.ops.delete(edited, geom=edited.faces[:3], context="FACES")
-    edited.to_mesh(obj.data)
-    edited.free()
+    with kit.edited(obj) as mesh:
+        bmesh.ops.delete(mesh, geom=mesh.faces[:3], context="FACES")
 
 
 def flip_faces(obj):

@@ -135,15 +135,11 @@ def test_flipped_faces_keep_custom_normals():
 def test_parting_keeps_together_what_goes_on():
     """A fin on a plane comes off in one piece, and the plane has no cut."""
     obj = kit.add_object("Plane", *grid(4, 2))
-    edited = bmesh.new()
-    edited.from_mesh(obj.data)
-    edited.verts.ensure_lookup_table()
-    line = [edited.verts[5 + k] for k in (1, 2, 3)]
-    top = [edited.verts.new(vert.co + line[0].co.__class__((0, 0, 1))) for vert in line]
-    for k in (0, 1):
-        edited.faces.new((line[k], line[k + 1], top[k + 1], top[k]))
-    edited.to_mesh(obj.data)
-    edited.free()
+    with kit.edited(obj) as mesh:
+        line = [mesh.verts[5 + k] for k in (1, 2, 3)]
+        top = [mesh.verts.new(vert.co + line[0].co.__class__((0, 0, 1))) for vert in line]
+        for k in (0, 1):
+            mesh.faces.new((line[k], line[k + 1], top[k + 1], top[k]))
     assert check.examine(obj)["nonmanifold_edges"].count == 2
     assert bpy.ops.ridgeform.cure_faults(kind="nonmanifold_edges") == {"FINISHED"}
     assert names(check.examine(obj)) == set()
@@ -189,12 +185,8 @@ def test_a_soup_becomes_the_mesh_that_it_was():
     whole = kit.bumpy_box()
     obj = soup(whole)
     flipped = [3, 50, 51]
-    edited = bmesh.new()
-    edited.from_mesh(obj.data)
-    edited.faces.ensure_lookup_table()
-    bmesh.ops.reverse_faces(edited, faces=[edited.faces[face] for face in flipped])
-    edited.to_mesh(obj.data)
-    edited.free()
+    with kit.edited(obj) as mesh:
+        bmesh.ops.reverse_faces(mesh, faces=[mesh.faces[face] for face in flipped])
     report = check.examine(obj)
     assert names(report) == {"seams", "flipped_faces"}
     assert report["flipped_faces"].elements.tolist() == flipped
@@ -209,17 +201,13 @@ def test_a_scan_with_all_kinds_of_faults_becomes_what_it_was():
     (obj,) = files.read_file(FIXTURES / "bust.blend")
     before = kit.coordinates(obj), [tuple(face.vertices) for face in obj.data.polygons]
     rng = np.random.default_rng(2)
-    edited = bmesh.new()
-    edited.from_mesh(obj.data)
-    edited.faces.ensure_lookup_table()
-    chosen = [edited.faces[face] for face in rng.choice(len(edited.faces), 40, replace=False).tolist()]
-    doubled = [face.copy(verts=False, edges=False) for face in chosen[20:]]
-    bmesh.ops.reverse_faces(edited, faces=chosen[:20])
-    for _ in range(3):
-        edited.verts.new(rng.random(3).tolist())
-    edited.edges.new([edited.verts.new(rng.random(3).tolist()) for _ in range(2)])
-    edited.to_mesh(obj.data)
-    edited.free()
+    with kit.edited(obj) as mesh:
+        chosen = [mesh.faces[face] for face in rng.choice(len(mesh.faces), 40, replace=False).tolist()]
+        doubled = [face.copy(verts=False, edges=False) for face in chosen[20:]]
+        bmesh.ops.reverse_faces(mesh, faces=chosen[:20])
+        for _ in range(3):
+            mesh.verts.new(rng.random(3).tolist())
+        mesh.edges.new([mesh.verts.new(rng.random(3).tolist()) for _ in range(2)])
     obj.select_set(True)
     bpy.context.view_layer.objects.active = obj
     counts = {found.kind.name: found.count for found in check.examine(obj).findings}

@@ -1,6 +1,7 @@
 """The operator `ridgeform.fill_holes`: which holes it fills in which mode, and what it leaves alone."""
 
 import addon_kit as kit
+import bmesh
 import bpy
 import hole_kit
 import numpy as np
@@ -215,14 +216,8 @@ def test_split_seams_are_no_holes():
 
 def split(obj, edges):
     """Split a mesh along edges."""
-    import bmesh  # noqa: PLC0415
-
-    edited = bmesh.new()
-    edited.from_mesh(obj.data)
-    edited.edges.ensure_lookup_table()
-    bmesh.ops.split_edges(edited, edges=[edited.edges[index] for index in edges])
-    edited.to_mesh(obj.data)
-    edited.free()
+    with kit.edited(obj) as mesh:
+        bmesh.ops.split_edges(mesh, edges=[mesh.edges[index] for index in edges])
 
 
 def test_linked_meshes_are_refused(tmp_path):

@@ -178,6 +178,12 @@ def test_values_are_segmented_by_their_slopes_and_steps():
     assert ridgeform.segment(mesh, values=2 * x + 1).n_segments == 1
 
 
+def cheap_where(near):
+    """Keywords that make borders cheap on some faces: as weights of faces, and of their edges."""
+    weights = np.where(near, 0.2, 1.0)
+    return {"face_weights": weights}, {"edge_weights": np.repeat(weights[:, None], 3, axis=1)}
+
+
 def test_weights_attract_borders():
     vertices, faces = shapes.grid(24, 24)
     bent = vertices / 24
@@ -185,10 +191,8 @@ def test_weights_attract_borders():
     bent[:, 2] = 0.3 * np.maximum(bent[:, 0] - 0.5, 0)
     mesh = ridgeform.Mesh(bent, faces)
     assert ridgeform.segment(mesh).n_segments == 1
-    near = np.abs(bent[faces].mean(axis=1)[:, 0] - 0.5) < 0.1
-    assert ridgeform.segment(mesh, face_weights=np.where(near, 0.2, 1.0)).n_segments == 2
-    of_edges = np.repeat(np.where(near, 0.2, 1.0)[:, None], 3, axis=1)
-    assert ridgeform.segment(mesh, edge_weights=of_edges).n_segments == 2
+    for weights in cheap_where(np.abs(bent[faces].mean(axis=1)[:, 0] - 0.5) < 0.1):
+        assert ridgeform.segment(mesh, **weights).n_segments == 2
 
 
 def test_only_the_faces_asked_for_take_part():
@@ -316,10 +320,8 @@ def test_weights_and_a_choice_of_faces_reach_the_parts_of_split_faces():
     vertices, faces = strips(6, 7, bend=0.3)
     mesh = ridgeform.Mesh(vertices, faces)
     assert ridgeform.segment(mesh).n_segments == 1
-    near = np.abs(vertices[faces].mean(axis=1)[:, 0] - 1.0) < 0.2
-    assert ridgeform.segment(mesh, face_weights=np.where(near, 0.2, 1.0)).n_segments == 2
-    edges = np.repeat(np.where(near, 0.2, 1.0)[:, None], 3, axis=1)
-    assert ridgeform.segment(mesh, edge_weights=edges).n_segments == 2
+    for weights in cheap_where(np.abs(vertices[faces].mean(axis=1)[:, 0] - 1.0) < 0.2):
+        assert ridgeform.segment(mesh, **weights).n_segments == 2
     some = np.arange(len(faces)) < 72
     labels = ridgeform.segment(mesh, faces=some).labels
     assert (labels[some] == 0).all()

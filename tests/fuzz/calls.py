@@ -1,6 +1,8 @@
 """Calls of every tool on any mesh, with arguments from end to end, and what holds of what they return."""
 
+import ast
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,18 +12,15 @@ from hypothesis import strategies as st
 from fuzz import answers
 from fuzz.meshes import MeshPlan, mesh_plans
 
-ENERGIES = (
-    "l1_hessian",
-    "l2_hessian",
-    "l2_curved_hessian",
-    "l2_laplacian",
-    "l1_hessian_stein2018",
-    "l1_edge_laplacian",
-)
-DUALS = ("barycentric", "circumcentric", "circumcentric_or_barycentric")
-COUPLINGS = ("joint", "separate")
-SCALES = ("max_edge", "bounding_box", "area", "extent")
-SOLVERS = ("auto", "fast", "clarabel", "clarabel-qdldl", "clarabel-faer")
+STUB = ast.parse((Path(ridgeform.__file__).parent / "_native.pyi").read_text(encoding="utf-8"))
+WORDS = {
+    ast.unparse(node.target): ast.literal_eval(node.value.slice)
+    for node in STUB.body
+    if isinstance(node, ast.AnnAssign) and ast.unparse(node.value or node).startswith("Literal[")
+}
+"""What a keyword of a type takes, as the stubs have it."""
+ENERGIES, DUALS, COUPLINGS = WORDS["Energy"], WORDS["Dual"], WORDS["Coupling"]
+SCALES, SOLVERS = WORDS["Scale"], WORDS["Solver"]
 JUNK = (None, "", -1, 0, 2**63, 2**200, 1e-300, 1e300, -1.0, float("nan"), float("inf"), [], {}, b"x", 3 + 4j)
 
 powers = st.floats(-6, 6).map(lambda x: 10.0**x)

@@ -142,6 +142,17 @@ pub fn cylinder(around: usize, along: usize, radius: f64, height: f64) -> Shape 
     })
 }
 
+/// A ring of `2 n` faces around a round hole of radius 1, and the boundary loop of that hole.
+#[must_use]
+pub fn ring(n: usize) -> (Shape, Vec<u32>) {
+    let shape = sheet([n, 1], [true, false], |i, j| {
+        let (s, c) = (-std::f64::consts::TAU * i as f64 / n as f64).sin_cos();
+        let radius = 1.0 + 0.01 * j as f64;
+        [radius * c, radius * s, 0.3 * radius]
+    });
+    (shape, (0..n as u32).rev().collect())
+}
+
 /// A torus about the z axis.
 #[must_use]
 pub fn torus(around: usize, across: usize, major: f64, minor: f64) -> Shape {

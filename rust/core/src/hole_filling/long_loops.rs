@@ -138,32 +138,21 @@ fn coarse_polygon(polygon: &Polygon, samples: &[usize]) -> Polygon {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use std::f64::consts::TAU;
-
     use super::super::triangulation::TRIED;
     use super::*;
     use crate::hole_filling::faces_at;
-    use crate::mesh::Mesh;
+    use crate::shapes::ring;
 
     /// How many triangles are compared to triangulate a round hole of `n` edges.
-    fn tried(n: u32) -> usize {
-        let at = |i: u32, radius: f64| {
-            let angle = TAU * f64::from(i) / f64::from(n);
-            [radius * angle.cos(), radius * angle.sin(), 0.3 * radius]
-        };
-        let vertices = (0..n).map(|i| at(i, 1.0)).chain((0..n).map(|i| at(i, 1.01))).collect();
-        let faces = (0..n).flat_map(|i| {
-            let next = (i + 1) % n;
-            [[i, n + i, n + next], [i, n + next, next]]
-        });
-        let mesh = Mesh::new(vertices, faces.collect()).unwrap();
-        let rim: Vec<u32> = (0..n).collect();
+    fn tried(n: usize) -> usize {
+        let (shape, rim) = ring(n);
+        let mesh = shape.mesh().unwrap();
         let loops = [rim.clone()];
         let rims = Rims::new(&mesh, &loops, &faces_at(&mesh, &loops).unwrap()).unwrap();
         let polygon = Polygon::new(mesh.positions().unwrap(), &rim, &rims).unwrap_or_else(|_| unreachable!());
         TRIED.set(0);
         let found = triangulate(&polygon, &rims, &Progress::new());
-        assert_eq!((found.faces.len(), found.extra.len()), (n as usize - 2, 0));
+        assert_eq!((found.faces.len(), found.extra.len()), (n - 2, 0));
         TRIED.get()
     }
 
