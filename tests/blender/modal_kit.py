@@ -18,6 +18,8 @@ from bl_ext.user_default.ridgeform.attributes.settings import (
 )
 from bl_ext.user_default.ridgeform.diffusion.settings import DiffusionSettings
 from bl_ext.user_default.ridgeform.diffusion.tool import DiffusionCurves
+from bl_ext.user_default.ridgeform.facets.settings import FacetSettings
+from bl_ext.user_default.ridgeform.facets.tool import Faceting
 from bl_ext.user_default.ridgeform.framework import modal
 from bl_ext.user_default.ridgeform.framework.settings import defaults_of
 from bl_ext.user_default.ridgeform.holes.settings import HoleSettings
@@ -30,6 +32,7 @@ from bl_ext.user_default.ridgeform.stylize.tool import Stylization
 PATIENCE = 120.0
 TOOLS = {
     "stylize": (Stylization, StylizeSettings, {"steps": 3}),
+    "facet": (Faceting, FacetSettings, {"mode": "COUNT", "facets": 20}),
     "segment": (Segmenting, SegmentSettings, {}),
     "fill_holes": (HoleFilling, HoleSettings, {}),
     "denoise": (Denoising, DenoiseSettings, {"attribute": "heat"}),

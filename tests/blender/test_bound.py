@@ -104,6 +104,7 @@ CHANGED = (
     {"steps": 2},
     {"sharpness": 0.0, "marks": {"SHARP", "CREASE"}},
     {"finish": "LOW_POLY", "reduce_ratio": 0.5},
+    {"finish": "FACETS", "use_facets": True, "facets": 20},
     {"output": "SHAPE_KEY"},
     {"output": "ATTRIBUTE"},
     {"keep_volume": True, "marks": set()},
@@ -160,7 +161,7 @@ def test_the_steps_that_are_seen_are_those_of_the_flow():
         )
 
 
-@pytest.mark.parametrize("finish", ["KEEP", "LOW_POLY"])
+@pytest.mark.parametrize("finish", ["KEEP", "FACETS", "LOW_POLY"])
 def test_esc_goes_back_to_the_last_result_and_its_settings(finish):
     obj = open_box()
     press(obj, finish=finish, reduce_ratio=0.5)
@@ -197,7 +198,7 @@ def test_other_events_stay_with_blender_meanwhile():
 
 
 @pytest.mark.parametrize("change_by_hand", CHANGES, ids=lambda change: change.__name__)
-@pytest.mark.parametrize("finish", ["KEEP", "LOW_POLY"])
+@pytest.mark.parametrize("finish", ["KEEP", "FACETS", "LOW_POLY"])
 def test_a_mesh_changed_by_hand_ends_it(change_by_hand, finish):
     obj = open_box()
     press(obj, finish=finish, reduce_ratio=0.5)

@@ -5,8 +5,9 @@ import bpy
 import numpy as np
 import pytest
 import ridgeform
+from batch_kit import boxes, run
 from bl_ext.user_default.ridgeform.blender import mesh_io
-from bl_ext.user_default.ridgeform.framework import job
+from bl_ext.user_default.ridgeform.framework import faceting, files, job
 
 
 def facet(**settings):
@@ -339,3 +340,67 @@ def test_finish_facets_says_why_not():
     (entry,) = job.last_summary()
     assert any("facets were not made, because" in note for note in entry["warnings"])
     assert len(obj.data.polygons) == n
+
+
+def test_files_go_in_and_come_out_as_facets(tmp_path, capfd):
+    paths = [*boxes(tmp_path / "in", 2, ".obj"), tmp_path / "in" / "broken.obj"]
+    paths[-1].write_text("nothing")
+    code, records = run(capfd, "facet", *paths, "-o", tmp_path / "out", "--facets", "12")
+    assert code == 1 and records["broken.obj"]["error"] is not None
+    for path in paths[:2]:
+        (entry,) = records[path.name]["meshes"]
+        assert entry["tool"] == "facet" and entry["facets"] == entry["faces"] == 12
+        assert 0.0 < entry["rms"] < 0.1 and entry["error"] is None
+        kit.empty_scene()
+        files.read_file(tmp_path / "out" / path.name)
+        (obj,) = bpy.data.objects
+        assert len(obj.data.polygons) == 12 and is_closed(obj.data)
+
+
+def test_stylize_has_facets_on_the_command_line(tmp_path, capfd):
+    paths = boxes(tmp_path / "in", 1, ".obj")
+    code, records = run(capfd, "stylize", *paths, "-o", tmp_path / "out", "--steps", "2", "--facets", "10")
+    assert code == 0
+    assert records["box0.obj"]["meshes"][0]["facets"] == records["box0.obj"]["faces"] == 10
+
+
+def test_other_numbers_start_from_what_was_found():
+    faceting.forget()
+    made = {}
+    for count in (10, 20, 10):
+        kit.empty_scene()
+        obj = kit.bumpy_box()
+        facet(mode="COUNT", facets=count)
+        again = kit.coordinates(obj).tobytes()
+        assert made.setdefault(count, again) == again
+        assert len(faceting._known) == 1
+    kit.empty_scene()
+    obj = kit.bumpy_box()
+    faceting.forget()
+    facet(mode="COUNT", facets=20)
+    assert kit.coordinates(obj).tobytes() == made[20]
+
+
+def test_an_error_takes_as_many_facets_as_it_needs():
+    counts = []
+    for error in (2.0, 0.5, 0.1):
+        kit.empty_scene()
+        ball("ico")
+        (entry,) = facet(mode="ERROR", error=error)
+        assert entry["rms"] <= 0.01 * error
+        counts.append(entry["facets"])
+    assert counts == sorted(set(counts))
+
+
+def test_split_seams_of_a_file_stay_closed(tmp_path):
+    path = tmp_path / "ball.ply"
+    ball("ico")
+    bpy.ops.object.shade_flat()
+    files.write_file(path)
+    kit.empty_scene()
+    files.read_file(path)
+    (obj,) = bpy.data.objects
+    bpy.context.view_layer.objects.active = obj
+    obj.select_set(True)
+    facet(mode="COUNT", facets=20)
+    assert is_closed(obj.data) and len(obj.data.polygons) == 20
