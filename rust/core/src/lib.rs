@@ -1,6 +1,6 @@
 //! The L1 surface Hessian of triangle meshes [Rowe, Jacobson and Stein 2024]: operators, solvers, flows.
 //!
-//! Read in this order: [`mesh`] → [`operators`] → [`linear`] → [`solve`] → [`tools`].
+//! Read in this order: [`mesh`] → [`operators`] → [`linear`] → [`solve`] → [`surfaces`] → [`tools`].
 pub mod block_rows;
 mod buckets;
 pub mod error;
@@ -19,6 +19,7 @@ pub mod shape_guard;
 #[doc(hidden)]
 pub mod shapes;
 pub mod solve;
+pub mod surfaces;
 pub mod threads;
 pub mod tools;
 pub mod unit;
