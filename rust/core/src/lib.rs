@@ -6,6 +6,7 @@ mod buckets;
 pub mod error;
 pub mod hole_filling;
 pub mod intrinsic;
+pub mod labelling;
 pub mod linear;
 pub mod memory;
 pub mod mesh;

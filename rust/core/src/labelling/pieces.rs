@@ -1,0 +1,117 @@
+//! Pieces and their surfaces: the kind is the one with the least energy.
+
+use rayon::prelude::*;
+
+use super::{Domain, Labelling, FREE_MISFIT, NONE};
+use crate::progress::Progress;
+use crate::surfaces::{fit, Fit, Kind, Samples, Surface};
+use crate::Result;
+
+/// Points that a kind is chosen by; what is chosen is then fitted to all.
+const ENOUGH: usize = 1000;
+
+/// What faces of one label have in common.
+#[derive(Debug, Clone, Default)]
+pub struct Piece {
+    /// Its faces, ascending.
+    pub faces: Vec<u32>,
+    /// Its surface; `None` where it is free.
+    pub surface: Option<Surface>,
+    /// 1 where the faces' normals point to where the surface's distance grows, else −1.
+    pub side: f64,
+    /// Root mean square distance of its vertices from the surface.
+    pub rms: f64,
+    /// What it costs with its parameters.
+    pub(super) energy: f64,
+}
+
+impl Piece {
+    /// The piece of these faces on the surface that costs least, or free.
+    pub(super) fn of(domain: &Domain<'_>, faces: Vec<u32>) -> Self {
+        let samples = domain.samples(&faces);
+        let free = FREE_MISFIT * samples.total();
+        match best(domain, &samples, free) {
+            Some((found, energy)) => {
+                let (side, rms) = (samples.side(&found), samples.rms(&found));
+                Self { faces, surface: Some(found), side, rms, energy }
+            }
+            None => Self { faces, surface: None, side: 1.0, rms: 0.0, energy: free },
+        }
+    }
+
+    /// The same faces with a surface fitted again, where that costs less.
+    fn again(domain: &Domain<'_>, faces: Vec<u32>, old: Option<&Surface>) -> Self {
+        let mut piece = Self::of(domain, faces);
+        if let Some(old) = old {
+            let samples = domain.samples(&piece.faces);
+            let kept = samples.cost(old, domain.sigma) + domain.kappa * old.kind().n_parameters() as f64;
+            if kept < piece.energy {
+                piece.surface = Some(*old);
+                piece.energy = kept;
+                (piece.side, piece.rms) = (samples.side(old), samples.rms(old));
+            }
+        }
+        piece
+    }
+}
+
+/// The surface with the least energy, and that energy, if it is under `limit`.
+pub(super) fn best(domain: &Domain<'_>, samples: &Samples, limit: f64) -> Option<(Surface, f64)> {
+    let thin = samples.thinned(ENOUGH);
+    let price = |kind: Kind| domain.kappa * kind.n_parameters() as f64;
+    let mut found: Option<(Kind, Fit)> = None;
+    let mut least = limit;
+    for kind in Kind::ALL {
+        // More parameters than that cannot pay, however well they fit.
+        if price(kind) >= least {
+            break;
+        }
+        let Some(fitted) = fit(kind, &thin, domain.sigma) else { continue };
+        let energy = fitted.cost + price(kind);
+        if energy < least {
+            (found, least) = (Some((kind, fitted)), energy);
+        }
+        // Noise alone costs half of one for each observation; what is left to gain is no more than chance.
+        if fitted.cost <= 0.5 * thin.total() && energy <= least {
+            break;
+        }
+    }
+    let (kind, mut fitted) = found?;
+    if thin.len() < samples.len() {
+        fitted = fit(kind, samples, domain.sigma)?;
+        least = fitted.cost + price(kind);
+    }
+    (least < limit).then_some((fitted.surface, least))
+}
+
+impl Labelling {
+    /// Fits all pieces to their faces, and numbers them without gaps in the order of their first faces.
+    ///
+    /// # Errors
+    /// [`crate::Error::Cancelled`].
+    pub(super) fn fit_all(&mut self, domain: &Domain<'_>, progress: &Progress) -> Result<()> {
+        let n = self.labels.iter().filter(|l| **l != NONE).map(|l| *l as usize + 1).max().unwrap_or(0);
+        let mut names = vec![NONE; n];
+        let mut members: Vec<Vec<u32>> = Vec::new();
+        let mut old: Vec<Option<Surface>> = Vec::new();
+        for (f, label) in (0_u32..).zip(&mut self.labels).filter(|(_, label)| **label != NONE) {
+            let name = &mut names[*label as usize];
+            if *name == NONE {
+                *name = members.len() as u32;
+                members.push(Vec::new());
+                old.push(self.pieces.get(*label as usize).and_then(|piece| piece.surface));
+            }
+            *label = *name;
+            members[*name as usize].push(f);
+        }
+        self.pieces = members
+            .into_par_iter()
+            .zip(old)
+            .map(|(faces, old)| {
+                progress.check()?;
+                Ok(Piece::again(domain, faces, old.as_ref()))
+            })
+            .collect::<Result<_>>()?;
+        Ok(())
+    }
+}
