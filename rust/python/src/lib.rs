@@ -26,6 +26,7 @@ mod options;
 mod parts;
 mod progress;
 mod remesh;
+mod restore;
 mod scalar;
 mod segment;
 mod solution;
@@ -51,6 +52,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<holes::Hole>()?;
     module.add_class::<stylize::Stylized>()?;
     module.add_class::<remesh::Remeshed>()?;
+    module.add_class::<restore::Restored>()?;
     module.add_class::<diffusion_curves::DiffusionCurves>()?;
     module.add_class::<diffusion_curves::Redrawn>()?;
     module.add_class::<fill_holes::Filled>()?;
@@ -73,6 +75,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(facet::facet, module)?)?;
     module.add_function(wrap_pyfunction!(stylize::stylize, module)?)?;
     module.add_function(wrap_pyfunction!(remesh::remesh, module)?)?;
+    module.add_function(wrap_pyfunction!(restore::restore, module)?)?;
     module.add_function(wrap_pyfunction!(diffusion_curves::diffusion_curves, module)?)?;
     module.add_function(wrap_pyfunction!(diffusion_curves::redraw, module)?)?;
     module.add_function(wrap_pyfunction!(diffusion_curves::smooth_curves, module)?)?;

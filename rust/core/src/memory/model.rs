@@ -39,6 +39,8 @@ pub enum Tool {
     Parts,
     /// [`crate::tools::facet`].
     Facet,
+    /// [`crate::tools::restore`].
+    Restore,
     /// [`crate::tools::fill_holes`].
     FillHoles,
     /// [`crate::remesh::remesh`].
@@ -61,7 +63,7 @@ pub(super) struct Cost {
 
 impl Tool {
     /// Every tool by the name that users call it by.
-    pub const ALL: [(&'static str, Self); 23] = [
+    pub const ALL: [(&'static str, Self); 24] = [
         ("mesh", Self::Mesh),
         ("report", Self::Report),
         ("hessian", Self::Hessian),
@@ -79,6 +81,7 @@ impl Tool {
         ("segment", Self::Segment),
         ("parts", Self::Parts),
         ("facet", Self::Facet),
+        ("restore", Self::Restore),
         ("fill_holes", Self::FillHoles),
         ("remesh", Self::Remesh),
         ("diffusion_curves", Self::DiffusionCurves),
@@ -121,6 +124,7 @@ impl Tool {
             Self::Segment => (2400.0, 75.0, 0.0),
             Self::Parts => (520.0, 0.0, 0.0),
             Self::Facet => (1500.0, 0.0, 0.0),
+            Self::Restore => (2500.0, 77.0, 0.0),
             Self::FillHoles => (2500.0, 0.0, 0.0),
             Self::Remesh => (350.0, 0.0, 0.0),
             Self::DiffusionCurves => (1400.0, 160.0, 0.0),
