@@ -86,6 +86,7 @@ CALLS: dict[str, Call] = {
         mesh, method="paper", epsilon_end=0.05, max_iterations=10, **options
     ),
     "parts": lambda mesh, options: ridgeform.parts(mesh, **options),
+    "restore": lambda mesh, options: ridgeform.restore(mesh, **options),
     "fill_holes": lambda mesh, options: ridgeform.fill_holes(mesh, iterations=1, **options),
     "fill_holes outer": lambda mesh, options: ridgeform.fill_holes(mesh, iterations=1, outer=True, **options),
     "remesh": lambda mesh, options: ridgeform.remesh(mesh, iterations=2, **options),

@@ -36,6 +36,10 @@ print(found.n_segments, np.bincount(found.labels))  # the two sides of the valle
 limbs = ridgeform.parts(mesh, n_parts=2)
 print(limbs.n_parts, limbs.range, limbs.labels_at(1).max())
 
+# %% restore
+part = ridgeform.restore(bumpy, regularize=2.0)
+print(part.status, [surface["kind"] for surface in part.surfaces], part.n_folded)
+
 # %% find_holes
 middle = (np.abs(vertices[corner, :2]) < 0.3).all(axis=1)
 open_mesh = ridgeform.Mesh(vertices, faces[~np.tile(middle, 2)])

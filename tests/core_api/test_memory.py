@@ -45,6 +45,7 @@ CALLS = [
     "interpolate clarabel",
     "segment",
     "parts",
+    "restore",
     "remesh",
     "trace_curves",
 ]

@@ -2,7 +2,8 @@
 
 Make a `Mesh` from arrays, then call a function per problem: `stylize` turns it piecewise flat, `facet` makes
 flat polygons of it, `segment`
-finds the faces that it is made of and `parts` its limbs, `fill_holes` closes holes so that the ridges
+finds the faces that it is made of and `parts` its limbs, `restore` puts noisy parts onto the surfaces that
+they were made of, `fill_holes` closes holes so that the ridges
 around them go on, `denoise` and `interpolate` find functions on it with sparse second derivatives,
 `vibration_modes` those of least energy, `diffusion_curves` the few curves that redraw a painted surface,
 and `remesh` evens out its triangles; `hessian` and its companions are the operators behind them. Arrays of

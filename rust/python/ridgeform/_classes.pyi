@@ -79,6 +79,17 @@ class Remeshed:
     status: Final[Literal["finished", "stopped"]]
 
 @final
+class Restored:
+    vertices: Final[Floats]
+    labels: Final[Indices]
+    surfaces: Final[list[dict[str, Any]]]
+    noise: Final[float]
+    relations: Final[list[str]]
+    n_held: Final[int]
+    n_folded: Final[int]
+    status: Final[Literal["restored", "unsure", "stopped"]]
+
+@final
 class Segmentation:
     labels: Final[Indices]
     n_segments: Final[int]

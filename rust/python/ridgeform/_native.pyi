@@ -23,6 +23,7 @@ from ._classes import (
     Progress as Progress,
     Redrawn as Redrawn,
     Remeshed as Remeshed,
+    Restored as Restored,
     Segmentation as Segmentation,
     Solution as Solution,
     SparseMatrix as SparseMatrix,
@@ -119,6 +120,22 @@ def vibration_modes(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Floats: ...
+def restore(
+    mesh: Mesh,
+    *,
+    max_move: float | None = None,
+    noise: float | None = None,
+    regularize: float | None = None,
+    free: bool = True,
+    fixed: ArrayLike | None = None,
+    faces: ArrayLike | None = None,
+    solver: Solver = "auto",
+    tolerance: float | None = 1e-3,
+    max_iterations: int | None = None,
+    memory_limit: int | None = None,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Restored: ...
 def segment(
     mesh: Mesh,
     *,

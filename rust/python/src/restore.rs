@@ -83,8 +83,8 @@ solver_function! {
     /// Put a noisy part onto the planes, spheres, cylinders, cones and tori that it was made of.
     ///
     /// Segments are labeled with surfaces by one energy: the negative logarithm of the likelihood of the vertices under the mesh's own
-    /// noise, the length of borders, and a price for each parameter. Neighbors that one surface explains are merged, free pieces
-    /// that several explain divided, faces at borders moved. Then every vertex goes onto its surface, onto the curve of two, into
+    /// noise, the length of borders, and a price for each parameter. Neighbors that one surface explains are merged, and faces at
+    /// borders moved. Then every vertex goes onto its surface, onto the curve of two, into
     /// the corner of three, and vertices move within these until no triangle is folded. Connectivity stays.
     ///
     /// Parameters

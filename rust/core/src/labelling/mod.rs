@@ -14,7 +14,6 @@ mod domain;
 mod merge;
 mod pieces;
 mod relabel;
-mod split;
 
 pub use domain::Domain;
 pub use pieces::Piece;
@@ -54,7 +53,6 @@ pub fn labelling(domain: &Domain<'_>, start: &[i32], progress: &Progress) -> Res
     let labels = start.iter().map(|&l| u32::try_from(l).unwrap_or(NONE)).collect();
     let mut state = Labelling { labels, pieces: Vec::new() };
     state.fit_all(domain, progress)?;
-    split::split(domain, &mut state, progress)?;
     let mut energy = state.energy(domain);
     for _ in 0..MOST_ROUNDS {
         let before = state.clone();

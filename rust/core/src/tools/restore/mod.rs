@@ -86,7 +86,7 @@ fn on(working: &Working<'_>, unit: Unit, options: &RestoreOptions, progress: &Pr
     let mut restored = Restored {
         vertices: Vec::new(),
         labels: state.labels.iter().map(|&l| if l == NONE { -1 } else { l.cast_signed() }).collect(),
-        surfaces: pieces(&domain, &state),
+        surfaces: pieces(&state),
         noise: domain.sigma,
         relations,
         n_held: placement.n_held,
@@ -120,8 +120,7 @@ fn kept(before: &[Point], after: Vec<Point>, least: f64) -> Vec<Point> {
 }
 
 /// What is said of the pieces.
-fn pieces(domain: &Domain<'_>, state: &Labelling) -> Vec<RestoredSurface> {
-    let _ = domain;
+fn pieces(state: &Labelling) -> Vec<RestoredSurface> {
     let said = |piece: &crate::labelling::Piece| RestoredSurface {
         surface: piece.surface,
         is_inside_out: piece.side < 0.0,
