@@ -35,6 +35,7 @@ TOOLS = {
     "facet": (Faceting, FacetSettings, {"mode": "COUNT", "facets": 20}),
     "segment": (Segmenting, SegmentSettings, {}),
     "fill_holes": (HoleFilling, HoleSettings, {}),
+    "facet": (Faceting, FacetSettings, {}),
     "denoise": (Denoising, DenoiseSettings, {"attribute": "heat"}),
     "interpolate": (Interpolation, InterpolateSettings, {"attribute": "heat", "known": "UNSELECTED"}),
     "modes": (VibrationModes, ModesSettings, {"count": 4}),

@@ -1,7 +1,7 @@
 //! Pieces of surface that lie inside a hole of another.
 
+use super::hole::Hole;
 use super::places::Places;
-use super::Hole;
 use crate::error::Refusal;
 use crate::mesh::vector::{add, cross, distance, dot, norm, scale, sub, unit, Point};
 use crate::mesh::{cycle, loop_area_vector};

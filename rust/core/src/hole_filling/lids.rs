@@ -2,10 +2,10 @@
 //! a tube.
 
 use super::long_loops::{triangulate, Triangulation};
+use super::options::FillOptions;
 use super::patch::refined;
 use super::polygon::Polygon;
 use super::rims::Rims;
-use super::FillOptions;
 use crate::mesh::vector::{add, area_vector, cross, distance, dot, norm, scale, sub, unit, Point};
 use crate::{Progress, Result};
 

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::components::Components;
+use super::hole::Hole;
 use super::islands::settle_islands;
 use super::lids;
 use super::polygon::Polygon;
@@ -18,18 +19,6 @@ const INSIDE: f64 = 0.5;
 
 /// The sides of a loop lie on each other if its vertices are off its other edges by no more than this part of its length.
 const ON_EACH_OTHER: f64 = 1e-5;
-
-/// A boundary loop and what it is.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Hole {
-    /// The vertices in the order of [`crate::mesh::boundary_loops`]. Where the ring around an island is pinched at a vertex, that vertex is
-    /// there twice.
-    pub vertices: Vec<u32>,
-    /// Whether this is the outer border of an open sheet, which is filled only if asked for.
-    pub is_outer_border: bool,
-    /// Why it cannot be filled, if so.
-    pub refusal: Option<Refusal>,
-}
 
 /// All boundary loops of `mesh`, in the order of [`crate::mesh::boundary_loops`], then the rims that do not close, and what each is.
 ///

@@ -16,10 +16,12 @@
 //! the rim are the mesh's own and do not move. No patch makes an edge that the mesh or another patch has.
 
 mod components;
+mod hole;
 mod islands;
 mod lids;
 mod long_loops;
 mod loops;
+mod options;
 mod patch;
 mod places;
 mod polygon;
@@ -27,8 +29,10 @@ mod refinement;
 mod rims;
 mod triangulation;
 
+pub use hole::{Hole, Patch};
+pub use loops::find_holes;
 pub(crate) use loops::holes_of;
-pub use loops::{find_holes, Hole};
+pub use options::{FillOptions, Lids};
 pub use rims::faces_at;
 
 use crate::error::{MeshError, Refusal};
@@ -40,54 +44,6 @@ use rims::Rims;
 
 /// A rim encloses nothing if its triangulation has less than this part of its squared length in area: rounding alone.
 const NO_EXTENT: f64 = 1e-13;
-
-/// Which holes are closed flat.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Lids {
-    /// None.
-    #[default]
-    Never,
-    /// Those with a planar rim that the surface meets steeply all round: the missing side of a box, the cut end of a tube.
-    Planar,
-    /// All whose rim does not overlap itself in its mean plane.
-    Always,
-}
-
-/// How a hole is filled.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FillOptions {
-    /// The edge length inside the patch; without it, that of the rim continues into the patch.
-    pub edge_length: Option<f64>,
-    /// Whether to refine and remesh; without, a patch is the triangulation of minimum weight alone and has no new vertex
-    /// unless nothing else is possible.
-    pub refine: bool,
-    /// Rounds of isotropic remeshing, 0 for Liepa's refinement alone.
-    pub remesh_iterations: usize,
-    /// Where the patch would have more faces than about this many, edges grow with the distance from the rim.
-    pub max_faces: usize,
-    /// Which holes are closed flat.
-    pub lids: Lids,
-}
-
-impl Default for FillOptions {
-    fn default() -> Self {
-        Self { edge_length: None, refine: true, remesh_iterations: 10, max_faces: 40_000, lids: Lids::Never }
-    }
-}
-
-/// The filling of one hole.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Patch {
-    /// Positions of the new vertices; those on the rim are the mesh's.
-    pub vertices: Vec<Point>,
-    /// Vertex triples, oriented as the mesh around. Numbers below the mesh's vertex count are its vertices; new ones
-    /// follow, first those of the patches before this one of the same call.
-    pub faces: Vec<[u32; 3]>,
-    /// Whether it lies in the mean plane of its rim, but for what closes notches in that.
-    pub is_flat: bool,
-    /// The normal of that plane, to the side that the patch shows, if the surface meets it steeply all round.
-    pub lid_normal: Option<Point>,
-}
 
 /// Fills one hole; see [`fill_loops`].
 ///

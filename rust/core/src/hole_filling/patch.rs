@@ -1,10 +1,10 @@
 //! From the triangulation of a hole to a patch at the resolution of its rim.
 
 use super::long_loops::Triangulation;
+use super::options::FillOptions;
 use super::polygon::Polygon;
 use super::refinement::refine;
 use super::rims::Rims;
-use super::FillOptions;
 use crate::mesh::vector::{distance, norm, Point};
 use crate::remesh::curves::Keep;
 use crate::remesh::isotropic::run;

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::Patch;
+use super::hole::Patch;
 use crate::error::{MeshError, Refusal};
 use crate::mesh::vector::{area_vector, unit, Point};
 use crate::mesh::Mesh;

@@ -2,21 +2,12 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::FillHolesOptions;
+use super::options::{FillHolesOptions, LoopChoice};
 use crate::error::{MeshError, Refusal};
 use crate::hole_filling::{fill_loops_at, holes_of, FillOptions, Patch};
 use crate::mesh::Mesh;
 use crate::progress::Progress;
 use crate::{Error, Result};
-
-/// A boundary loop to fill.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum LoopChoice {
-    /// By its place in [`crate::hole_filling::find_holes`].
-    Index(usize),
-    /// By the vertices around it, in either direction.
-    Vertices(Vec<u32>),
-}
 
 /// A loop, and why it cannot be filled, if so.
 pub(super) type Chosen = (Vec<u32>, Option<Refusal>);

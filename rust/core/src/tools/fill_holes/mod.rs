@@ -43,9 +43,8 @@ mod start;
 mod surface;
 mod untangle;
 
-pub use choice::LoopChoice;
 pub use filled::{Filled, FilledHole, HoleStatus};
-pub use options::{FillHolesOptions, PatchShape, Sharpness};
+pub use options::{FillHolesOptions, LoopChoice, PatchShape, Sharpness};
 
 use std::collections::HashSet;
 

@@ -1,11 +1,19 @@
 //! How to fill holes.
 
-use super::choice::LoopChoice;
 use crate::operators::Dual;
 use crate::solve::Coupling;
 use crate::tools::options::check_range;
 use crate::tools::{Scale, SolveOptions};
 use crate::{Error, Result};
+
+/// A boundary loop to fill.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum LoopChoice {
+    /// By its place in [`crate::hole_filling::find_holes`].
+    Index(usize),
+    /// By the vertices around it, in either direction.
+    Vertices(Vec<u32>),
+}
 
 /// How sharp the ridges of patches get.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -1,7 +1,7 @@
 //! Faces that lie on others with the same three vertices, as second lids do: segmented once, so that edges with three faces are no
 //! borders there.
 
-use super::Segmentation;
+use super::segmentation::Segmentation;
 use crate::mesh::{Connectivity, EdgeKind};
 
 /// Faces that are there more than once.

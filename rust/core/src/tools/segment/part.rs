@@ -1,6 +1,7 @@
 //! Segmenting some faces only.
 
-use super::{SegmentOptions, Segmentation};
+use super::options::SegmentOptions;
+use super::segmentation::Segmentation;
 use crate::error::MeshError;
 use crate::linear::Columns;
 use crate::mesh::Mesh;

@@ -1,7 +1,8 @@
 //! Segmenting a mesh whose faces were split at T-junctions: what comes out is given back for its faces.
 
+use super::options::SegmentOptions;
+use super::segmentation::{boundary_edges, Segmentation};
 use super::surface::contiguous;
-use super::{boundary_edges, SegmentOptions, Segmentation};
 use crate::mesh::{triangle, Mesh, SplitFaces};
 
 /// The options for the parts of faces: what was asked for a face holds for its parts, and for an edge too; a border through a face costs
