@@ -31,6 +31,9 @@ BRITISH = re.compile(
 )
 
 
+_FENCED = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
+
+
 def british_words(text: str) -> list[str]:
     """The British spellings in a text, in their order."""
     return [word for word in BRITISH.findall(text) if word.lower() not in _AMERICAN]
@@ -38,7 +41,8 @@ def british_words(text: str) -> list[str]:
 
 def british_lines(path: Path) -> list[str]:
     """Where a page has British spellings outside code: its name, the line's number, and the words."""
-    lines = path.read_text(encoding="utf-8").splitlines()
+    text = _FENCED.sub(lambda code: "\n" * code[0].count("\n"), path.read_text(encoding="utf-8"))
+    lines = text.splitlines()
     found = ((number, british_words(re.sub("`[^`]*`", "", line))) for number, line in enumerate(lines, 1))
     return [f"{path.name}:{number}: {', '.join(words)}" for number, words in found if words]
 

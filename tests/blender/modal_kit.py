@@ -35,7 +35,6 @@ TOOLS = {
     "facet": (Faceting, FacetSettings, {"mode": "COUNT", "facets": 20}),
     "segment": (Segmenting, SegmentSettings, {}),
     "fill_holes": (HoleFilling, HoleSettings, {}),
-    "facet": (Faceting, FacetSettings, {}),
     "denoise": (Denoising, DenoiseSettings, {"attribute": "heat"}),
     "interpolate": (Interpolation, InterpolateSettings, {"attribute": "heat", "known": "UNSELECTED"}),
     "modes": (VibrationModes, ModesSettings, {"count": 4}),
