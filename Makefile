@@ -7,7 +7,7 @@ RUN = @$(PYTHON) scripts/setup_env.py
 	extension wheel release sizes docs fixtures pictures gallery
 
 help:
-	@echo "make demo        stylize a real scan in Blender, without a window: out/demo.png, out/demo.blend"
+	@echo "make demo        make facets of a real scan in Blender, without a window: out/demo.png, out/demo.blend"
 	@echo "make test        all tests: Rust, the wheel, the extension in every Blender found"
 	@echo "make test-all-blenders  the extension in Blender 4.2, 4.5, 5.0, and 5.2; ZIP=file takes a built one"
 	@echo "make test-dask   batches on a Dask cluster of two workers, one of which is killed"

@@ -120,17 +120,19 @@ def _make_facets(
 ) -> None:
     places = source.facetable.weld.places(made.coordinates)
     mesh = ridgeform.Mesh(places, source.facetable.weld.triangles)
+    # What the flow has made flat are the facets that it leaves.
+    wanted = chosen(settings, "facets")
     found, facet_mesh = faceting.facets_of(
         source.facetable,
         mesh,
         made.coordinates,
-        facets=chosen(settings, "facets"),
+        facets=wanted or int(made.flow.n_facets) or None,
         flat="SHARP" in settings.marks,
         progress=progress,
         check=check,
     )
     made.rebuilt, made.n_facets = facet_mesh.rebuilt, int(found.n_facets)
-    made.notes += faceting.notes(found, chosen(settings, "facets"))
+    made.notes += faceting.notes(found, wanted)
     if source.edges is not None:
         made.ridges, least = facet_mesh.ridges(), chosen(settings, "mark_angle")
         if least is not None:

@@ -99,7 +99,7 @@ class StylizeSettings(Settings):
         shown=lambda settings: settings.finish == "FACETS",
         implies={"finish": "FACETS"},
         optional=False,
-        otherwise="there are as many as the shape gives evidence for",
+        otherwise="there are as many as the flow has made",
     )
     steps: integer(
         "Steps",

@@ -329,7 +329,8 @@ def test_finish_facets_is_the_flow_and_then_facets():
     kit.empty_scene()
     two = kit.bumpy_box("Two", cuts=6)
     bpy.ops.ridgeform.stylize(marks=set(), **given)
-    facet()
+    (entry,) = job.last_summary()
+    facet(mode="COUNT", facets=entry["facets"])
     np.testing.assert_array_equal(made, kit.coordinates(two))
 
 
