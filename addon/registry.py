@@ -23,6 +23,7 @@ NAMES = (
     "stylize",
     "holes",
     "facets",
+    "restore",
     "segments",
     "attributes",
     "diffusion",

@@ -342,6 +342,7 @@ MANUALS = {
     "manual.md": ["stylize"],
     "manual_holes.md": ["fill_holes"],
     "manual_segment.md": ["segment"],
+    "manual_restore.md": ["restore"],
     "manual_attributes.md": ["denoise_attribute", "interpolate_attribute", "vibration_modes"],
     "manual_diffusion_curves.md": ["diffusion_curves"],
 }

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The settings of restoring: how exact surfaces are, how far vertices move, what else is made."""
+
+import numpy as np
+
+from ..framework.settings import Settings, boolean, choices, chosen, number, vertex_group
+
+OUTPUTS = (
+    (
+        "ATTRIBUTES",
+        "Attributes",
+        'Store the surface of each face in the face attributes "ridgeform_surface" (its number) and '
+        '"ridgeform_surface_kind" (0 free, 1 plane, 2 sphere, 3 cylinder, 4 cone, 5 torus)',
+    ),
+    (
+        "EMPTIES",
+        "Empties",
+        "Add an empty for each surface, with its Z axis along the normal or the axis. Those of an earlier "
+        "run are replaced",
+    ),
+)
+
+
+class RestoreSettings(Settings):
+    """The settings of restoring."""
+
+    regularize: number(
+        "Regularize",
+        "Make surfaces parallel and orthogonal that are so up to this angle, and radii equal that differ by "
+        "as little",
+        default=np.radians(3.0),
+        min=0.0,
+        max=np.radians(30.0),
+        subtype="ANGLE",
+        optional=False,
+        otherwise="surfaces stay as they were fitted",
+    )
+    free: boolean(
+        "Denoise Free Pieces",
+        "Denoise pieces that are no surface of a known kind. Otherwise they stay as they are",
+        default=True,
+    )
+    strength_group: vertex_group(
+        "Mask", "Vertex group that determines where to restore. Vertices outside of it do not move"
+    )
+    outputs: choices(
+        "Make",
+        "What to make of the surfaces besides moving the vertices",
+        OUTPUTS,
+        default={"ATTRIBUTES"},
+        flag="--make",
+    )
+    max_move: number(
+        "Maximum Distance",
+        "How far a vertex may move, in the units of the mesh",
+        default=0.01,
+        min=0.0,
+        soft_max=10.0,
+        precision=4,
+        optional=False,
+        otherwise="it is four times the noise and half the length of an edge",
+    )
+    noise: number(
+        "Noise",
+        "Standard deviation of the noise along the normal, in the units of the mesh",
+        default=0.001,
+        min=0.0,
+        soft_max=10.0,
+        precision=5,
+        optional=False,
+        otherwise="it is found in the mesh",
+    )
+
+
+PRESETS = {
+    "Scan": {"use_regularize": False},
+    "Machined Part": {"use_regularize": True, "regularize": float(np.radians(3.0))},
+}
+"""Shipped presets: surfaces as fitted; parallel, orthogonal, and equal where they nearly are."""
+
+
+def restore_options(settings: object) -> dict[str, object]:
+    """The keyword arguments of `ridgeform.restore` that the settings stand for, the same for every mesh."""
+    angle = chosen(settings, "regularize")
+    return {
+        "regularize": None if angle is None else min(float(np.degrees(angle)), 30.0),
+        "free": settings.free,
+        "max_move": chosen(settings, "max_move"),
+        "noise": chosen(settings, "noise"),
+    }
