@@ -378,6 +378,13 @@ def test_no_panel_speaks_of_energy_but_for_experts():
         }
         entry |= {"facets": 3, "moved": 0.01, "holes": 1, "faces_added": 2, "ridge_edges": 1, "warnings": []}
         entry |= {"segments": 3, "possible": [1, 4], "curves": 2, "psnr": 30.0, "numbers_before": 9}
-        entry |= {"numbers_after": 4, "regions": 2, "rms": 0.01}
+        entry |= {
+            "numbers_after": 4,
+            "regions": 2,
+            "rms": 0.01,
+            "surfaces": [],
+            "noise": 0.1,
+            "relations": [],
+        }
         assert not any("energy" in line or "gap" in line for line in tool.run.lines(entry)), tool.name
         assert tool.run.numbers(entry) == ["Box: energy 2 → 1, gap 0.001"]
