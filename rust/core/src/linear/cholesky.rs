@@ -13,7 +13,7 @@ use faer::Side;
 
 use crate::error::SolveError;
 use crate::linear::multifrontal::{self, Tree, Workspace};
-use crate::linear::ordering::{minimum_degree, nested_dissection, postordered};
+use crate::linear::ordering::eliminated;
 use crate::linear::pattern::LowerPattern;
 use crate::linear::subtrees::Subtrees;
 use crate::linear::triangular::{Panels, Values, LANES};
@@ -22,10 +22,6 @@ use crate::memory;
 /// Neighboring supernodes of at most so many columns are joined while less than this part of the result is zero. The
 /// library's own thresholds make one solve a tenth slower and the factorization no faster (measured on 10k and 58k rows).
 const RELAXATION: &[(usize, f64)] = &[(8, 0.3), (16, 0.1)];
-
-/// From this number of rows on nested dissection comes first. On matrices of this kind it leaves 19 % fewer entries than minimum
-/// degree at 58k and at 200k rows, and none at 9k, and costs half a factorization (measured).
-const DISSECTED_FROM: usize = 25_000;
 
 /// A factorization whose pattern is analyzed once.
 pub struct Cholesky {
@@ -68,8 +64,7 @@ impl Cholesky {
             supernodal_params: SymbolicSupernodalParams { relax: Some(RELAXATION) },
             ..CholeskySymbolicParams::default()
         };
-        let first = if pattern.n < DISSECTED_FROM { minimum_degree(&pattern)? } else { nested_dissection(&pattern)? };
-        let forward = postordered(&pattern, &first)?;
+        let forward = eliminated(&pattern)?;
         let mut backward = memory::repeated(0, pattern.n)?;
         for (k, &i) in forward.iter().enumerate() {
             backward[i] = k;
@@ -142,21 +137,26 @@ impl Cholesky {
         Ok(())
     }
 
-    /// Solves in place for `K` right sides, with the last factorization.
+    /// Solves in place for `K` right sides, with the last factorization. Rows of the matrix behind the last of `right` are zero on
+    /// the right side, and what they are in the solution is left out.
     pub fn solve<const K: usize>(&mut self, right: &mut [[f64; K]]) {
         self.solve_columns::<K, K>(right);
     }
 
-    /// Solves in place for the first `A` of `K` right sides.
+    /// [`Cholesky::solve`] for the first `A` of `K` right sides.
     pub fn solve_columns<const A: usize, const K: usize>(&mut self, right: &mut [[f64; K]]) {
         let mut x = vec![[0.0; A]; self.order.len()];
         for (x, &i) in x.iter_mut().zip(&self.order) {
-            x.copy_from_slice(&right[i as usize][..A]);
+            if let Some(right) = right.get(i as usize) {
+                x.copy_from_slice(&right[..A]);
+            }
         }
         let values = Values { panels: &self.factor, reciprocals: &self.reciprocals };
         self.subtrees.solve(&self.panels, values, &mut x, &mut self.space);
         for (x, &i) in x.iter().zip(&self.order) {
-            right[i as usize][..A].copy_from_slice(x);
+            if let Some(right) = right.get_mut(i as usize) {
+                right[..A].copy_from_slice(x);
+            }
         }
     }
 }

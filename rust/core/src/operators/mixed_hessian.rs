@@ -72,16 +72,20 @@ fn rings(mesh: &Mesh) -> Result<Vec<(u32, Ring)>, MeshError> {
             |(face, area)| if *area > 0.0 { hat_gradients(face.map(|v| positions[v as usize])) } else { [[0.0; 3]; 3] },
         )
         .collect();
-    let ring = |v: usize| -> Ring {
+    let mut place = vec![u32::MAX; connectivity.n_vertices()];
+    let mut ring = |v: usize| -> Ring {
         let mut ring: Ring = Vec::new();
         for &(f, c) in corners.of(v) {
             for (&w, gradient) in connectivity.faces()[f].iter().zip(&gradients[f]) {
                 let entry = gradients[f][c].map(|x| gradient.map(|y| areas[f] * x * y));
-                match ring.iter_mut().find(|(other, _)| *other == w) {
+                match ring.get_mut(place[w as usize] as usize).filter(|(other, _)| *other == w) {
                     Some((_, sum)) => {
                         sum.iter_mut().flatten().zip(entry.iter().flatten()).for_each(|(s, e)| *s += e);
                     }
-                    None => ring.push((w, entry)),
+                    None => {
+                        place[w as usize] = ring.len() as u32;
+                        ring.push((w, entry));
+                    }
                 }
             }
         }

@@ -29,8 +29,8 @@ pub(crate) struct Curves {
     edges: HashMap<[u32; 2], u32>,
     /// Edges that stay as they are.
     locked: HashSet<[u32; 2]>,
-    segments: ClosestPoint,
-    curve_of_segment: Vec<u32>,
+    /// The segments of every curve.
+    segments: Vec<ClosestPoint>,
 }
 
 /// What is fixed and what counts as a feature.
@@ -91,10 +91,15 @@ impl Curves {
                 roles[v as usize] = Role::Fixed;
             }
         }
-        let edges = number_curves(&lines, &ends, &mut roles);
-        let segments: Vec<[Point; 3]> = lines.iter().map(|&[a, b]| mesh.corners([a, b, b])).collect();
-        let curve_of_segment = lines.iter().map(|line| edges.get(line).copied().unwrap_or(0)).collect();
-        (Self { edges, locked, segments: ClosestPoint::new(segments), curve_of_segment }, roles)
+        let (edges, count) = number_curves(&lines, &ends, &mut roles);
+        // A tree for each: in one tree for all, the closest of one curve is searched for among those of all others.
+        let mut segments: Vec<Vec<[Point; 3]>> = vec![Vec::new(); count as usize];
+        for line @ &[a, b] in &lines {
+            if let Some(&curve) = edges.get(line) {
+                segments[curve as usize].push(mesh.corners([a, b, b]));
+            }
+        }
+        (Self { edges, locked, segments: segments.into_iter().map(ClosestPoint::new).collect() }, roles)
     }
 
     /// The curve that the edge is on.
@@ -116,7 +121,7 @@ impl Curves {
 
     /// The point of `curve` closest to `p`.
     pub(crate) fn project(&self, curve: u32, p: Point) -> Point {
-        self.segments.closest(p, None, |s| self.curve_of_segment[s as usize] == curve).map_or(p, |found| found.point)
+        self.segments[curve as usize].closest(p, None, |_| true).map_or(p, |found| found.point)
     }
 
     /// Puts edges onto a curve in place of an old one.
@@ -139,7 +144,8 @@ fn is_smooth(mesh: &EditableMesh, v: u32, ends: &[u32]) -> bool {
 }
 
 /// Numbers the curves: lines that meet at a vertex that is free to move along them are one. Gives those vertices their role.
-fn number_curves(lines: &[[u32; 2]], ends: &[Vec<u32>], roles: &mut [Role]) -> HashMap<[u32; 2], u32> {
+/// Returns the curve of every line, and how many there are.
+fn number_curves(lines: &[[u32; 2]], ends: &[Vec<u32>], roles: &mut [Role]) -> (HashMap<[u32; 2], u32>, u32) {
     let mut number: HashMap<[u32; 2], u32> = HashMap::with_capacity(lines.len());
     let mut count = 0;
     for &line in lines {
@@ -157,5 +163,27 @@ fn number_curves(lines: &[[u32; 2]], ends: &[Vec<u32>], roles: &mut [Role]) -> H
         }
         count += 1;
     }
-    number
+    (number, count)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_point_comes_back_onto_its_own_curve_though_another_is_closer() {
+        let triangle = |z: f64| [[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]];
+        let positions = [triangle(0.0), triangle(0.1)].concat();
+        let mesh = EditableMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+        let keep = Keep { fixed: &[false; 6], fixed_faces: false, feature_cosine: -2.0, features: None };
+        let (curves, roles) = Curves::new(&mesh, &keep);
+        assert_eq!(roles, [Role::Fixed; 6], "every corner is one");
+        for (edge, z) in [([0, 1], 0.0), ([3, 4], 0.1)] {
+            let curve = curves.curve(edge[0], edge[1]).unwrap();
+            for close in [-0.05, 0.02, 0.09, 0.2] {
+                assert_eq!(curves.project(curve, [0.25, 0.1, close]), [0.25, 0.0, z]);
+            }
+        }
+    }
 }

@@ -100,12 +100,12 @@ impl<const K: usize> LinearConstraints<K> {
         }
     }
 
-    /// Forms and factors the Schur complement of the matrix that `cholesky` holds.
+    /// Forms and factors the Schur complement of the matrix that `cholesky` holds, of which `n` rows are of `u`.
     ///
     /// # Errors
     /// [`SolveError::Infeasible`] when the rows of `A` depend on each other.
-    pub fn prepare(&mut self, cholesky: &mut Cholesky) -> Result<(), SolveError> {
-        let (n, p) = (cholesky.pattern().n, self.rows.len());
+    pub fn prepare(&mut self, cholesky: &mut Cholesky, n: usize) -> Result<(), SolveError> {
+        let p = self.rows.len();
         self.response.clear();
         self.response.resize(n * p, [0.0]);
         for (row, column) in self.rows.iter().zip(self.response.chunks_exact_mut(n.max(1))) {

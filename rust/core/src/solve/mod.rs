@@ -18,6 +18,7 @@ mod problem;
 pub mod quadratic;
 mod reduced;
 mod session;
+mod stretching;
 
 pub use free_operator::FreeOperator;
 pub use problem::{Coupling, Problem, Settings, Solution, Solver, Status};

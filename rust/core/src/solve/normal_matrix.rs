@@ -6,6 +6,11 @@ use crate::error::SolveError;
 use crate::linear::pattern::LowerPattern;
 use crate::memory;
 use crate::solve::primal_dual::Stiffness;
+use crate::solve::stretching::Stretching;
+
+/// What is added to the stiffness of a block that is cut, as a part of its scale: where a cone is as good as straight, rounding would
+/// leave nothing that holds the new unknowns. A direction of Newton's method is not exact to so many digits.
+const LEAST_STIFFNESS: f64 = 1e-10;
 
 /// Where each product of two entries of a block lands in the lower triangle of `HᵀRH`.
 #[derive(Debug, Clone)]
@@ -13,6 +18,7 @@ pub struct NormalMatrix {
     /// Per block, for its entries `i >= j` in row order, the index into the values.
     landing: Vec<u32>,
     pattern: LowerPattern,
+    stretching: Option<Stretching>,
 }
 
 impl NormalMatrix {
@@ -21,30 +27,30 @@ impl NormalMatrix {
     /// # Errors
     /// [`SolveError::Memory`] when the system does not give what it takes.
     pub fn new(operator: &BlockRows) -> Result<Self, SolveError> {
-        let n = operator.n_columns;
-        let mut gathered = Buckets::try_new(n, |visit| {
-            (0..n).for_each(|j| visit(j, j as u32));
-            for b in 0..operator.n_blocks() {
-                let (columns, _) = operator.block(b);
-                for (i, &row) in columns.iter().enumerate() {
-                    columns[..i].iter().for_each(|&column| visit(column as usize, row));
-                }
-            }
-        })?;
-        let mut starts = memory::room(n + 1)?;
-        (0..n).for_each(|j| gathered.of_mut(j).sort_unstable());
-        let distinct = |j| gathered.of(j).chunk_by(|a, b| a == b).count();
-        let mut rows: Vec<usize> = memory::room((0..n).map(distinct).sum())?;
-        starts.push(0);
-        for j in 0..n {
-            let first = rows.len();
-            for &row in gathered.of(j) {
-                if rows.len() == first || rows[rows.len() - 1] != row as usize {
-                    rows.push(row as usize);
-                }
-            }
-            starts.push(rows.len());
+        Self::of(operator, None)
+    }
+
+    /// The same where no block has a negative weight: blocks with many columns are cut into pieces, and the matrix has further rows
+    /// for the unknowns between them, behind those of the operator. With zeros there on the right side its solutions are those of
+    /// the matrix that is not cut.
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`] when the system does not give what it takes.
+    pub fn stretched(operator: &BlockRows) -> Result<Self, SolveError> {
+        match Stretching::new(operator)? {
+            None => Self::new(operator),
+            Some(stretching) => Self::cut(stretching),
         }
+    }
+
+    fn cut(stretching: Stretching) -> Result<Self, SolveError> {
+        let rows = stretching.pattern().clone();
+        Self::of(&rows, Some(stretching))
+    }
+
+    fn of(operator: &BlockRows, stretching: Option<Stretching>) -> Result<Self, SolveError> {
+        let pattern = pattern_of(operator, |_| true)?;
+        let LowerPattern { starts, rows, .. } = &pattern;
         let size = |b| operator.block(b).0.len();
         let products = (0..operator.n_blocks()).map(|b| size(b) * (size(b) + 1) / 2).sum();
         let mut landing = memory::room(products)?;
@@ -58,7 +64,7 @@ impl NormalMatrix {
                 }
             }
         }
-        Ok(Self { landing, pattern: LowerPattern { n, starts, rows } })
+        Ok(Self { landing, pattern, stretching })
     }
 
     /// The lower triangle's pattern; every diagonal entry is there.
@@ -67,9 +73,21 @@ impl NormalMatrix {
         &self.pattern
     }
 
+    /// Whether an `operator` of the same pattern as the one before can be cut in the same way.
+    #[must_use]
+    pub fn fits(&self, operator: &BlockRows) -> bool {
+        self.stretching.as_ref().is_none_or(|stretching| stretching.fits(operator))
+    }
+
     /// The values of `HᵀRH + diag(d)`, one per entry of the pattern.
     pub fn assemble(&self, operator: &BlockRows, r: &[f64], diagonal: &[f64], values: &mut Vec<f64>) {
-        self.sum(operator, |b, x| x.map(|v| v * r[b]), diagonal, values);
+        match &self.stretching {
+            None => self.sum(operator, |b, x| x.map(|v| v * r[b]), diagonal, values),
+            Some(cut) => {
+                self.sum(&cut.rows(operator), |b, x| x.map(|v| v * r[cut.block(b)]), diagonal, values);
+                self.hold_unknowns(operator, values);
+            }
+        }
     }
 
     /// The values of `HᵀVH + diag(d)` for a matrix `V` per block.
@@ -80,7 +98,28 @@ impl NormalMatrix {
         diagonal: &[f64],
         values: &mut Vec<f64>,
     ) {
-        self.sum(operator, |b, x| stiffness[b].times(x), diagonal, values);
+        match &self.stretching {
+            None => self.sum(operator, |b, x| stiffness[b].times(x), diagonal, values),
+            Some(cut) => {
+                let weigh = |b: usize, x: &[f64; BLOCK]| {
+                    let stiffness = &stiffness[cut.block(b)];
+                    let least = if cut.is_piece(b) { LEAST_STIFFNESS * stiffness.scale } else { 0.0 };
+                    let product = stiffness.times(x);
+                    std::array::from_fn(|r| product[r] + least * x[r])
+                };
+                self.sum(&cut.rows(operator), weigh, diagonal, values);
+                self.hold_unknowns(operator, values);
+            }
+        }
+    }
+
+    /// Unknowns between the pieces of a block without weight are zero.
+    fn hold_unknowns(&self, operator: &BlockRows, values: &mut [f64]) {
+        for &start in &self.pattern.starts[operator.n_columns..self.pattern.n] {
+            if values[start] == 0.0 {
+                values[start] = 1.0;
+            }
+        }
     }
 
     fn sum(
@@ -106,6 +145,38 @@ impl NormalMatrix {
             values[self.pattern.starts[j]] += d;
         }
     }
+}
+
+/// The lower triangle of `HᵀH` where only the blocks count that `is_taken` takes; every diagonal entry is there.
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give what it takes.
+pub(super) fn pattern_of(operator: &BlockRows, is_taken: impl Fn(usize) -> bool) -> Result<LowerPattern, SolveError> {
+    let n = operator.n_columns;
+    let mut gathered = Buckets::try_new(n, |visit| {
+        (0..n).for_each(|j| visit(j, j as u32));
+        for b in (0..operator.n_blocks()).filter(|&b| is_taken(b)) {
+            let (columns, _) = operator.block(b);
+            for (i, &row) in columns.iter().enumerate() {
+                columns[..i].iter().for_each(|&column| visit(column as usize, row));
+            }
+        }
+    })?;
+    let mut starts = memory::room(n + 1)?;
+    (0..n).for_each(|j| gathered.of_mut(j).sort_unstable());
+    let distinct = |j| gathered.of(j).chunk_by(|a, b| a == b).count();
+    let mut rows: Vec<usize> = memory::room((0..n).map(distinct).sum())?;
+    starts.push(0);
+    for j in 0..n {
+        let first = rows.len();
+        for &row in gathered.of(j) {
+            if rows.len() == first || rows[rows.len() - 1] != row as usize {
+                rows.push(row as usize);
+            }
+        }
+        starts.push(rows.len());
+    }
+    Ok(LowerPattern { n, starts, rows })
 }
 
 #[cfg(test)]

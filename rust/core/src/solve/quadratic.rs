@@ -93,7 +93,10 @@ struct Newton<'a> {
 
 impl<'a> Newton<'a> {
     fn new(problem: &'a Problem<'a>, free: &'a FreeOperator, memory_limit: Option<usize>) -> Result<Self> {
-        let normal = NormalMatrix::new(&free.operator)?;
+        // Negative weights tell of a matrix that may not be definite, and a cut block with one makes any that is not.
+        let negative = problem.weights.iter().any(|w| *w < 0.0);
+        let normal =
+            if negative { NormalMatrix::new(&free.operator)? } else { NormalMatrix::stretched(&free.operator)? };
         let mut cholesky = Cholesky::analyze(normal.pattern().clone(), memory_limit)?;
         if free.free.is_empty() {
             return Ok(Self { problem, free, cholesky });
@@ -110,7 +113,6 @@ impl<'a> Newton<'a> {
             Some(_) => SHIFT_UNDER_CONSTRAINTS,
         };
         // With negative weights a matrix that is far from definite tells of a problem that is not convex.
-        let negative = problem.weights.iter().any(|w| *w < 0.0);
         let largest =
             if negative && problem.linear_constraints.is_none() { SHIFT_GROWTH * SHIFT } else { LARGEST_SHIFT };
         loop {
@@ -136,7 +138,7 @@ impl<'a> Newton<'a> {
         let scale = Problem::gap_scale(at_target, rounding);
         let mut constraints = self.constraints(c)?;
         if let Some(constraints) = &mut constraints {
-            constraints.prepare(&mut self.cholesky)?;
+            constraints.prepare(&mut self.cholesky, self.free.free.len())?;
         }
         // One step from the target, corrected to satisfy the constraints.
         let gradient = self.gradient(u, target);

@@ -118,7 +118,8 @@ impl Session {
             Some(s)
                 if s.free.free == free.free
                     && s.free.operator.starts == free.operator.starts
-                    && s.free.operator.columns == free.operator.columns =>
+                    && s.free.operator.columns == free.operator.columns
+                    && s.system.as_ref().is_none_or(|system| system.fits(&free.operator)) =>
             {
                 s.free = free;
             }

@@ -1,5 +1,6 @@
 //! The linear system of the fast solver: pattern and ordering once, factorization as often as the penalties change.
 
+use crate::block_rows::BlockRows;
 use crate::error::SolveError;
 use crate::linear::cholesky::Cholesky;
 use crate::linear::pattern::LowerPattern;
@@ -36,11 +37,17 @@ impl System {
     /// # Errors
     /// [`SolveError::Memory`] when the factor does not fit into `memory_limit` bytes.
     pub fn new(free: &FreeOperator, memory_limit: Option<usize>) -> Result<Self, SolveError> {
-        let normal = NormalMatrix::new(&free.operator)?;
+        let normal = NormalMatrix::stretched(&free.operator)?;
         let LowerPattern { n, starts, rows } = normal.pattern();
         let pattern = LowerPattern { n: *n, starts: memory::twin(starts)?, rows: memory::twin(rows)? };
         let cholesky = Cholesky::analyze(pattern, memory_limit)?;
         Ok(Self { normal, cholesky, values: Vec::new(), proximal: Vec::new(), scale: 1.0, refined: false })
+    }
+
+    /// Whether the matrix of `operator`, of the same pattern as the one before, has this pattern as well.
+    #[must_use]
+    pub fn fits(&self, operator: &BlockRows) -> bool {
+        self.normal.fits(operator)
     }
 
     /// Numeric factorizations made so far.
@@ -96,7 +103,7 @@ impl System {
         }
         self.scale = 1.0;
         if let Some(constraints) = &mut reduced.constraints {
-            constraints.prepare(&mut self.cholesky)?;
+            constraints.prepare(&mut self.cholesky, twice.len())?;
         }
         Ok(())
     }
@@ -150,14 +157,18 @@ impl System {
             let target = &reduced.target[i];
             *x = std::array::from_fn(|c| (row[c] + a * target[c] + p * x[c]) / self.scale);
         }
-        let right = if self.refined { u.to_vec() } else { Vec::new() };
-        self.substitute(reduced.n_columns, u);
         if self.refined {
-            let mut rest = self.residual(&right, u);
+            let mut right = u.to_vec();
+            right.resize(self.normal.pattern().n, [0.0; K]);
+            let mut solution = right.clone();
+            self.substitute(reduced.n_columns, &mut solution);
+            let mut rest = self.residual(&right, &solution);
             self.substitute(reduced.n_columns, &mut rest);
-            for (u, rest) in u.iter_mut().zip(&rest) {
-                u.iter_mut().zip(rest).for_each(|(x, r)| *x += r);
+            for ((u, x), rest) in u.iter_mut().zip(&solution).zip(&rest) {
+                *u = std::array::from_fn(|c| x[c] + rest[c]);
             }
+        } else {
+            self.substitute(reduced.n_columns, u);
         }
         let mut y = reduced.constraints.as_ref().map_or_else(Vec::new, |constraints| constraints.correct(u));
         y.iter_mut().flatten().for_each(|y| *y *= self.scale);
