@@ -1,4 +1,4 @@
-"""A vertex with hundreds of neighbors: energies with a Hessian or Laplacian at vertices have a dense row there."""
+"""A vertex with hundreds of neighbors: energies with a Hessian or Laplacian at vertices have a dense row."""
 
 import numpy as np
 import pytest
