@@ -24,6 +24,7 @@ NOISE_STRENGTH = 0.6
 BANDS = 10
 HOUSE_NOISE = 0.1
 SEGMENT_COUNTS = (5, None, 30)
+FACET_COUNTS = {"bust": (80, 200, 400), "spot": (60, 150)}
 
 
 def stylized(vertices: np.ndarray, faces: np.ndarray, **changes: object) -> np.ndarray:
@@ -177,6 +178,27 @@ def segments() -> None:
     pictures.sheet(PICTURES / "segments.png", [row], captions=[captions], text_pixels=15)
 
 
+def facets() -> None:
+    """Facets of the bust after the flow, and of Spot as it is, in several numbers from one run each."""
+    import pictures  # noqa: PLC0415
+    import ridgeform  # noqa: PLC0415
+
+    bust, spot = source("bust"), source("spot")
+    row, captions = [], []
+    for (points, triangles), view, counts in (
+        ((stylized(*bust), bust[1]), BUST_VIEW, FACET_COUNTS["bust"]),
+        (spot, SPOT_VIEW, FACET_COUNTS["spot"]),
+    ):
+        found = ridgeform.facet(ridgeform.Mesh(points, triangles), facets=counts[0])
+        for count in counts:
+            made = found.at(facets=count)
+            print(made, flush=True)
+            look = {"view": view, "size": (260, 340), "frame": points}
+            row.append(pictures.render(made.vertices, made.faces, **look))
+            captions.append(f"{made.n_facets} facets")
+    pictures.sheet(PICTURES / "facets.png", [row], captions=[captions], text_pixels=15)
+
+
 def holes(name: str) -> None:
     """A picture of the page on filling holes."""
     import hole_pictures  # noqa: PLC0415
@@ -192,6 +214,7 @@ DRAWN = {
     "noisy_cube": noisy_cube,
     "attributes": attributes,
     "segments": segments,
+    "facets": facets,
     "holes_box": lambda: holes("box"),
     "holes_checker": lambda: holes("checker"),
 }

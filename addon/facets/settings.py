@@ -24,7 +24,7 @@ class FacetSettings(Settings):
         "Mode",
         "What determines how many facets there are",
         (
-            ("AUTO", "Automatic", "As many as the shape gives evidence for"),
+            ("AUTO", "Auto", "As many as the shape gives evidence for"),
             ("COUNT", "Count", "As many as you choose"),
             ("ERROR", "Error", "As many as it takes to stay that close to the mesh"),
         ),
@@ -93,7 +93,7 @@ class FacetSettings(Settings):
 
 
 PRESETS = {
-    "Automatic": {"mode": "AUTO", "facets": 60},
+    "Auto": {"mode": "AUTO", "facets": 60},
     "Low Poly": {"mode": "COUNT", "facets": 150},
     "Gemstone": {"mode": "COUNT", "facets": 30},
     "Close Fit": {"mode": "ERROR", "error": 0.1},

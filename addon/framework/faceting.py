@@ -287,7 +287,7 @@ def _charts(
             material = layer.values[old.faces, 0].astype(np.int64)
     label = np.full(m, -1, np.int64)
     label[weld.rows] = found.labels
-    rows = np.stack([label, material, _islands(old, layers)], axis=1)
+    rows = np.stack([label, material, _islands(old, layers, label)], axis=1)
     charts, chart = np.unique(rows, axis=0, return_inverse=True)
     chart = chart.reshape(-1)
     a, b, c = (old.coordinates[old.triangles[:, corner]] for corner in range(3))
@@ -306,15 +306,19 @@ def _charts(
     return chart, np.where(anchors >= 0, first[anchors], -1)
 
 
-def _islands(old: rebuilding.Triangulation, layers: mesh_layers.Layers) -> np.ndarray:
-    """The UV island (m,) of each triangle: what is reached over vertices with the same UVs on both sides."""
+def _islands(old: rebuilding.Triangulation, layers: mesh_layers.Layers, label: np.ndarray) -> np.ndarray:
+    """The UV island (m,) of each triangle within its label (m,).
+
+    It is what is reached over vertices with the same UVs, without going around by other labels: the two sides
+    of a seam can be one island elsewhere.
+    """
     uvs = layers.uv_layers()
     if not uvs:
         return np.zeros(len(old.triangles), np.int64)
     corners = old.corners.ravel()
     places = np.concatenate([layer[corners] for layer in uvs], axis=1)
     vertices = np.unique(old.coordinates[old.triangles.ravel()], axis=0, return_inverse=True)[1]
-    rows = np.concatenate([vertices.reshape(-1, 1), places], axis=1)
+    rows = np.concatenate([np.repeat(label, 3)[:, None], vertices.reshape(-1, 1), places], axis=1)
     joined, number = np.unique(rows, axis=0, return_inverse=True)
     number = number.reshape(-1, 3)
     return connected_parts(number, len(joined))[number[:, 0]]

@@ -120,13 +120,14 @@ def _make_facets(
 ) -> None:
     places = source.facetable.weld.places(made.coordinates)
     mesh = ridgeform.Mesh(places, source.facetable.weld.triangles)
-    # What the flow has made flat are the facets that it leaves.
-    wanted = chosen(settings, "facets")
+    wanted, flow = chosen(settings, "facets"), made.flow
+    # What the flow has made flat are the facets that it leaves; where hardly anything is, the shape says.
+    flat = int(flow.n_facets) if flow.flat_share[-1] >= FEW_FLAT else 0
     found, facet_mesh = faceting.facets_of(
         source.facetable,
         mesh,
         made.coordinates,
-        facets=wanted or int(made.flow.n_facets) or None,
+        facets=wanted or flat or None,
         flat="SHARP" in settings.marks,
         progress=progress,
         check=check,

@@ -75,7 +75,6 @@ class StylizeSettings(Settings):
             ),
         ),
         default="KEEP",
-        expand=True,
     )
     reduce_ratio: factor(
         "Ratio",
@@ -99,7 +98,7 @@ class StylizeSettings(Settings):
         shown=lambda settings: settings.finish == "FACETS",
         implies={"finish": "FACETS"},
         optional=False,
-        otherwise="there are as many as the flow has made",
+        otherwise="there are as many as the flow has made flat",
     )
     steps: integer(
         "Steps",

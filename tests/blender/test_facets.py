@@ -232,20 +232,25 @@ def test_loose_parts_stay():
     assert len(mesh.vertices) == 10 and len(mesh.edges) == 13 and len(mesh.polygons) == 6
 
 
-def test_a_mirrored_half_stays_on_its_plane_and_closes():
+def half_ball():
+    """Half a ball of quads under a Mirror modifier."""
     obj = ball()
-    mesh = obj.data
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.ops.mesh.select_all(action="SELECT")
     bpy.ops.mesh.bisect(plane_co=(0, 0, 0), plane_no=(1, 0, 0), clear_inner=True)
     bpy.ops.object.mode_set(mode="OBJECT")
     obj.modifiers.new("Mirror", "MIRROR")
+    return obj
+
+
+def test_a_mirrored_half_stays_on_its_plane_and_closes():
+    obj = half_ball()
+    mesh = obj.data
     facet(mode="COUNT", facets=25)
     ends = mesh_io.edges(mesh)[np.bincount(mesh_io.corner_edges(mesh)) == 1]
     assert len(ends) and (kit.coordinates(obj)[ends, 0] == 0.0).all()
     assert off_planes(mesh) < 1e-5
-    whole = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
-    assert is_closed(whole)
+    assert is_closed(obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data)
 
 
 def test_several_objects_and_linked_ones():
@@ -324,13 +329,12 @@ def test_finish_facets_makes_facets_of_the_flow():
 def test_finish_facets_is_the_flow_and_then_facets():
     one, two = kit.bumpy_box("One", cuts=6), None
     given = {"steps": 4, "strength": 0.4}
-    bpy.ops.ridgeform.stylize(finish="FACETS", **given)
+    bpy.ops.ridgeform.stylize(finish="FACETS", use_facets=True, facets=30, **given)
     made = kit.coordinates(one)
     kit.empty_scene()
     two = kit.bumpy_box("Two", cuts=6)
     bpy.ops.ridgeform.stylize(marks=set(), **given)
-    (entry,) = job.last_summary()
-    facet(mode="COUNT", facets=entry["facets"])
+    facet(mode="COUNT", facets=30)
     np.testing.assert_array_equal(made, kit.coordinates(two))
 
 
@@ -405,3 +409,34 @@ def test_split_seams_of_a_file_stay_closed(tmp_path):
     obj.select_set(True)
     facet(mode="COUNT", facets=20)
     assert is_closed(obj.data) and len(obj.data.polygons) == 20
+
+
+def test_a_mirrored_half_gets_facets_after_the_flow():
+    obj = half_ball()
+    bpy.ops.ridgeform.stylize(steps=3, finish="FACETS", use_facets=True, facets=25)
+    ends = mesh_io.edges(obj.data)[np.bincount(mesh_io.corner_edges(obj.data)) == 1]
+    assert len(ends) and (kit.coordinates(obj)[ends, 0] == 0.0).all()
+    assert is_closed(obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data)
+
+
+def test_where_hardly_anything_became_flat_the_shape_says_how_many():
+    obj = ball()
+    bpy.ops.ridgeform.stylize(finish="FACETS")
+    (entry,) = job.last_summary()
+    assert any("hardly anything became flat" in note for note in entry["warnings"])
+    assert 20 < len(obj.data.polygons) < 150
+
+
+def test_no_texture_wraps_around_at_a_seam():
+    # One island, whose two ends meet at a seam.
+    bpy.ops.mesh.primitive_torus_add()
+    obj = bpy.context.object
+    before = kit.coordinates(obj)
+    facet(mode="COUNT", facets=60)
+    along = np.array([uv.uv[0] for uv in obj.data.uv_layers[0].data])
+    places = kit.coordinates(obj)
+    for face in obj.data.polygons:
+        corners = list(face.loop_indices)
+        around = np.unwrap(np.arctan2(*places[list(face.vertices)][:, 1::-1].T))
+        assert np.ptp(along[corners]) < np.ptp(around) / (2 * np.pi) + 0.1
+    assert len(before) > len(places)

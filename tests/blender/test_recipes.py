@@ -52,7 +52,7 @@ def test_the_python_of_a_recipe_runs(title, code):
         assert len([group for group in obj.vertex_groups if group.name.startswith("ridgeform_segment")]) > 3
     if "diffusion" in code:
         assert any(child.type == "CURVES" for child in obj.children)
-    if "LOW_POLY" in code:
+    if "FACETS" in code:
         assert len(obj.data.polygons) < 100
 
 
