@@ -25,7 +25,7 @@ from ..framework.sources import (
 from ..framework.surface import Surface, painted_ridges, surface_of
 from . import earlier, groups, layers, slots
 from .existing import border_weights
-from .parts import separate
+from .objects import separate
 from .settings import by_count, of_parts, parts_options, segment_options
 
 SUFFIX = "_sharpened"
