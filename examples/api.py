@@ -36,6 +36,10 @@ print(found.n_segments, np.bincount(found.labels))  # the two sides of the valle
 limbs = ridgeform.parts(mesh, n_parts=2)
 print(limbs.n_parts, limbs.range, limbs.labels_at(1).max())
 
+# %% facet
+low_poly = ridgeform.facet(mesh, facets=2)
+print(low_poly.n_facets, low_poly.planes[:, :3].round(2), low_poly.at(error=0.1).n_facets)
+
 # %% restore
 part = ridgeform.restore(bumpy, regularize=2.0)
 print(part.status, [surface["kind"] for surface in part.surfaces], part.n_folded)

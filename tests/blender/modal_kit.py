@@ -24,8 +24,6 @@ from bl_ext.user_default.ridgeform.framework import modal
 from bl_ext.user_default.ridgeform.framework.settings import defaults_of
 from bl_ext.user_default.ridgeform.holes.settings import HoleSettings
 from bl_ext.user_default.ridgeform.holes.tool import HoleFilling
-from bl_ext.user_default.ridgeform.restore.settings import RestoreSettings
-from bl_ext.user_default.ridgeform.restore.tool import Restoring
 from bl_ext.user_default.ridgeform.segments.settings import SegmentSettings
 from bl_ext.user_default.ridgeform.segments.tool import Segmenting
 from bl_ext.user_default.ridgeform.stylize.settings import StylizeSettings
@@ -35,7 +33,6 @@ PATIENCE = 120.0
 TOOLS = {
     "stylize": (Stylization, StylizeSettings, {"steps": 3}),
     "facet": (Faceting, FacetSettings, {"mode": "COUNT", "facets": 20}),
-    "restore": (Restoring, RestoreSettings, {}),
     "segment": (Segmenting, SegmentSettings, {}),
     "fill_holes": (HoleFilling, HoleSettings, {}),
     "denoise": (Denoising, DenoiseSettings, {"attribute": "heat"}),

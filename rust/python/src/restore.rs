@@ -18,7 +18,7 @@ pub struct Restored {
     labels: Py<PyArray1<i32>>,
     /// For each surface a dict that JSON can hold: "kind" ("plane", "sphere", "cylinder", "cone", "torus" or "free"), its parameters
     /// ("normal" and "offset"; "center" and "radius"; "point", "axis" and "radius"; "apex", "axis", half "angle" in radians,
-    /// "point" on the axis and "radius" there; "center", "axis", "major" and "minor"), "inside" (whether the faces of a curved one look to its
+    /// "point" on the axis and "radius" there; "center", "axis", "major" and "minor"), "inside" (whether the faces look to its
     /// inside, as in a bore), "rms" (root mean square distance of the vertices as they came), and "faces", how many.
     surfaces: Py<PyList>,
     /// Standard deviation of the noise along the normal, in the units of the input: as given or as found.

@@ -60,7 +60,7 @@ pub fn labelling(domain: &Domain<'_>, start: &[i32], progress: &Progress) -> Res
         relabel::relabel(domain, &mut state, progress)?;
         state.fit_all(domain, progress)?;
         let after = state.energy(domain);
-        if !(after < energy) {
+        if after.is_nan() || after >= energy {
             // Fits are local: what they lose is not taken.
             if after > energy {
                 state = before;

@@ -123,7 +123,7 @@ impl Samples {
     /// The same about their center, in the unit of their size; with both.
     fn normalized(&self) -> Option<(Self, Point, f64)> {
         let total = self.total();
-        if !(total > 0.0) {
+        if total.is_nan() || total <= 0.0 {
             return None;
         }
         let each = || self.points.iter().zip(&self.weights);
@@ -149,7 +149,7 @@ pub fn fit(kind: Kind, samples: &Samples, sigma: f64) -> Option<Fit> {
     let sigma = sigma / size;
     let mut begun: Vec<(f64, Surface)> = starts(kind, &here)
         .into_iter()
-        .filter(|surface| is_sound(surface))
+        .filter(is_sound)
         .map(|surface| (here.spread(&surface), surface))
         .filter(|(spread, _)| spread.is_finite())
         .collect();
@@ -196,7 +196,7 @@ fn refined(start: Surface, samples: &Samples, sigma: f64) -> (Surface, f64) {
         let step = damped(&matrix, &right, damping);
         let next = surface.moved(&step);
         let after = soft_cost(samples, &next, width);
-        if !(after <= before) {
+        if after.is_nan() || after > before {
             damping *= 10.0;
             if damping > 1e6 {
                 break;
@@ -211,10 +211,9 @@ fn refined(start: Surface, samples: &Samples, sigma: f64) -> (Surface, f64) {
             (best, least) = (surface, cost);
         }
         let narrower = (samples.spread(&surface) / 0.674).clamp(sigma, width);
-        if gained <= SETTLED * after && narrower >= 0.9 * width {
-            if width <= sigma || narrower > 0.999 * width {
-                break;
-            }
+        let is_still = gained <= SETTLED * after && narrower >= 0.9 * width;
+        if is_still && (width <= sigma || narrower > 0.999 * width) {
+            break;
         }
         width = narrower;
         before = soft_cost(samples, &surface, width);
@@ -250,10 +249,9 @@ fn normal_equations(samples: &Samples, surface: &Surface, width: f64) -> (Matrix
             }
         }
     }
-    for i in 0..COUNT {
-        for j in 0..i {
-            matrix[j][i] = matrix[i][j];
-        }
+    let lower = matrix;
+    for (i, row) in matrix.iter_mut().enumerate() {
+        row.iter_mut().enumerate().skip(i + 1).for_each(|(j, entry)| *entry = lower[j][i]);
     }
     (matrix, right)
 }

@@ -31,7 +31,8 @@ pub fn meeting(surfaces: &[&Surface], start: Point, reach: f64) -> Option<Point>
             .into_iter()
             .fold([0.0; 3], |sum, (direction, length)| add(sum, scale(direction, length)));
         point = add(point, step);
-        if !(distance(point, start) <= reach) {
+        let moved = distance(point, start);
+        if moved.is_nan() || moved > reach {
             return None;
         }
         if norm(step) <= 1e-13 * (norm(point) + reach) {

@@ -18,6 +18,8 @@ pub(super) struct Faces {
     pub centers: Vec<Point>,
     pub moments: Vec<Moments>,
     pub labels: Vec<u32>,
+    /// Whether each stays as it is: a facet of its own.
+    is_held: Vec<bool>,
     area: f64,
     tree: ClosestPoint,
 }
@@ -33,11 +35,19 @@ pub(super) struct Distances {
 
 impl Faces {
     /// The faces with these places, each of the facet `labels` names.
-    pub(super) fn new(places: Vec<[Point; 3]>, labels: Vec<u32>) -> Self {
+    pub(super) fn new(places: Vec<[Point; 3]>, labels: Vec<u32>, is_held: Vec<bool>) -> Self {
         let moments: Vec<Moments> = places.iter().map(|&corners| Moments::of(corners)).collect();
         let area = moments.iter().map(|m| m.area).sum();
         let tree = ClosestPoint::new(places.clone());
-        Self { centers: places.iter().map(|&corners| centroid(corners)).collect(), places, moments, labels, area, tree }
+        Self {
+            centers: places.iter().map(|&corners| centroid(corners)).collect(),
+            places,
+            moments,
+            labels,
+            is_held,
+            area,
+            tree,
+        }
     }
 
     /// The point of the mesh nearest to another.
@@ -60,15 +70,21 @@ impl Faces {
     /// The facet nearest to each face among those that look to the same side, and how far that is.
     pub(super) fn nearest(&self, shape: &Shape, inspection: &Inspection) -> (Vec<u32>, Distances) {
         let tree = ClosestPoint::new(inspection.places(shape));
-        let faces_along = |k: u32, normal: Point| dot(shape.facets[k as usize].plane.normal, normal) > 0.0;
+        let is_like = |k: u32, normal: Point| {
+            let facet = &shape.facets[k as usize];
+            !facet.is_held && dot(facet.plane.normal, normal) > 0.0
+        };
         let found: Vec<(u32, f64)> = self
             .places
             .par_iter()
             .enumerate()
             .map(|(f, &corners)| {
+                if self.is_held[f] {
+                    return (self.labels[f], 0.0);
+                }
                 let normal = area_vector(corners);
                 let center = self.centers[f];
-                let accept = |t: u32| faces_along(inspection.owners[t as usize], normal);
+                let accept = |t: u32| is_like(inspection.owners[t as usize], normal);
                 let near = tree.closest(center, None, accept);
                 let label = near.map_or(self.labels[f], |near| inspection.owners[near.triangle as usize]);
                 let guess = near.map(|near| near.triangle);

@@ -2,14 +2,14 @@
 
 use std::collections::HashSet;
 
-use super::constants::{AT_CORNERS, FLAT, PULL, REPAIRS, ROUNDS, STAY, TRIES};
+use super::constants::{FITTING, FLAT, IDLE, NEARER, PULL, REPAIRS, STAY, TRIES};
 use super::faces::Faces;
 use super::faults::Inspection;
 use super::moments::{Moments, Plane};
 use super::repair::{hold, repair};
 use super::shape::{Corner, Facet, Shape};
 use super::solve::flatten;
-use crate::mesh::vector::{area_vector, between, distance, norm, unit, Point};
+use crate::mesh::vector::{area_vector, between, centroid, distance, norm, unit, Point};
 use crate::progress::Progress;
 use crate::Result;
 
@@ -22,7 +22,7 @@ pub(super) fn settle(shape: &mut Shape, faces: &mut Faces, progress: &Progress) 
         // What crosses on the mesh itself is not held against the facets.
         let before = Inspection::new(shape, true).pairs;
         let homes: Vec<Point> = shape.corners.iter().map(|corner| corner.home).collect();
-        flatten(shape, STAY[0], &homes)?;
+        flatten(shape, STAY, &homes)?;
         let faulty = Inspection::new(shape, false).faults(&before);
         if faulty.is_empty() || round == REPAIRS || progress.is_finishing() || !repair(shape, faces, &faulty) {
             break;
@@ -31,37 +31,40 @@ pub(super) fn settle(shape: &mut Shape, faces: &mut Faces, progress: &Progress) 
     Ok(())
 }
 
-/// Gives every face to the nearest facet and fits the planes anew, in turns, as long as facets stay sound; the nearest shape stays.
+/// Gives every face to the nearest facet and fits the planes anew, in turns, as long as facets stay sound and come nearer.
 pub(super) fn refine(shape: &mut Shape, faces: &mut Faces, progress: &Progress) -> Result<()> {
-    let mut inspection = Inspection::new(shape, true);
-    let (mut labels, mut least) = measured(shape, faces, &inspection);
-    let mut best = shape.clone();
-    for _ in 0..ROUNDS {
-        faces.labels = labels;
+    let mut best = (measured(shape, faces, &Inspection::new(shape, true)).1, shape.clone());
+    let mut n_idle = 0;
+    while n_idle < IDLE && !progress.is_finishing() {
+        let inspection = Inspection::new(shape, true);
+        faces.labels = measured(shape, faces, &inspection).0;
         faces.fit(shape);
         let Some(next) = fitted(shape, faces, &inspection, progress)? else { break };
         *shape = next;
-        inspection = Inspection::new(shape, true);
-        let distance;
-        (labels, distance) = measured(shape, faces, &inspection);
-        if distance < least {
-            (least, best) = (distance, shape.clone());
-        }
-        if progress.is_finishing() {
-            break;
+        let distance = measured(shape, faces, &Inspection::new(shape, false)).1;
+        n_idle = if distance < NEARER * best.0 { 0 } else { n_idle + 1 };
+        if distance < best.0 {
+            best = (distance, shape.clone());
         }
     }
-    *shape = best;
+    *shape = best.1;
     Ok(())
 }
 
 /// The facet nearest to each face, and the distance of both surfaces from each other: from the faces to the facets, and from the
-/// corners to the mesh, where facets are farthest from it.
+/// facets to the mesh.
 fn measured(shape: &Shape, faces: &Faces, inspection: &Inspection) -> (Vec<u32>, f64) {
     let (labels, distances) = faces.nearest(shape, inspection);
-    let off = |corner: &Corner| distance(corner.point, faces.on_mesh(corner.point)).powi(2);
-    let corners = shape.corners.iter().map(off).sum::<f64>() / shape.corners.len().max(1) as f64;
-    (labels, (distances.rms.powi(2) + AT_CORNERS * corners).sqrt())
+    let (mut squares, mut total) = (0.0, 0.0);
+    for triangle in inspection.places(shape) {
+        let area = norm(area_vector(triangle));
+        let middle = centroid(triangle);
+        // The rule of three points, exact for squares.
+        let points = triangle.map(|corner| between(middle, corner, 0.5));
+        squares += area / 3.0 * points.map(|p| distance(p, faces.on_mesh(p)).powi(2)).iter().sum::<f64>();
+        total += area;
+    }
+    (labels, (distances.rms.powi(2) + squares / f64::max(total, f64::MIN_POSITIVE)).sqrt())
 }
 
 /// The shape with planes fitted to its faces, if that can be had without facets that cross where none did.
@@ -71,7 +74,7 @@ fn fitted(shape: &mut Shape, faces: &Faces, before: &Inspection, progress: &Prog
     for _ in 0..TRIES {
         progress.check()?;
         let mut trial = shape.clone();
-        let off = flatten(&mut trial, STAY[1], &aims)?;
+        let off = flatten(&mut trial, FITTING, &aims)?;
         let mut faulty = Inspection::new(&trial, false).faults(&before.pairs);
         faulty.retain(|k| !before.crossed.contains(k));
         if faulty.is_empty() {
@@ -83,13 +86,15 @@ fn fitted(shape: &mut Shape, faces: &Faces, before: &Inspection, progress: &Prog
 }
 
 /// Leaves triangles of the facets that did not come out flat or simple.
-pub(super) fn fold(shape: &mut Shape) {
+pub(super) fn fold(shape: &mut Shape, faces: &mut Faces) {
     let inspection = Inspection::new(shape, false);
     let crossed: HashSet<u32> = inspection.crossed.iter().copied().collect();
     let mut facets = Vec::with_capacity(shape.facets.len());
+    let mut place = Vec::with_capacity(shape.facets.len());
     for (k, facet) in (0..).zip(&shape.facets) {
+        place.push(facets.len() as u32);
         let off = facet.corners().map(|c| facet.plane.height(shape.point(c)).abs()).fold(0.0, f64::max);
-        if off <= FLAT && !crossed.contains(&k) {
+        if facet.is_held || (off <= FLAT && !crossed.contains(&k)) {
             facets.push(facet.clone());
             continue;
         }
@@ -98,8 +103,23 @@ pub(super) fn fold(shape: &mut Shape) {
             let corners = triangle.map(|c| shape.point(c));
             let area = area_vector(corners);
             let plane = if norm(area) > 0.0 { Plane::through(corners[0], unit(area)) } else { facet.plane };
-            facets.push(Facet { loops: vec![triangle.to_vec()], plane, moments: Moments::of(corners) });
+            let moments = Moments::of(corners);
+            facets.push(Facet { loops: vec![triangle.to_vec()], plane, moments, is_held: false });
         }
     }
     shape.facets = facets;
+    faces.labels.iter_mut().for_each(|label| *label = place[*label as usize]);
+}
+
+/// Puts the facets that were made before the faces that stay; returns how many they are.
+pub(super) fn order(shape: &mut Shape, faces: &mut Faces) -> usize {
+    let (mut made, held): (Vec<u32>, Vec<u32>) =
+        (0..shape.facets.len() as u32).partition(|&k| !shape.facets[k as usize].is_held);
+    let n_made = made.len();
+    made.extend(held);
+    let mut place = vec![0; made.len()];
+    (0..).zip(&made).for_each(|(fresh, &k)| place[k as usize] = fresh);
+    faces.labels.iter_mut().for_each(|label| *label = place[*label as usize]);
+    shape.facets = made.iter().map(|&k| shape.facets[k as usize].clone()).collect();
+    n_made
 }

@@ -1,8 +1,9 @@
 //! Merging faces into ever fewer facets, in the order of what that costs.
 
 use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::collections::{BinaryHeap, HashMap};
 
+use super::constants::FLAT;
 use super::moments::Moments;
 use super::regions::{Regions, Set};
 use crate::mesh::partition::Partition;
@@ -35,7 +36,22 @@ struct Merging<'r, 'a, W> {
     energies: Vec<f64>,
     stamps: Vec<u32>,
     heap: BinaryHeap<Offer>,
+    refused: Refused,
     weight: W,
+}
+
+/// Pairs that could not be merged, or not alone, at both of their regions.
+#[derive(Default)]
+struct Refused(HashMap<u32, Vec<[u32; 2]>>);
+
+impl Refused {
+    fn push(&mut self, pair: [u32; 2]) {
+        pair.into_iter().for_each(|region| self.0.entry(region).or_default().push(pair));
+    }
+
+    fn take(&mut self, region: u32) -> Vec<[u32; 2]> {
+        self.0.remove(&region).unwrap_or_default()
+    }
 }
 
 /// Merges regions, whose `moments` are given, until none can be merged with another. Regions that are `held` are none of them.
@@ -51,7 +67,15 @@ pub(super) fn merges(
     let mut total: f64 = fits.iter().map(|fit| fit.squared_distance).sum();
     let n = moments.len();
     let energies = fits.iter().map(|fit| fit.energy).collect();
-    let mut merging = Merging { regions, moments, energies, stamps: vec![0; n], heap: BinaryHeap::new(), weight };
+    let mut merging = Merging {
+        regions,
+        moments,
+        energies,
+        stamps: vec![0; n],
+        heap: BinaryHeap::new(),
+        refused: Refused::default(),
+        weight,
+    };
     for p in (0..n as u32).filter(|&p| !held[p as usize]) {
         for (q, border) in merging.regions.neighbors(p) {
             if q > p && !held[q as usize] {
@@ -69,10 +93,17 @@ pub(super) fn merges(
             progress.report(Report { fraction, stage: "merging".into(), ..Report::default() });
         }
         if merging.stamp(&set) != stamp {
+            if !set.is_pair() {
+                merging.propose_again(set.first_two());
+            }
             continue;
         }
-        let Some(whole) = merging.regions.closure(set, |r| held[r as usize]) else { continue };
+        let Some(whole) = merging.regions.closure(set, |r| held[r as usize], |set| merging.cost(set)) else {
+            merging.refused.push(set.first_two());
+            continue;
+        };
         if whole != set {
+            merging.refused.push(set.first_two());
             merging.offer(whole, cost);
             continue;
         }
@@ -98,6 +129,8 @@ pub(super) fn merges(
             if !held[r as usize] {
                 merging.propose(kept, r, &border);
             }
+            // What could not be merged beside something else may be now.
+            merging.refused.take(r).into_iter().for_each(|pair| merging.propose_again(pair));
         }
     }
     Ok(made)
@@ -112,6 +145,14 @@ impl<W: Fn(u32) -> f64> Merging<'_, '_, W> {
         self.heap.push(Reverse((Ordered(cost), set, self.stamp(&set))));
     }
 
+    /// Offers to merge a pair that was refused before, if both are still neighbors.
+    fn propose_again(&mut self, [p, q]: [u32; 2]) {
+        let border = self.regions.between(p, q);
+        if !border.is_empty() {
+            self.propose(p, q, &border);
+        }
+    }
+
     /// Offers to merge several regions, for no less than `least`.
     fn offer(&mut self, set: Set, least: f64) {
         let cost = self.cost(&set).max(least);
@@ -120,7 +161,8 @@ impl<W: Fn(u32) -> f64> Merging<'_, '_, W> {
 
     fn cost(&self, set: &Set) -> f64 {
         let joined = set.iter().fold(Moments::default(), |sum, r| sum.plus(&self.moments[r as usize]));
-        joined.fit().energy - set.iter().map(|r| self.energies[r as usize]).sum::<f64>()
+        // What is flat grows evenly: one region that takes a face at a time is slow.
+        FLAT * FLAT * joined.area + joined.fit().energy - set.iter().map(|r| self.energies[r as usize]).sum::<f64>()
     }
 
     /// How often the regions have changed.

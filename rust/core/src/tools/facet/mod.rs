@@ -125,6 +125,24 @@ struct Found {
     n_crossings: usize,
 }
 
+/// Facets that are flat, with the faces that they stand for.
+struct Settled {
+    shape: Shape,
+    faces: Faces,
+    /// Pairs of facets that passed through each other when all corners were on the mesh.
+    n_on_mesh: usize,
+}
+
+impl Settled {
+    fn n_crossings(&self) -> usize {
+        Inspection::new(&self.shape, true).pairs.len().saturating_sub(self.n_on_mesh)
+    }
+
+    fn distances(&self) -> Distances {
+        self.faces.nearest(&self.shape, &Inspection::new(&self.shape, true)).1
+    }
+}
+
 impl<'a> Job<'a> {
     fn new(working: &'a Working<'a>, options: &FacetOptions) -> Result<Self> {
         let here = working.mesh();
@@ -196,27 +214,28 @@ impl<'a> Job<'a> {
         let area = self.places().into_iter().map(|p| Moments::of(p).area).sum::<f64>().max(f64::MIN_POSITIVE);
         let [fewest, most] = merges.range(n);
         let mut count = merges.count(wanted, n, self.positions.len(), area);
-        let mut best: Option<(f64, Found)> = None;
+        let mut best: Option<(f64, Settled)> = None;
         for round in 0..COUNTS {
             let fraction = 0.5 + 0.5 * round as f64 / COUNTS as f64;
             progress.report(Report { fraction, stage: "fitting planes".into(), ..Report::default() });
-            let found = self.with(merges, merges.whole(n, count), n_held, progress)?;
+            let mut settled = self.settled(merges, merges.whole(n, count), progress)?;
             let (miss, next) = match wanted {
                 Wanted::Facets(wanted) => {
-                    let made = found.n_facets + n_held;
-                    let off = wanted.clamp(fewest, most) as f64 - made as f64;
+                    let off = wanted.clamp(fewest, most) as f64 - settled.shape.facets.len() as f64;
                     // Repairs that failed leave many triangles, which say little.
                     let most = 4.0 + 0.2 * count as f64;
-                    (off.abs(), count as f64 + off.clamp(-most, most).round())
+                    let further = if off == 0.0 { 1.0 } else { off.clamp(-most, most).round() };
+                    (off.abs() + settled.n_crossings() as f64, count as f64 + further)
                 }
                 Wanted::Error(error) => {
-                    let over = found.distances.rms / error;
+                    fitting::refine(&mut settled.shape, &mut settled.faces, progress)?;
+                    let over = settled.distances().rms / error;
                     ((over - 1.0).max(0.0), (count as f64 * over.max(1.05)).ceil())
                 }
                 Wanted::Found => (0.0, 0.0),
             };
             if best.as_ref().is_none_or(|(least, _)| miss < *least) {
-                best = Some((miss, found));
+                best = Some((miss, settled));
             }
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
             let next = (next as usize).clamp(fewest, most);
@@ -225,17 +244,27 @@ impl<'a> Job<'a> {
             }
             count = next;
         }
-        best.map(|(_, found)| found).ok_or_else(|| MeshError::NoFaces.into())
+        let (_, mut settled) = best.ok_or(MeshError::NoFaces)?;
+        if !matches!(wanted, Wanted::Error(_)) {
+            fitting::refine(&mut settled.shape, &mut settled.faces, progress)?;
+        }
+        fitting::fold(&mut settled.shape, &mut settled.faces);
+        let n_facets = fitting::order(&mut settled.shape, &mut settled.faces);
+        let n_crossings = settled.n_crossings();
+        let inspection = Inspection::new(&settled.shape, true);
+        let (labels, distances) = settled.faces.nearest(&settled.shape, &inspection);
+        Ok(Found { shape: settled.shape, inspection, labels, distances, n_facets, n_crossings })
     }
 
-    /// The shape made of `count` regions.
-    fn with(&self, merges: &Merges, count: usize, n_held: usize, progress: &Progress) -> Result<Found> {
+    /// The shape made of `count` regions, sound where that can be had.
+    fn settled(&self, merges: &Merges, count: usize, progress: &Progress) -> Result<Settled> {
         let n = self.parts.len();
         let labels = merges.labels(n, count);
-        let mut faces = Faces::new(self.places(), labels);
-        let mut moments = vec![Moments::default(); count];
-        for (&label, own) in faces.labels.iter().zip(&faces.moments) {
+        let mut faces = Faces::new(self.places(), labels, self.is_held.clone());
+        let (mut moments, mut is_held) = (vec![Moments::default(); count], vec![false; count]);
+        for ((&label, own), &held) in faces.labels.iter().zip(&faces.moments).zip(&self.is_held) {
             moments[label as usize] = moments[label as usize].plus(own);
+            is_held[label as usize] |= held;
         }
         let connectivity = self.working.mesh().connectivity();
         let regions = Regions::new(connectivity, &self.positions, self.labels(faces.labels.iter().copied()), count);
@@ -243,18 +272,10 @@ impl<'a> Job<'a> {
         let squares: f64 = moments.iter().map(|m| m.fit().squared_distance).sum();
         let tolerance = (squares / area.max(f64::MIN_POSITIVE)).sqrt().max(constants::FLAT);
         let is_fixed = |v: u32| self.is_fixed[v as usize];
-        let mut shape = Shape::new(&regions, &moments, &self.positions, is_fixed, 2.0 * tolerance);
-        let on_mesh = {
-            let home = shape.at_home();
-            Inspection::new(&home, true).pairs.len()
-        };
+        let mut shape = Shape::new(&regions, &moments, &self.positions, &is_held, is_fixed, 2.0 * tolerance);
+        let n_on_mesh = Inspection::new(&shape, true).pairs.len();
         fitting::settle(&mut shape, &mut faces, progress)?;
-        fitting::refine(&mut shape, &mut faces, progress)?;
-        fitting::fold(&mut shape);
-        let inspection = Inspection::new(&shape, true);
-        let (labels, distances) = faces.nearest(&shape, &inspection);
-        let n_crossings = inspection.pairs.len().saturating_sub(on_mesh);
-        Ok(Found { n_facets: shape.facets.len() - n_held, n_crossings, shape, inspection, labels, distances })
+        Ok(Settled { shape, faces, n_on_mesh })
     }
 
     /// The result in the mesh's own coordinates.

@@ -34,6 +34,15 @@ impl Set {
         Self { members, len: 2 }
     }
 
+    pub(super) fn is_pair(&self) -> bool {
+        self.len == 2
+    }
+
+    /// The pair that it began with.
+    pub(super) fn first_two(&self) -> [u32; 2] {
+        [self.members[0], self.members[1]]
+    }
+
     pub(super) fn iter(&self) -> impl Iterator<Item = u32> + '_ {
         self.members[..self.len as usize].iter().copied()
     }
@@ -42,22 +51,20 @@ impl Set {
         region != OUTSIDE && self.iter().any(|r| r == region)
     }
 
-    /// Whether there was room for another.
-    fn push(&mut self, region: u32) -> bool {
-        let has_room = (self.len as usize) < TOGETHER && region != OUTSIDE;
-        if has_room {
-            self.members[self.len as usize] = region;
-            self.len += 1;
-        }
-        has_room
+    /// The same with another, if there is room.
+    fn with(mut self, region: u32) -> Option<Self> {
+        let place = self.members.get_mut(self.len as usize)?;
+        *place = region;
+        self.len += 1;
+        Some(self)
     }
 }
 
 /// Whether a set of regions can be a facet.
 enum Verdict {
     Facet,
-    /// Not without this one.
-    With(u32),
+    /// Not without one of these.
+    WithOne(Vec<u32>),
     Never,
 }
 
@@ -140,6 +147,11 @@ impl<'a> Regions<'a> {
         all.chunk_by(|a, b| a.0 == b.0).map(|group| (group[0].0, group.iter().map(|pair| pair.1).collect())).collect()
     }
 
+    /// The halfedges of `p` that have `q` behind them.
+    pub(super) fn between(&self, p: u32, q: u32) -> Vec<u32> {
+        self.borders[p as usize].iter().copied().filter(|&h| self.behind(h) == q).collect()
+    }
+
     /// The border halfedge that follows `h` around what `is_own` describes.
     fn follow(&self, h: u32, is_own: impl Fn(u32) -> bool) -> u32 {
         let mut g = next(h as usize);
@@ -157,17 +169,21 @@ impl<'a> Regions<'a> {
         valence > 2 || self.is_anchored[v as usize]
     }
 
-    /// What `set` has to be joined with so that it can be one facet: regions around it that would be left with two corners, and,
-    /// where it would have two itself, the neighbor behind its longer ridge. `None` where it cannot, or not with so few.
-    pub(super) fn closure(&self, mut set: Set, is_held: impl Fn(u32) -> bool) -> Option<Set> {
+    /// What `set` has to be joined with so that it can be one facet: regions around it that would be left with two corners or meet
+    /// it off a line, and, where it would have two corners itself, the neighbor with which it costs less. `None` where it cannot, or not with so few.
+    pub(super) fn closure(
+        &self,
+        mut set: Set,
+        is_held: impl Fn(u32) -> bool,
+        cost: impl Fn(&Set) -> f64,
+    ) -> Option<Set> {
         loop {
             match self.verdict(&set) {
                 Verdict::Facet => return Some(set),
                 Verdict::Never => return None,
-                Verdict::With(region) => {
-                    if is_held(region) || !set.push(region) {
-                        return None;
-                    }
+                Verdict::WithOne(of) => {
+                    let joined = of.into_iter().filter(|&r| r != OUTSIDE && !is_held(r)).filter_map(|r| set.with(r));
+                    set = joined.min_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.cmp(b)))?;
                 }
             }
         }
@@ -191,9 +207,7 @@ impl<'a> Regions<'a> {
             return Verdict::Never;
         }
         if let Some(ridges) = loops.iter().find(|ridges| !has_corners(ridges)) {
-            let length = |r: &Ridge| distance(self.positions[r.from as usize], self.positions[r.to as usize]);
-            let longer = ridges.iter().max_by(|a, b| length(a).total_cmp(&length(b)).then(b.neighbor.cmp(&a.neighbor)));
-            return longer.map_or(Verdict::Never, |ridge| Verdict::With(ridge.neighbor));
+            return Verdict::WithOne(ridges.iter().map(|ridge| ridge.neighbor).collect());
         }
         // The regions behind vertices that are corners no longer.
         for &h in &border {
@@ -201,15 +215,11 @@ impl<'a> Regions<'a> {
             if lost.contains_key(&v) && valence(v) == 2 {
                 let Some(mate) = self.connectivity.twin(h as usize) else { continue };
                 if !self.keeps_corners(mate as u32, &valence) {
-                    return Verdict::With(self.labels[mate / 3]);
+                    return Verdict::WithOne(vec![self.labels[mate / 3]]);
                 }
             }
         }
-        if self.meets_on_lines(&border, &loops, set) {
-            Verdict::Facet
-        } else {
-            Verdict::Never
-        }
+        self.met_off_line(&border, &loops, set).map_or(Verdict::Facet, |region| Verdict::WithOne(vec![region]))
     }
 
     /// Whether the loop of halfedge `start` has its corners, with `valence` border edges at each vertex.
@@ -286,8 +296,8 @@ impl<'a> Regions<'a> {
         ridges
     }
 
-    /// Whether every other region that has corners of these loops has them on one line.
-    fn meets_on_lines(&self, border: &[u32], loops: &[Vec<Ridge>], set: &Set) -> bool {
+    /// A region that has corners of these loops which are not on one line.
+    fn met_off_line(&self, border: &[u32], loops: &[Vec<Ridge>], set: &Set) -> Option<u32> {
         let corners: HashSet<u32> = loops.iter().flatten().map(|ridge| ridge.from).collect();
         let mut met: Vec<(u32, u32)> = Vec::new();
         for &h in border.iter().filter(|&&h| corners.contains(&self.connectivity.tail(h as usize))) {
@@ -296,7 +306,8 @@ impl<'a> Regions<'a> {
         }
         met.sort_unstable();
         met.dedup();
-        met.chunk_by(|a, b| a.0 == b.0).all(|group| group.len() < 3 || self.is_on_line(group))
+        let off = |group: &&[(u32, u32)]| group.len() > 2 && !self.is_on_line(group);
+        met.chunk_by(|a, b| a.0 == b.0).find(off).map(|group| group[0].0)
     }
 
     /// The regions around the vertex where `h` starts, as far as faces lead from that of `h`.

@@ -125,7 +125,7 @@ fn contract(shape: &mut Shape, [a, b]: [u32; 2]) -> Option<Option<u32>> {
 /// Takes a facet away; its faces go to the neighbor whose plane is nearest.
 fn remove(shape: &mut Shape, faces: &mut Faces, k: u32) {
     let corners: HashSet<u32> = shape.facets[k as usize].corners().collect();
-    let is_near = |facet: &Facet| facet.corners().any(|c| corners.contains(&c));
+    let is_near = |facet: &Facet| !facet.is_held && facet.corners().any(|c| corners.contains(&c));
     let near: Vec<u32> =
         (0..).zip(&shape.facets).filter(|(j, facet)| *j != k && is_near(facet)).map(|(j, _)| j).collect();
     for (label, &center) in faces.labels.iter_mut().zip(&faces.centers).filter(|(label, _)| **label == k) {
@@ -168,7 +168,7 @@ fn divide(shape: &mut Shape, faces: &mut Faces, k: u32) -> bool {
                 own.iter().map(|&f| dot(sub(faces.centers[f], home.point(a)), wall) > 0.0).collect();
             let part = |range: std::ops::Range<usize>, first: bool| {
                 let loops = vec![range.map(|x| corners[x % n]).collect()];
-                let mut part = Facet { loops, plane: facet.plane, moments: Moments::default() };
+                let mut part = Facet { loops, plane: facet.plane, moments: Moments::default(), is_held: false };
                 let polygon = home.polygon_moments(&part);
                 part.plane = polygon.fit().plane;
                 let is_sound = triangles(&home, &part).is_some();

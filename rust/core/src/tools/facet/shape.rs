@@ -28,6 +28,8 @@ pub(super) struct Facet {
     pub plane: Plane,
     /// Of the faces that it stands for.
     pub moments: Moments,
+    /// A face that stays as it is.
+    pub is_held: bool,
 }
 
 impl Facet {
@@ -64,12 +66,13 @@ impl Shape {
         regions: &Regions<'_>,
         moments: &[Moments],
         positions: &[Point],
+        is_held: &[bool],
         is_fixed: impl Fn(u32) -> bool,
         tolerance: f64,
     ) -> Self {
         let mut shape = Self::default();
         let mut names: HashMap<u32, u32> = HashMap::new();
-        for (region, moments) in (0..).zip(moments) {
+        for ((region, moments), &is_held) in (0..).zip(moments).zip(is_held) {
             let mut loops = Vec::new();
             for ridges in regions.loops(region).unwrap_or_default() {
                 let vertices = polygon(regions, region, &ridges, positions, tolerance);
@@ -83,7 +86,7 @@ impl Shape {
                 };
                 loops.push(vertices.into_iter().map(&mut name).collect());
             }
-            shape.facets.push(Facet { loops, plane: moments.fit().plane, moments: *moments });
+            shape.facets.push(Facet { loops, plane: moments.fit().plane, moments: *moments, is_held });
         }
         shape
     }

@@ -14,11 +14,11 @@ pub(super) const FREE_MOVE: f64 = 0.5;
 /// Vertices nearer to each other than this part of a mean edge would make a triangle vanish: one of them takes the corner.
 pub(super) const SAME_PLACE: f64 = 0.1;
 
-/// Rounds of relaxing at most; it ends as soon as nothing is folded.
+/// Rounds of relaxing at most. Folds of noise up to 0.3 of an edge are gone after five to thirty.
 pub(super) const MOST_ROUNDS: usize = 200;
 
 /// Steps of the flow for free pieces at most; each doubles the time of the flow, so ten are a thousandfold.
 pub(super) const FLOW_STEPS: usize = 12;
 
-/// The fidelity of its first step, on a surface of area 1: large, since later steps double its time until the noise is reached.
+/// The fidelity of its first step, on a surface of area 1: it moves a scan of ten thousand vertices by a fraction of its noise.
 pub(super) const FLOW_FIDELITY: f64 = 1e7;

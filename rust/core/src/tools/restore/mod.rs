@@ -15,13 +15,12 @@ mod relax;
 pub use options::{RestoreOptions, RestoreStatus, Restored, RestoredSurface};
 
 use crate::error::MeshError;
-use crate::labelling::{labelling, Domain, Labelling, Piece, NONE};
+use crate::labelling::{labelling, Domain, Labelling, NONE};
 use crate::memory::Tool;
-use crate::mesh::vector::{distance, scale, Point};
+use crate::mesh::vector::{distance, Point};
 use crate::mesh::{Mesh, Working};
 use crate::progress::{Progress, Report};
 use crate::solve::Status;
-use crate::surfaces::Surface;
 use crate::tools::answer::{refused, Surroundings};
 use crate::tools::scale::extent;
 use crate::tools::segment::{segment, SegmentOptions};
@@ -120,16 +119,13 @@ fn kept(before: &[Point], after: Vec<Point>, least: f64) -> Vec<Point> {
     before.iter().zip(after).map(|(&p, q)| if distance(p, q) <= least { p } else { q }).collect()
 }
 
-/// What is said of the pieces. Normals of planes point to where their faces look.
+/// What is said of the pieces.
 fn pieces(state: &Labelling) -> Vec<RestoredSurface> {
-    let said = |piece: &Piece| {
-        let (surface, is_inside_out) = match piece.surface {
-            Some(Surface::Plane { normal, offset }) if piece.side < 0.0 => {
-                (Some(Surface::Plane { normal: scale(normal, -1.0), offset: -offset }), false)
-            }
-            surface => (surface, piece.side < 0.0),
-        };
-        RestoredSurface { surface, is_inside_out, rms: piece.rms, n_faces: piece.faces.len() }
+    let said = |piece: &crate::labelling::Piece| RestoredSurface {
+        surface: piece.surface,
+        is_inside_out: piece.side < 0.0,
+        rms: piece.rms,
+        n_faces: piece.faces.len(),
     };
     state.pieces.iter().map(said).collect()
 }
