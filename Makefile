@@ -3,7 +3,7 @@ PYTHON ?= python3
 RUN = @$(PYTHON) scripts/setup_env.py
 
 .PHONY: help demo test test-all-blenders test-dask lint workflows notices advisories bench bench-holes bench-segments \
-	bench-memory bench-limits bench-growth bench-latency bench-files bench-parts bench-restore fuzz fuzz-sequences \
+	bench-memory bench-limits bench-growth bench-latency bench-files bench-parts bench-facets bench-restore fuzz fuzz-sequences \
 	extension wheel release sizes docs fixtures pictures gallery
 
 help:
@@ -19,6 +19,7 @@ help:
 	@echo "                 ARGS=--quick: a minute, keeps nothing; ARGS=--large: a million vertices as well"
 	@echo "make bench-holes fill holes with known truth by every tool: benchmarks/holes.md"
 	@echo "make bench-segments  segment shapes of known parts: benchmarks/segments.md"
+	@echo "make bench-facets  meshes as facets, beside quadric reduction: benchmarks/facets.md"
 	@echo "make bench-restore  restore shapes of known parts from noise: benchmarks/restore.md"
 	@echo "make bench-memory  what calls take beside what is said of them: docs/reliability.md"
 	@echo "make bench-limits  every call under caps on memory: docs/reliability.md"
@@ -68,6 +69,9 @@ bench:
 
 bench-holes:
 	$(RUN) benchmarks/holes.py $(ARGS)
+
+bench-facets:
+	$(RUN) benchmarks/facets.py $(MESHES) $(ARGS)
 
 bench-restore:
 	$(RUN) benchmarks/restore.py $(ARGS)

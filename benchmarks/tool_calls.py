@@ -86,6 +86,7 @@ CALLS: dict[str, Call] = {
         mesh, method="paper", epsilon_end=0.05, max_iterations=10, **options
     ),
     "parts": lambda mesh, options: ridgeform.parts(mesh, **options),
+    "facet": lambda mesh, options: ridgeform.facet(mesh, facets=200, **options),
     "restore": lambda mesh, options: ridgeform.restore(mesh, **options),
     "fill_holes": lambda mesh, options: ridgeform.fill_holes(mesh, iterations=1, **options),
     "fill_holes outer": lambda mesh, options: ridgeform.fill_holes(mesh, iterations=1, outer=True, **options),
@@ -113,6 +114,8 @@ ESTIMATED: dict[str, tuple[str, int, str]] = {
     "segment": ("segment", 3, "auto"),
     "segment paper": ("segment", 3, "auto"),
     "parts": ("parts", 1, "auto"),
+    "facet": ("facet", 1, "auto"),
+    "restore": ("restore", 3, "auto"),
     "fill_holes": ("fill_holes", 3, "auto"),
     "remesh": ("remesh", 1, "auto"),
     "diffusion_curves": ("diffusion_curves", 3, "auto"),

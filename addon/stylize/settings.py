@@ -91,7 +91,7 @@ class StylizeSettings(Settings):
         "Facets",
         "Number of facets",
         default=100,
-        min=1,
+        min=0,
         max=1_000_000,
         soft_min=4,
         soft_max=500,

@@ -219,7 +219,7 @@ def test_a_panel_with_all_values_is_saved_as_it_is(tmp_path):
 def test_an_optional_number_goes_into_a_recipe_with_its_check_box(tool, name, counts, same):
     setting = tool.settings.declared[name]
     given = setting.default if same else other_value(setting)
-    values = defaults_of(tool.settings, **{name: given, f"use_{name}": counts})
+    values = defaults_of(tool.settings, **setting.implies, **{name: given, f"use_{name}": counts})
     (step,) = recipe.parse(recipe.step_text(tool, values), "r.toml", COMMANDS)
     got = vars(step.settings)
     assert got[f"use_{name}"] is counts

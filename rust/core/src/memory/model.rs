@@ -123,7 +123,7 @@ impl Tool {
             Self::QuadraticModes => (830.0, 62.0, 30.0),
             Self::Segment => (2400.0, 75.0, 0.0),
             Self::Parts => (520.0, 0.0, 0.0),
-            Self::Facet => (1500.0, 0.0, 0.0),
+            Self::Facet => (820.0, 0.0, 0.0),
             Self::Restore => (2500.0, 77.0, 0.0),
             Self::FillHoles => (2500.0, 0.0, 0.0),
             Self::Remesh => (350.0, 0.0, 0.0),

@@ -85,8 +85,18 @@ fn fitted(shape: &mut Shape, faces: &Faces, before: &Inspection, progress: &Prog
     Ok(None)
 }
 
-/// Leaves triangles of the facets that did not come out flat or simple.
-pub(super) fn fold(shape: &mut Shape, faces: &mut Faces) {
+/// Leaves triangles of the facets that do not come out flat or simple.
+///
+/// # Errors
+/// Those of the linear solver.
+pub(super) fn fold(shape: &mut Shape, faces: &mut Faces) -> Result<()> {
+    for _ in 0..TRIES {
+        if shape.off_planes() <= FLAT {
+            break;
+        }
+        let here: Vec<Point> = shape.corners.iter().map(|corner| corner.point).collect();
+        flatten(shape, STAY, &here)?;
+    }
     let inspection = Inspection::new(shape, false);
     let crossed: HashSet<u32> = inspection.crossed.iter().copied().collect();
     let mut facets = Vec::with_capacity(shape.facets.len());
@@ -109,6 +119,7 @@ pub(super) fn fold(shape: &mut Shape, faces: &mut Faces) {
     }
     shape.facets = facets;
     faces.labels.iter_mut().for_each(|label| *label = place[*label as usize]);
+    Ok(())
 }
 
 /// Puts the facets that were made before the faces that stay; returns how many they are.

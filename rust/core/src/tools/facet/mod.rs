@@ -248,7 +248,7 @@ impl<'a> Job<'a> {
         if !matches!(wanted, Wanted::Error(_)) {
             fitting::refine(&mut settled.shape, &mut settled.faces, progress)?;
         }
-        fitting::fold(&mut settled.shape, &mut settled.faces);
+        fitting::fold(&mut settled.shape, &mut settled.faces)?;
         let n_facets = fitting::order(&mut settled.shape, &mut settled.faces);
         let n_crossings = settled.n_crossings();
         let inspection = Inspection::new(&settled.shape, true);
