@@ -12,6 +12,7 @@ pub mod eigen;
 pub mod fast;
 mod free_operator;
 pub mod normal_matrix;
+mod normal_pattern;
 mod outcome;
 mod primal_dual;
 mod problem;

@@ -15,7 +15,7 @@ use crate::block_rows::{BlockRows, BLOCK};
 use crate::error::SolveError;
 use crate::linear::ordering::eliminated;
 use crate::memory;
-use crate::solve::normal_matrix::pattern_of;
+use crate::solve::normal_pattern::pattern_of;
 
 /// Blocks with more columns than this are cut. Measured on spheres with poles of so many columns, 24k and 120k vertices in all: at 128
 /// cutting takes as long or a fifth longer, at 256 two thirds of the time, at 1024 a fifth.
