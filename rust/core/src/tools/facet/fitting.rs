@@ -33,15 +33,18 @@ pub(super) fn settle(shape: &mut Shape, faces: &mut Faces, progress: &Progress) 
 
 /// Gives every face to the nearest facet and fits the planes anew, in turns, as long as facets stay sound and come nearer.
 pub(super) fn refine(shape: &mut Shape, faces: &mut Faces, progress: &Progress) -> Result<()> {
-    let mut best = (measured(shape, faces, &Inspection::new(shape, true)).1, shape.clone());
+    let mut inspection = Inspection::new(shape, true);
+    let (mut labels, distance) = measured(shape, faces, &inspection);
+    let mut best = (distance, shape.clone());
     let mut n_idle = 0;
     while n_idle < IDLE && !progress.is_finishing() {
-        let inspection = Inspection::new(shape, true);
-        faces.labels = measured(shape, faces, &inspection).0;
+        faces.labels = labels;
         faces.fit(shape);
         let Some(next) = fitted(shape, faces, &inspection, progress)? else { break };
         *shape = next;
-        let distance = measured(shape, faces, &Inspection::new(shape, false)).1;
+        inspection = Inspection::new(shape, true);
+        let distance;
+        (labels, distance) = measured(shape, faces, &inspection);
         n_idle = if distance < NEARER * best.0 { 0 } else { n_idle + 1 };
         if distance < best.0 {
             best = (distance, shape.clone());

@@ -135,7 +135,12 @@ struct Settled {
 
 impl Settled {
     fn n_crossings(&self) -> usize {
-        Inspection::new(&self.shape, true).pairs.len().saturating_sub(self.n_on_mesh)
+        self.n_more(&Inspection::new(&self.shape, true))
+    }
+
+    /// How many more pairs pass through each other than on the mesh.
+    fn n_more(&self, inspection: &Inspection) -> usize {
+        inspection.pairs.len().saturating_sub(self.n_on_mesh)
     }
 
     fn distances(&self) -> Distances {
@@ -250,8 +255,8 @@ impl<'a> Job<'a> {
         }
         fitting::fold(&mut settled.shape, &mut settled.faces)?;
         let n_facets = fitting::order(&mut settled.shape, &mut settled.faces);
-        let n_crossings = settled.n_crossings();
         let inspection = Inspection::new(&settled.shape, true);
+        let n_crossings = settled.n_more(&inspection);
         let (labels, distances) = settled.faces.nearest(&settled.shape, &inspection);
         Ok(Found { shape: settled.shape, inspection, labels, distances, n_facets, n_crossings })
     }
