@@ -1,4 +1,5 @@
-//! The parts of a linear solution with 40k rows, on one thread and on two: analysis, factorization, triangular solves.
+//! The parts of a linear solution with 40k rows, on one thread and on two: analysis,
+//! factorization, triangular solves.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use criterion::{criterion_group, criterion_main, BatchSize, Criterion};

@@ -1,4 +1,5 @@
-//! What a step of the flow is made of, on a mesh with 10k vertices and on one thread: three columns, joint norms.
+//! What a step of the flow is made of, on a mesh with 10k vertices and on one thread: three columns,
+//! joint norms.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use criterion::{criterion_group, criterion_main, BatchSize, Criterion};

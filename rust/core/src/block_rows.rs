@@ -1,11 +1,13 @@
-//! A sparse matrix made of blocks of [`BLOCK`] rows that share their columns: one block a face, one cone a block.
+//! A sparse matrix made of blocks of [`BLOCK`] rows that share their columns: one block a face,
+//! one cone a block.
 
 use crate::{Error, Result};
 
 /// Rows of one block: `xx`, `yy`, `√2·xy` of a face's Hessian (same Frobenius norm as the four entries).
 pub const BLOCK: usize = 3;
 
-/// A sparse matrix of `BLOCK · n_blocks` rows. All rows of a block have the same columns, sorted and without repeats.
+/// A sparse matrix of `BLOCK · n_blocks` rows. All rows of a block have the same columns,
+/// sorted and without repeats.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlockRows {
     /// Number of columns.
@@ -89,11 +91,14 @@ impl BlockRows {
     pub fn block_squares(&self, values: &[f64]) -> Result<Vec<f64>> {
         let n = self.n_columns;
         if !values.len().is_multiple_of(n) {
-            let problem =
-                format!("{} numbers are not whole columns of {n} vertex values; pass one per vertex", values.len());
+            let problem = format!(
+                "{} numbers are not whole columns of {n} vertex values; pass one per vertex",
+                values.len()
+            );
             return Err(Error::argument("values", problem));
         }
-        let square = |b: usize| values.chunks_exact(n.max(1)).map(|column| self.block_square(b, column)).sum();
+        let square =
+            |b: usize| values.chunks_exact(n.max(1)).map(|column| self.block_square(b, column)).sum();
         Ok((0..self.n_blocks()).map(square).collect())
     }
 

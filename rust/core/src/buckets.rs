@@ -18,7 +18,8 @@ impl<T> Default for Buckets<T> {
 }
 
 impl<T: Copy + Default> Buckets<T> {
-    /// Sorts what `each` visits into `n` buckets: it names a bucket and an item at a time, and is called twice.
+    /// Sorts what `each` visits into `n` buckets: it names a bucket and an item at a time,
+    /// and is called twice.
     pub(crate) fn new(n: usize, each: impl Fn(&mut dyn FnMut(usize, T))) -> Self {
         let starts = counted(vec![0; n + 1], &each);
         let (next, items) = (starts.clone(), vec![T::default(); starts[n]]);

@@ -52,7 +52,9 @@ impl Error {
 
 /// The system gives no thread to work on.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("no thread could be started: {reason}; end other programs, or raise the limit of processes (ulimit -u)")]
+#[error(
+    "no thread could be started: {reason}; end other programs, or raise the limit of processes (ulimit -u)"
+)]
 pub struct ThreadsError {
     /// What the system said.
     pub reason: String,
@@ -128,7 +130,10 @@ pub enum MeshError {
     #[error("the mesh has no face with positive area; nothing can be computed on it")]
     NoFaces,
     /// A dual edge has no length, so the circumcentric Hessian does not exist.
-    #[error("faces {face} and {neighbor} have the same circumcenter: the circumcentric dual edge has no length; use barycentric duals, or circumcentric_or_barycentric to replace such edges only")]
+    #[error(
+        "faces {face} and {neighbor} have the same circumcenter: the circumcentric dual edge has no \
+        length; use barycentric duals, or circumcentric_or_barycentric to replace such edges only"
+    )]
     ZeroDualEdge {
         /// One face.
         face: usize,
@@ -165,14 +170,21 @@ pub enum Refusal {
     SingleFace,
     /// Another piece of surface lies inside the hole.
     #[error(
-        "another piece of surface lies inside it; delete that piece, or join it to the rim, and fill what is left"
+        "another piece of surface lies inside it; delete that piece, or join it to the rim, and fill what is \
+        left"
     )]
     Island,
     /// The rim ends at edges with three faces or more.
-    #[error("its rim ends at non-manifold edges, with three faces or more, as where an inner wall meets the surface; separate that wall, fill the hole, and join the wall again")]
+    #[error(
+        "its rim ends at non-manifold edges, with three faces or more, as where an inner wall meets the \
+        surface; separate that wall, fill the hole, and join the wall again"
+    )]
     OpenRim,
     /// The two sides of the rim lie on each other, with vertices of one in the middle of edges of the other.
-    #[error("it has no width: vertices of one side lie in the middle of edges of the other (T-junctions); split these edges there and merge vertices by distance")]
+    #[error(
+        "it has no width: vertices of one side lie in the middle of edges of the other (T-junctions); \
+        split these edges there and merge vertices by distance"
+    )]
     TJunction,
     /// The rim encloses no area.
     #[error("it has no width: the two sides of the rim lie in the same place; merge vertices by distance")]
@@ -190,8 +202,10 @@ pub enum SolveError {
         reason: String,
     },
     /// The factor of the linear system does not fit.
-    #[error("the factorization needs {} of memory, more than {}; raise memory_limit, keep more values fixed or reduce the mesh",
-        readable(*needed), limit.map_or("there is".into(), |limit| format!("the limit of {}", readable(limit))))]
+    #[error("the factorization needs {} of memory, more than {}; raise memory_limit, keep more values fixed \
+        or reduce the mesh",
+        readable(*needed),
+        limit.map_or("there is".into(), |limit| format!("the limit of {}", readable(limit))))]
     Memory {
         /// Bytes for the factor and the work on it.
         needed: usize,
@@ -205,7 +219,10 @@ pub enum SolveError {
         what: &'static str,
     },
     /// Rounding leaves no correct digit of the answer.
-    #[error("the sizes of the triangles differ so much that rounding leaves nothing of the answer; remove the largest and the smallest, or remesh")]
+    #[error(
+        "the sizes of the triangles differ so much that rounding leaves nothing of the answer; remove \
+        the largest and the smallest, or remesh"
+    )]
     Uneven,
     /// The constraints contradict each other or the problem has no unique solution.
     #[error("the problem has no solution: {reason}")]
@@ -222,7 +239,8 @@ fn memory_text(what: &str, needed: usize, limit: usize, is_given: bool, fits: us
     } else {
         (format!("the {limit} that are free for it"), "free memory")
     };
-    let reduce = if fits > 0 { format!("reduce the mesh to about {fits} vertices") } else { "reduce the mesh".into() };
+    let reduce =
+        if fits > 0 { format!("reduce the mesh to about {fits} vertices") } else { "reduce the mesh".into() };
     format!("{what}: needs about {} of memory, more than {limit}; {reduce}, or {cure}", readable(needed))
 }
 

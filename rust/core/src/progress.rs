@@ -25,7 +25,8 @@ pub struct Report {
 /// Vertices and faces that a running call has made so far.
 pub type Surface = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
-/// How long a watcher waits for the state: it is held for less than a millisecond, or since a fork, and then forever.
+/// How long a watcher waits for the state: it is held for less than a millisecond, or since a fork,
+/// and then forever.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 #[derive(Debug, Default)]
@@ -59,7 +60,8 @@ impl Progress {
         Self::default()
     }
 
-    /// A handle for a part of the call: it hears the same wishes, and what is published through it nobody sees.
+    /// A handle for a part of the call: it hears the same wishes,
+    /// and what is published through it nobody sees.
     #[must_use]
     pub fn quiet(&self) -> Self {
         Self { wishes: Arc::clone(&self.wishes), state: Arc::default(), unit: self.unit }
@@ -142,7 +144,8 @@ impl Progress {
         self.with(|state| state.snapshot.clone()).flatten()
     }
 
-    /// The same, with how many were published through this handle: for one flow the number of the step, from 1.
+    /// The same, with how many were published through this handle: for one flow the number of the step,
+    /// from 1.
     #[must_use]
     pub fn numbered_snapshot(&self) -> Option<(usize, Arc<[[f64; 3]]>)> {
         self.with(|state| state.snapshot.clone().map(|vertices| (state.n_snapshots, vertices))).flatten()

@@ -100,14 +100,15 @@ impl Shape {
     }
 }
 
-/// A grid of `(nx + 1) × (ny + 1)` vertices at `place(i, j)`, each cell split along its diagonal; where `wrap_x` or
-/// `wrap_y`, the last column or row is the first one again.
+/// A grid of `(nx + 1) × (ny + 1)` vertices at `place(i, j)`, each cell split along its diagonal; where
+/// `wrap_x` or `wrap_y`, the last column or row is the first one again.
 fn sheet(n: [usize; 2], wrap: [bool; 2], place: impl Fn(usize, usize) -> [f64; 3]) -> Shape {
     let [nx, ny] = n;
     let columns = if wrap[0] { nx } else { nx + 1 };
     let rows = if wrap[1] { ny } else { ny + 1 };
     let vertex = |i: usize, j: usize| ((j % rows) * columns + i % columns) as u32;
-    let vertices = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))).map(|(i, j)| place(i, j)).collect();
+    let vertices =
+        (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))).map(|(i, j)| place(i, j)).collect();
     let mut faces = Vec::with_capacity(2 * nx * ny);
     for j in 0..ny {
         for i in 0..nx {
@@ -127,7 +128,8 @@ pub fn grid(nx: usize, ny: usize) -> Shape {
 /// A flat lattice of equilateral triangles of edge length 1, in the xy plane.
 #[must_use]
 pub fn lattice(nx: usize, ny: usize) -> Shape {
-    let mut shape = sheet([nx, ny], [false; 2], |i, j| [i as f64 - 0.5 * j as f64, j as f64 * 0.75_f64.sqrt(), 0.0]);
+    let mut shape =
+        sheet([nx, ny], [false; 2], |i, j| [i as f64 - 0.5 * j as f64, j as f64 * 0.75_f64.sqrt(), 0.0]);
     let shift = 0.5 * ny as f64;
     shape.vertices.iter_mut().for_each(|p| p[0] += shift);
     shape
@@ -234,9 +236,13 @@ pub fn cube(n: usize) -> Shape {
             let mut vertex = |i: usize, j: usize| {
                 let mut key = [0; 3];
                 key[axis] = side;
-                // On the lower side the two other axes swap, so that faces run counterclockwise seen from outside.
-                let (u, v) =
-                    if side == n { ((axis + 1) % 3, (axis + 2) % 3) } else { ((axis + 2) % 3, (axis + 1) % 3) };
+                // On the lower side the two other axes swap,
+                // so that faces run counterclockwise seen from outside.
+                let (u, v) = if side == n {
+                    ((axis + 1) % 3, (axis + 2) % 3)
+                } else {
+                    ((axis + 2) % 3, (axis + 1) % 3)
+                };
                 (key[u], key[v]) = (i, j);
                 *seen.entry(key).or_insert_with(|| {
                     shape.vertices.push(key.map(|k| 2.0 * k as f64 / n as f64 - 1.0));
@@ -245,7 +251,8 @@ pub fn cube(n: usize) -> Shape {
             };
             for j in 0..n {
                 for i in 0..n {
-                    let [a, b, c, d] = [vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)];
+                    let [a, b, c, d] =
+                        [vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)];
                     shape.faces.extend([[a, b, c], [a, c, d]]);
                 }
             }

@@ -13,11 +13,13 @@ static HOME: AtomicU32 = AtomicU32::new(0);
 
 /// Runs `work` where its parallel parts find threads that are alive.
 ///
-/// A fork copies the memory of a process, but only the thread that forks: the global pool of rayon is there in the child, and
-/// nobody in it, so that whoever asks it waits forever. In a process other than the one that came first, each call therefore
-/// has a pool of its own, which ends with it. Nothing is locked here: a lock held at the fork is never released in the child.
+/// A fork copies the memory of a process, but only the thread that forks: the global pool of rayon is there
+/// in the child, and nobody in it, so that whoever asks it waits forever. In a process other than the one
+/// that came first, each call therefore has a pool of its own, which ends with it. Nothing is locked here: a
+/// lock held at the fork is never released in the child.
 ///
-/// Where address space is limited each call has a pool of its own as well, of as many threads as there is room for.
+/// Where address space is limited each call has a pool of its own as well,
+/// of as many threads as there is room for.
 ///
 /// # Errors
 /// What `work` returns, or [`ThreadsError`] when the system gives no thread.

@@ -1,16 +1,17 @@
 //! A power of two as the unit of very large and very small numbers, so that their products are numbers too.
 //!
-//! The operators multiply up to eight lengths, and a fourth power of 1e80 is past the largest `f64`. Every tool measures its
-//! mesh and its values in a unit that makes the largest of them about 1, and hands back what it found in the unit that they
-//! came in. Powers of two only change exponents: nothing is rounded. Sizes that are sane as they are keep the unit 1, and
-//! their bits.
+//! The operators multiply up to eight lengths, and a fourth power of 1e80 is past the largest `f64`. Every
+//! tool measures its mesh and its values in a unit that makes the largest of them about 1, and hands back
+//! what it found in the unit that they came in. Powers of two only change exponents: nothing is rounded.
+//! Sizes that are sane as they are keep the unit 1, and their bits.
 
 use std::borrow::Cow;
 
 use crate::error::{Error, SolveError};
 use crate::Result;
 
-/// Sizes from 2^-64 to 2^64 (5e-20 to 2e19) stay as they are: their eighth powers are far from the ends of `f64`, 2^±1022.
+/// Sizes from 2^-64 to 2^64 (5e-20 to 2e19) stay as they are:
+/// their eighth powers are far from the ends of `f64`, 2^±1022.
 const SANE: i32 = 64;
 
 /// A unit, a power of two.
@@ -92,8 +93,8 @@ impl Unit {
         }
     }
 
-    /// Takes points measured in this unit back to that of the `original` points; those that are where they were, in
-    /// `measured`, keep every bit.
+    /// Takes points measured in this unit back to that of the `original` points; those that are where they
+    /// were, in `measured`, keep every bit.
     pub fn restore_points(self, points: &mut [[f64; 3]], measured: &[[f64; 3]], original: &[[f64; 3]]) {
         if self.is_one() {
             return;
@@ -137,9 +138,16 @@ mod tests {
 
     #[test]
     fn exponents_are_those_of_the_largest_power_below() {
-        for (x, e) in
-            [(1.0, 0), (1.99, 0), (2.0, 1), (0.75, -1), (-8.0, 3), (5e-324, -1074), (f64::MAX, 1023), (0.0, 0)]
-        {
+        for (x, e) in [
+            (1.0, 0),
+            (1.99, 0),
+            (2.0, 1),
+            (0.75, -1),
+            (-8.0, 3),
+            (5e-324, -1074),
+            (f64::MAX, 1023),
+            (0.0, 0),
+        ] {
             assert_eq!(exponent(x), e, "{x}");
         }
     }

@@ -1,10 +1,11 @@
 //! When an allocation fails, the call is an error and the process lives.
 //!
-//! This program has an allocator that gives no more than a limit. Each case runs in a child: the mesh is made, the limit is set
-//! to a part of what the call says that it needs, and the call must end with a result or with an error that says what is missing.
-//! A child that took a failed allocation for granted would be ended by SIGABRT. What is asked of the allocator at once before a
-//! call is the estimate and a quarter more: with less than that every call is refused. With a little more some are refused when the
-//! matrix has been analyzed, or when they ask for the next stage; with twice as much every call has a result.
+//! This program has an allocator that gives no more than a limit. Each case runs in a child: the mesh is
+//! made, the limit is set to a part of what the call says that it needs, and the call must end with a result
+//! or with an error that says what is missing. A child that took a failed allocation for granted would be
+//! ended by SIGABRT. What is asked of the allocator at once before a call is the estimate and a quarter more:
+//! with less than that every call is refused. With a little more some are refused when the matrix has been
+//! analyzed, or when they ask for the next stage; with twice as much every call has a result.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod allocation_calls;

@@ -1,5 +1,5 @@
-//! The fast solver on random problems of every class: its certificate holds against Clarabel, it reaches the gap that is asked
-//! for, and its bits do not depend on threads or repetition.
+//! The fast solver on random problems of every class: its certificate holds against Clarabel, it reaches the
+//! gap that is asked for, and its bits do not depend on threads or repetition.
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
 mod random_problems;
@@ -10,8 +10,8 @@ use ridgeform_core::shapes::Random;
 use ridgeform_core::solve::{solve, Coupling, Problem, Session, Settings, Solution, Solver, Status};
 use ridgeform_core::Progress;
 
-/// Rounding of the objective and of the bound, as a part of the larger of the objective and of what it would be if nothing in
-/// it cancelled.
+/// Rounding of the objective and of the bound, as a part of the larger of the objective and of what it would
+/// be if nothing in it cancelled.
 const ROUNDING: f64 = 1e-13;
 
 /// How exact Clarabel is asked to be.
@@ -35,8 +35,8 @@ fn objective(problem: &Problem<'_>, u: &Columns) -> [f64; 2] {
     let columns = || 0..u.n_columns;
     let mut sums = [0.0; 2];
     for (b, w) in problem.weights.iter().enumerate() {
-        let squares =
-            columns().map(|c| problem.operator.block_times(b, u.column(c)).iter().map(|x| x * x).sum::<f64>());
+        let squares = columns()
+            .map(|c| problem.operator.block_times(b, u.column(c)).iter().map(|x| x * x).sum::<f64>());
         sums[0] += w * match problem.coupling {
             Coupling::Joint => squares.sum::<f64>().sqrt(),
             Coupling::Separate => squares.map(f64::sqrt).sum(),
@@ -66,8 +66,8 @@ fn violation(problem: &Problem<'_>, u: &Columns) -> f64 {
     violations.fold(0.0, f64::max)
 }
 
-/// What is wrong with a solution for itself: numbers that are not finite, values that do not hold, a gap that is not that of
-/// the point returned.
+/// What is wrong with a solution for itself: numbers that are not finite, values that do not hold, a gap that
+/// is not that of the point returned.
 fn faults(problem: &Problem<'_>, found: &Solution, tolerance: f64) -> Vec<String> {
     let mut faults = Vec::new();
     let numbers = [found.objective, found.dual_objective, found.gap];
@@ -89,9 +89,13 @@ fn faults(problem: &Problem<'_>, found: &Solution, tolerance: f64) -> Vec<String
         faults.push(format!("the objective is {energy:e}, not {:e}", found.objective));
     }
     if found.dual_objective > found.objective + rounding {
-        faults.push(format!("the bound {:e} is above the objective {:e}", found.dual_objective, found.objective));
+        faults.push(format!(
+            "the bound {:e} is above the objective {:e}",
+            found.dual_objective, found.objective
+        ));
     }
-    // Below a millionth of the objective at the target, or what rounding alone makes of it, an objective counts as zero.
+    // Below a millionth of the objective at the target, or what rounding alone makes of it,
+    // an objective counts as zero.
     let at_target = objective(problem, &problem.target);
     let scale = found.objective.max(1.01e-6 * at_target[0]).max(1.01e-9 * (at_target[1] + uncancelled));
     let gap = (found.objective - found.dual_objective) / scale;
@@ -137,7 +141,8 @@ impl Tally {
         let case = Case::new(seed, n as usize);
         let (problem, tolerance) = (case.problem(), tolerance(seed));
         self.problems += 1;
-        let mut fault = |text: &str| self.wrong.push(format!("{}, tolerance {tolerance:e}: {text}", case.name));
+        let mut fault =
+            |text: &str| self.wrong.push(format!("{}, tolerance {tolerance:e}: {text}", case.name));
         let exact = solve(&problem, Solver::ClarabelQdldl, &settings(REFERENCE), &Progress::new()).unwrap();
         // How much the comparison can tell.
         self.sharp += usize::from(exact.gap <= 1e-6);

@@ -67,7 +67,8 @@ impl Matrix {
     fn of_torus(around: usize, along: usize) -> Self {
         let mesh = shapes::torus(around, along, 3.0, 1.0).noisy(0.01, 1).mesh().unwrap();
         let (connectivity, lengths) = (mesh.connectivity(), mesh.edge_lengths());
-        let operator = HessianPattern::new(connectivity).assemble(connectivity, lengths, Dual::Barycentric).unwrap();
+        let operator =
+            HessianPattern::new(connectivity).assemble(connectivity, lengths, Dual::Barycentric).unwrap();
         let normal = NormalMatrix::new(&operator).unwrap();
         let mut values = Vec::new();
         let diagonal = vec![0.1; operator.n_columns];
@@ -140,7 +141,11 @@ fn agrees_with_the_library_on_matrices_of_every_shape() {
         ("one row", 1, vec![]),
         ("diagonal", 50, vec![]),
         ("path", 3000, path(3000)),
-        ("two paths and lone rows", 90, (1..40).map(|i| (i - 1, i)).chain((51..80).map(|i| (i - 1, i))).collect()),
+        (
+            "two paths and lone rows",
+            90,
+            (1..40).map(|i| (i - 1, i)).chain((51..80).map(|i| (i - 1, i))).collect(),
+        ),
         ("arrow", 400, (0..399).map(|i| (i, 399)).collect()),
         ("arrow the other way", 400, (1..400).map(|i| (0, i)).collect()),
         ("full", 150, (0..150).flat_map(|i| (0..i).map(move |j| (i, j))).collect()),
@@ -148,7 +153,8 @@ fn agrees_with_the_library_on_matrices_of_every_shape() {
     ];
     for n in [2, 3, 5, 9, 17, 33, 65, 200, 700] {
         for degree in [1, 2, 4, 9] {
-            let pairs = (0..n * degree).map(|_| (random.below(n), random.below(n))).filter(|(i, j)| i != j).collect();
+            let pairs =
+                (0..n * degree).map(|_| (random.below(n), random.below(n))).filter(|(i, j)| i != j).collect();
             shapes.push(("random", n, pairs));
         }
     }
@@ -177,10 +183,15 @@ fn gives_the_same_bits_on_any_number_of_threads_and_each_time() {
             let mut solve = || {
                 cholesky.factorize(&matrix.values).unwrap();
                 let right = matrix.right();
-                let (mut one, mut three) = (right.clone(), right.iter().map(|[x]| [*x, 1.0, -x]).collect::<Vec<_>>());
+                let (mut one, mut three) =
+                    (right.clone(), right.iter().map(|[x]| [*x, 1.0, -x]).collect::<Vec<_>>());
                 cholesky.solve(&mut one);
                 cholesky.solve(&mut three);
-                one.into_iter().flatten().chain(three.into_iter().flatten()).map(f64::to_bits).collect::<Vec<_>>()
+                one.into_iter()
+                    .flatten()
+                    .chain(three.into_iter().flatten())
+                    .map(f64::to_bits)
+                    .collect::<Vec<_>>()
             };
             let (first, second) = (solve(), solve());
             assert_eq!(first, second, "the second factorization differs on {threads} threads");
@@ -226,7 +237,10 @@ fn a_bad_pivot_anywhere_is_an_error_and_the_next_factorization_is_right() {
         values[matrix.pattern.starts[random.below(matrix.pattern.n)]] = bad;
         let error = cholesky.factorize(&values).unwrap_err();
         assert!(
-            matches!(&error, SolveError::Factorization { reason } if reason.contains("not positive definite")),
+            matches!(
+                &error,
+                SolveError::Factorization { reason } if reason.contains("not positive definite")
+            ),
             "{error}"
         );
         cholesky.factorize(&matrix.values).unwrap();

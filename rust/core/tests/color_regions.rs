@@ -78,7 +78,10 @@ fn flat_paint_comes_back_exactly() {
             // Every side of a curve has one of the colors, and two sides never have the same.
             for (left, right) in found.curves.left.chunks(3).zip(found.curves.right.chunks(3)) {
                 let which = |color: &[f64]| {
-                    PALETTE.iter().position(|other| (0..3).all(|c| (color[c] - other[c]).abs() < 1e-9)).unwrap()
+                    PALETTE
+                        .iter()
+                        .position(|other| (0..3).all(|c| (color[c] - other[c]).abs() < 1e-9))
+                        .unwrap()
                 };
                 assert_ne!(which(left), which(right));
             }
@@ -93,7 +96,8 @@ fn shading_needs_no_curves_of_its_own() {
     let colors = painted(&shape, |p| PALETTE[scene(5, p)].map(|channel| channel * wave(p)));
     let found = curves(&shape, &colors, &regions(&shape, &colors, SegmentOptions::default(), None));
     assert!(found.error < 1e-4, "{}", found.error);
-    let jump = |rows: (&[f64], &[f64])| rows.0.iter().zip(rows.1).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let jump =
+        |rows: (&[f64], &[f64])| rows.0.iter().zip(rows.1).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     let rows = found.curves.left.chunks(3).zip(found.curves.right.chunks(3));
     assert!(rows.map(jump).fold(f64::INFINITY, f64::min) > 0.2, "no curve where no color changes");
 }
@@ -106,7 +110,8 @@ fn a_crease_of_the_colors_keeps_its_curve() {
     let labels = regions(&shape, &colors, SegmentOptions::default(), None);
     assert!(count(&labels) >= 2);
     let options = DiffusionCurvesOptions { rims: true, ..DiffusionCurvesOptions::default() };
-    let found = diffusion_curves(&shape.mesh().unwrap(), &colors, &labels, &options, &Progress::new()).unwrap();
+    let found =
+        diffusion_curves(&shape.mesh().unwrap(), &colors, &labels, &options, &Progress::new()).unwrap();
     assert!(found.error < 1e-4, "{}", found.error);
 }
 
@@ -124,7 +129,8 @@ fn small_patches_and_strips_of_one_vertex_are_kept() {
     // Regions of two sides of a strip that goes on to where it is wide.
     let flag = |p: [f64; 3]| (p[0] - 15.0).abs() < 0.5 || p[1] > 20.0;
     let colors = painted(&shape, |p| PALETTE[if flag(p) { 4 } else { usize::from(p[0] > 15.0) }]);
-    let center = |f: &[u32; 3]| [0, 1].map(|i| f.iter().map(|&v| shape.vertices[v as usize][i]).sum::<f64>() / 3.0);
+    let center =
+        |f: &[u32; 3]| [0, 1].map(|i| f.iter().map(|&v| shape.vertices[v as usize][i]).sum::<f64>() / 3.0);
     let label = |[x, y]: [f64; 2]| if y > 20.0 { 2 } else { i32::from(x > 15.0) };
     let before: Vec<i32> = shape.faces.iter().map(|f| label(center(f))).collect();
     let after = follow_colors(&shape.mesh().unwrap(), &colors, &before, None, 1e3, &Progress::new()).unwrap();
@@ -139,7 +145,10 @@ fn borders_are_short_and_quads_stay_whole() {
     let length = |labels: &[i32]| {
         let at = |v: u32| shape.vertices[v as usize];
         let edges = curves(&shape, &colors, labels).curves.edges;
-        edges.iter().map(|&[a, b]| (0..2).map(|c| (at(a)[c] - at(b)[c]).powi(2)).sum::<f64>().sqrt()).sum::<f64>()
+        edges
+            .iter()
+            .map(|&[a, b]| (0..2).map(|c| (at(a)[c] - at(b)[c]).powi(2)).sum::<f64>().sqrt())
+            .sum::<f64>()
     };
     let labels = regions(&shape, &colors, SegmentOptions::default(), None);
     let straight = 1.0_f64.hypot(0.3);

@@ -16,8 +16,9 @@ fn painted(shape: &Shape, color: impl Fn([f64; 3]) -> [f64; 3]) -> Columns {
 
 /// A label a face, from its barycenter.
 fn labeled(shape: &Shape, label: impl Fn([f64; 3]) -> i32) -> Vec<i32> {
-    let center =
-        |f: &[u32; 3]| [0, 1, 2].map(|axis| f.iter().map(|&v| shape.vertices[v as usize][axis]).sum::<f64>() / 3.0);
+    let center = |f: &[u32; 3]| {
+        [0, 1, 2].map(|axis| f.iter().map(|&v| shape.vertices[v as usize][axis]).sum::<f64>() / 3.0)
+    };
     shape.faces.iter().map(|f| label(center(f))).collect()
 }
 
@@ -52,10 +53,14 @@ fn a_cut_gives_each_sector_a_copy() {
     for (face, copies) in shape.faces.iter().zip(&cross.faces) {
         assert_eq!(copies.map(|copy| cross.vertices[copy as usize]), *face);
     }
-    // Two triangles that touch at a vertex keep it in common; a face that names a vertex twice joins what is there.
+    // Two triangles that touch at a vertex keep it in common;
+    // a face that names a vertex twice joins what is there.
     let faces = vec![[0, 1, 2], [0, 3, 4], [1, 1, 2]];
-    let bow =
-        Mesh::new(vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [-1.0, 1.0, 0.0]], faces).unwrap();
+    let bow = Mesh::new(
+        vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [-1.0, 1.0, 0.0]],
+        faces,
+    )
+    .unwrap();
     let cut = CutMesh::new(bow.connectivity(), &EdgeTable::new(bow.connectivity()), &[false; 9]);
     assert_eq!(cut.n_copies(), 5);
 }
@@ -67,7 +72,8 @@ fn two_flat_colors_need_one_closed_curve_and_come_back_exactly() {
     let (inside, outside) = ([0.9, 0.3, 0.1], [0.1, 0.4, 0.8]);
     let colors = painted(&shape, |p| if disk(p) { inside } else { outside });
     for refine in [false, true] {
-        // Faces with a corner in the disk belong to it, so the curve runs through vertices of the other color.
+        // Faces with a corner in the disk belong to it,
+        // so the curve runs through vertices of the other color.
         let touches = |f: &[u32; 3]| f.iter().any(|&v| disk(shape.vertices[v as usize]));
         let labels: Vec<i32> = shape.faces.iter().map(|f| i32::from(touches(f))).collect();
         let found = run(&shape, &colors, &labels, DiffusionCurvesOptions { refine, ..Default::default() });
@@ -86,8 +92,12 @@ fn two_flat_colors_need_one_closed_curve_and_come_back_exactly() {
             (0..3).for_each(|c| assert!((row(&found.curves.right, i)[c] - inside[c]).abs() < 1e-9));
         }
         assert_eq!(found.n_numbers, edges.len() * (2 + 6));
-        let thinned =
-            run(&shape, &colors, &labels, DiffusionCurvesOptions { refine, color_error: 1e-6, ..Default::default() });
+        let thinned = run(
+            &shape,
+            &colors,
+            &labels,
+            DiffusionCurvesOptions { refine, color_error: 1e-6, ..Default::default() },
+        );
         assert_eq!(thinned.n_numbers, edges.len() * 2 + 2 * 7, "two knots");
         assert!(thinned.error < 1e-12);
     }
@@ -184,14 +194,21 @@ fn colors_stay_in_range_on_obtuse_meshes() {
         let labels = labeled(&shape, |p| i32::from(p[1] > 7.0) + 2 * i32::from(p[0] > 60.0));
         let mut errors = Vec::new();
         for refine in [false, true] {
-            let found =
-                run(&shape, &colors, &labels, DiffusionCurvesOptions { refine, rims: seed > 2, ..Default::default() });
+            let found = run(
+                &shape,
+                &colors,
+                &labels,
+                DiffusionCurvesOptions { refine, rims: seed > 2, ..Default::default() },
+            );
             for c in 0..3 {
-                let (least, most) = colors.column(c).iter().fold((1.0_f64, 0.0_f64), |(a, b), &x| (a.min(x), b.max(x)));
+                let (least, most) =
+                    colors.column(c).iter().fold((1.0_f64, 0.0_f64), |(a, b), &x| (a.min(x), b.max(x)));
                 let rebuilt = found.redrawn.colors.column(c);
                 assert!(rebuilt.iter().all(|x| *x >= least && *x <= most));
                 let corners = found.redrawn.corners.iter().skip(c).step_by(3);
-                assert!(corners.chain(found.curves.left.iter().skip(c).step_by(3)).all(|x| *x >= least && *x <= most));
+                assert!(corners
+                    .chain(found.curves.left.iter().skip(c).step_by(3))
+                    .all(|x| *x >= least && *x <= most));
             }
             errors.push(found.error);
         }
@@ -203,15 +220,18 @@ fn colors_stay_in_range_on_obtuse_meshes() {
 fn the_curves_alone_redraw_the_surface() {
     let shape = shapes::icosphere(3).noisy(0.01, 4);
     let colors = painted(&shape, |p| p.map(|x| 0.5 + 0.4 * (3.0 * x).sin()));
-    let labels = labeled(&shape, |p| i32::from(p[0] > 0.1) + 2 * i32::from(p[1] > 0.0) + 4 * i32::from(p[2] > -0.2));
-    let found = run(&shape, &colors, &labels, DiffusionCurvesOptions { color_error: 0.02, ..Default::default() });
+    let labels =
+        labeled(&shape, |p| i32::from(p[0] > 0.1) + 2 * i32::from(p[1] > 0.0) + 4 * i32::from(p[2] > -0.2));
+    let found =
+        run(&shape, &colors, &labels, DiffusionCurvesOptions { color_error: 0.02, ..Default::default() });
     let mesh = shape.mesh().unwrap();
     let again = redraw(&mesh, &found.curves, Some(&found.sides), &Progress::new()).unwrap();
     assert_eq!(again, found.redrawn);
     // In any unit and orientation, and with the vertices turned about their faces.
     let moved = shape.clone().map(|p| p.map(|x| 1000.0 * x)).rotated([1.0, 2.0, 3.0], 1.0);
     let turned = Shape { faces: moved.faces.iter().map(|&[a, b, c]| [b, c, a]).collect(), ..moved };
-    let other = run(&turned, &colors, &labels, DiffusionCurvesOptions { color_error: 0.02, ..Default::default() });
+    let other =
+        run(&turned, &colors, &labels, DiffusionCurvesOptions { color_error: 0.02, ..Default::default() });
     assert_eq!(other.curves.edges, found.curves.edges);
     let pairs = other.redrawn.colors.data.iter().zip(&found.redrawn.colors.data);
     assert!(pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) < 1e-3);
@@ -248,18 +268,24 @@ fn bad_surfaces_are_drawn_too() {
     let colors = painted(&book, |p| if p[0] > 0.5 { [1.0, 0.0, 0.0] } else { [0.0, 0.0, 1.0] });
     let found = run(&book, &colors, &[1, 0, 0], DiffusionCurvesOptions::default());
     assert_eq!(found.curves.edges.len(), 1);
-    assert_eq!([row(&found.curves.left, 0)[2], row(&found.curves.right, 1)[0]], [1.0, 1.0], "the odd page is a side");
+    assert_eq!(
+        [row(&found.curves.left, 0)[2], row(&found.curves.right, 1)[0]],
+        [1.0, 1.0],
+        "the odd page is a side"
+    );
     assert!(found.redrawn.colors.data.iter().all(|x| (0.0..=1.0).contains(x)), "{found:?}");
     let strip = shapes::grid(9, 2);
     let twisted = |v: u32| if v % 10 == 9 { 10 * (2 - v / 10) } else { v };
     let strip = Shape { faces: strip.faces.iter().map(|f| f.map(twisted)).collect(), ..strip };
     let labels: Vec<i32> = (0..strip.faces.len()).map(|f| i32::from(f % 18 < 9)).collect();
-    let found = run(&strip, &painted(&strip, |p| [p[0] / 9.0, 0.0, 0.5]), &labels, DiffusionCurvesOptions::default());
+    let found =
+        run(&strip, &painted(&strip, |p| [p[0] / 9.0, 0.0, 0.5]), &labels, DiffusionCurvesOptions::default());
     assert!(found.error.is_finite());
     let mut flat = shapes::grid(4, 4);
     flat.faces.extend([[0, 1, 1], [2, 2, 2], [0, 2, 1]]);
     let labels = vec![0; flat.faces.len()];
-    let found = run(&flat, &painted(&flat, |_| [0.25, 0.5, 0.75]), &labels, DiffusionCurvesOptions::default());
+    let found =
+        run(&flat, &painted(&flat, |_| [0.25, 0.5, 0.75]), &labels, DiffusionCurvesOptions::default());
     assert!(found.error < 1e-20);
 }
 
@@ -278,7 +304,9 @@ fn refusals_name_the_argument() {
     };
     assert!(find(&[0; 7], &options).starts_with("labels: has 7 entries"));
     assert!(find(&[0; 8], &DiffusionCurvesOptions { fidelity: 0.0, ..options }).starts_with("fidelity"));
-    assert!(find(&[0; 8], &DiffusionCurvesOptions { color_error: -1.0, ..options }).starts_with("color_error"));
+    assert!(
+        find(&[0; 8], &DiffusionCurvesOptions { color_error: -1.0, ..options }).starts_with("color_error")
+    );
     let draw = |curves: &ColoredCurves, sides: Option<&[Option<u32>]>| {
         name(redraw(&mesh, curves, sides, &Progress::new()).unwrap_err())
     };

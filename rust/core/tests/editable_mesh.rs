@@ -90,7 +90,10 @@ fn the_guard_refuses_a_flip_across_a_notch_and_a_move_across_an_edge() {
     assert!(guard::may_flip(&square(), 0, 3));
     let mesh = editable(&shapes::grid(2, 2));
     assert!(guard::may_move(&mesh, 4, [1.2, 0.9, 0.1]) && !guard::may_move(&mesh, 4, [2.2, 1.0, 0.0]));
-    assert!(guard::may_collapse(&mesh, 4, 8, [2.0, 2.0, 0.0]) && !guard::may_collapse(&mesh, 0, 4, [3.0, 3.0, 0.0]));
+    assert!(
+        guard::may_collapse(&mesh, 4, 8, [2.0, 2.0, 0.0])
+            && !guard::may_collapse(&mesh, 0, 4, [3.0, 3.0, 0.0])
+    );
 }
 
 #[test]
@@ -136,7 +139,8 @@ proptest! {
 
     #[test]
     fn random_edits_keep_the_surface(seed in any::<u64>(), which in 0..4_usize) {
-        let shape = [shapes::icosphere(2), shapes::torus(8, 6, 2.0, 0.7), shapes::grid(6, 5), shapes::cylinder(7, 5, 1.0, 2.0)];
+        let torus = shapes::torus(8, 6, 2.0, 0.7);
+        let shape = [shapes::icosphere(2), torus, shapes::grid(6, 5), shapes::cylinder(7, 5, 1.0, 2.0)];
         let n_loops = [0, 0, 1, 2][which];
         let before = euler_characteristic(&shape[which].mesh().unwrap());
         let mut mesh = editable(&shape[which]);

@@ -53,7 +53,8 @@ fn constants_cost_nothing_anywhere_and_affine_functions_nothing_on_the_plane() {
 
 #[test]
 fn a_quadratic_function_on_the_plane() {
-    // ½ ∫ ‖H_u‖² of u = x² + 3 y² + x y is ½ (2² + 6² + 2 · 1²) = 21 per area, at every vertex whose ring is regular.
+    // ½ ∫ ‖H_u‖² of u = x² + 3 y² + x y is ½ (2² + 6² + 2 · 1²) = 21 per area,
+    // at every vertex whose ring is regular.
     let mesh = shapes::grid(20, 16).mesh().unwrap();
     let u = sample(&mesh, |p| p[0] * p[0] + 3.0 * p[1] * p[1] + p[0] * p[1]);
     let inside = 19.0 * 15.0;
@@ -63,8 +64,9 @@ fn a_quadratic_function_on_the_plane() {
     // The curved energy has no curvature here and rings of its own at the boundary.
     let curved = value(&mesh, Energy::L2CurvedHessian, &u);
     assert!((curved / (21.0 * 320.0) - 1.0).abs() < 0.1, "{curved}");
-    // The edge operator of a unit square with u = x y: along its diagonal from (0, 0) to (1, 1) the mean of the ends is ½ and
-    // that of the other corners is 0; across an axis-parallel edge the crossing is its midpoint.
+    // The edge operator of a unit square with u = x y: along its diagonal from (0, 0) to (1, 1) the mean of
+    // the ends is ½ and that of the other corners is 0; across an axis-parallel edge the crossing is its
+    // midpoint.
     let square = shapes::grid(1, 1).mesh().unwrap();
     let xy = sample(&square, |p| p[0] * p[1]);
     assert!((value(&square, Energy::L1EdgeLaplacian, &xy) - 0.5).abs() < 1e-14);
@@ -110,12 +112,14 @@ fn face_weights_scale_the_energy_and_localize_it() {
     let mesh = shapes::grid(12, 6).mesh().unwrap();
     let m = mesh.connectivity().n_faces();
     let u = sample(&mesh, |p| (p[0] - 3.0).abs());
-    let right = mesh.connectivity().faces().iter().map(|f| mesh.positions().unwrap()[f[0] as usize][0] >= 6.0);
+    let right =
+        mesh.connectivity().faces().iter().map(|f| mesh.positions().unwrap()[f[0] as usize][0] >= 6.0);
     let away: Vec<f64> = right.map(|right| if right { 7.0 } else { 1.0 }).collect();
     for (name, energy) in Energy::ALL.into_iter().filter(|(_, e)| *e != Energy::L2Laplacian) {
         let plain = value(&mesh, energy, &u);
-        let with =
-            |w: &[f64]| EnergyForm::new(energy, &mesh, Some(w), Dual::Barycentric).unwrap().evaluate(&u).unwrap();
+        let with = |w: &[f64]| {
+            EnergyForm::new(energy, &mesh, Some(w), Dual::Barycentric).unwrap().evaluate(&u).unwrap()
+        };
         assert!((with(&vec![2.5; m]) / plain - 2.5).abs() < 1e-12, "{name}");
         assert!((with(&away) / plain - 1.0).abs() < 1e-12, "{name}: weights far from the ridge do not count");
     }
@@ -157,11 +161,17 @@ fn poor_meshes_give_finite_energies() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, rng_seed: proptest::test_runner::RngSeed::Fixed(1), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 24,
+        rng_seed: proptest::test_runner::RngSeed::Fixed(1),
+        ..ProptestConfig::default()
+    })]
 
     /// L1 energies are seminorms; quadratic ones obey the parallelogram law.
     #[test]
-    fn energies_are_seminorms_or_their_squares(seed in 0_u64..1 << 40, amplitude in 0.0_f64..0.15, factor in -3.0_f64..3.0) {
+    fn energies_are_seminorms_or_their_squares(
+        seed in 0_u64..1 << 40, amplitude in 0.0_f64..0.15, factor in -3.0_f64..3.0,
+    ) {
         let mesh = shapes::torus(9, 7, 1.0, 0.4).noisy(amplitude, seed).mesh().unwrap();
         let mut random = Random::new(seed);
         let n = mesh.connectivity().n_vertices();
@@ -174,11 +184,13 @@ proptest! {
             let scaled: Vec<f64> = u.iter().map(|x| factor * x).collect();
             let size = of(&u).abs() + of(&v).abs();
             if energy.is_quadratic() {
-                prop_assert!((of(&scaled) - factor * factor * of(&u)).abs() <= 1e-9 * size * (1.0 + factor * factor), "{}", name);
+                let off = (of(&scaled) - factor * factor * of(&u)).abs();
+                prop_assert!(off <= 1e-9 * size * (1.0 + factor * factor), "{}", name);
                 let parallelogram = of(&plus(1.0)) + of(&plus(-1.0)) - 2.0 * of(&u) - 2.0 * of(&v);
                 prop_assert!(parallelogram.abs() <= 1e-9 * size, "{}", name);
             } else {
-                prop_assert!((of(&scaled) - factor.abs() * of(&u)).abs() <= 1e-9 * size * (1.0 + factor.abs()), "{}", name);
+                let off = (of(&scaled) - factor.abs() * of(&u)).abs();
+                prop_assert!(off <= 1e-9 * size * (1.0 + factor.abs()), "{}", name);
                 prop_assert!(of(&plus(1.0)) <= (1.0 + 1e-12) * size, "{}", name);
             }
         }

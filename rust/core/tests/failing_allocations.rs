@@ -1,9 +1,10 @@
 //! One large allocation of a call fails, each in turn.
 //!
-//! In a child the call runs on one thread with an allocator that gives nothing for one allocation of at least [`LARGE`] bytes. It
-//! must end with a result or an error that says what is missing. Where the allocation cannot return an error the process ends, as
-//! Rust has it: that is why a call asks for all of it before ([`ridgeform_core::memory`]). Nothing else may happen: no panic, no
-//! result that says that it is none, no other error. What was found is printed; with `RIDGEFORM_FAIL=all` for every allocation.
+//! In a child the call runs on one thread with an allocator that gives nothing for one allocation of at least
+//! [`LARGE`] bytes. It must end with a result or an error that says what is missing. Where the allocation
+//! cannot return an error the process ends, as Rust has it: that is why a call asks for all of it before
+//! ([`ridgeform_core::memory`]). Nothing else may happen: no panic, no result that says that it is none, no
+//! other error. What was found is printed; with `RIDGEFORM_FAIL=all` for every allocation.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod allocation_calls;
@@ -42,7 +43,9 @@ fn run(name: &str, which: usize) {
     let count = ALLOCATOR.stop();
     match outcome {
         Ok(()) => println!("outcome: {count} result"),
-        Err(Error::Memory { .. } | Error::Solve(SolveError::Memory { .. })) => println!("outcome: {count} refused"),
+        Err(Error::Memory { .. } | Error::Solve(SolveError::Memory { .. })) => {
+            println!("outcome: {count} refused")
+        }
         Err(error) => println!("outcome: {count} {error}"),
     }
 }
@@ -66,7 +69,8 @@ fn end_of(name: &str, which: usize) -> End {
         .output()
         .unwrap();
     let (text, errors) = (String::from_utf8_lossy(&child.stdout), String::from_utf8_lossy(&child.stderr));
-    let outcome = text.lines().find_map(|line| line.split("outcome: ").nth(1)).and_then(|rest| rest.split_once(' '));
+    let outcome =
+        text.lines().find_map(|line| line.split("outcome: ").nth(1)).and_then(|rest| rest.split_once(' '));
     match outcome {
         Some((count, "result")) if child.status.success() => End::Result(count.parse().unwrap()),
         Some((_, "refused")) if child.status.success() => End::Refused,
@@ -75,7 +79,8 @@ fn end_of(name: &str, which: usize) -> End {
     }
 }
 
-/// What was wrong with how a call ended. Its first large allocation is what it asks for all of itself, which is refused.
+/// What was wrong with how a call ended. Its first large allocation is what it asks for all of itself,
+/// which is refused.
 fn faults_of(name: &str, is_all: bool) -> Vec<String> {
     let count = match end_of(name, usize::MAX) {
         End::Result(count) => count,
@@ -86,7 +91,8 @@ fn faults_of(name: &str, is_all: bool) -> Vec<String> {
     let number = |wanted: &End| ends.iter().filter(|end| *end == wanted).count();
     let (refused, aborted) = (number(&End::Refused), number(&End::Aborted));
     println!("{name}: {count} large, {} tried, {refused} refused, {aborted} end the process", ends.len());
-    let first = (ends.first() != Some(&End::Refused)).then(|| format!("{name}: the first is {:?}", ends.first()));
+    let first =
+        (ends.first() != Some(&End::Refused)).then(|| format!("{name}: the first is {:?}", ends.first()));
     let others = ends.into_iter().filter_map(|end| match end {
         End::Fault(fault) => Some(fault),
         _ => None,

@@ -32,7 +32,8 @@ fn rotating_and_stylizing_commute() {
     let shape = bumpy();
     for scale in [Scale::MaxEdge, Scale::Area] {
         let options = StylizeOptions { iterations: 10, fidelity: 2e4, scale, ..StylizeOptions::default() };
-        let first = Shape { vertices: flow(&shape, &options).vertices, faces: shape.faces.clone() }.rotated(AXIS, 1.1);
+        let first = Shape { vertices: flow(&shape, &options).vertices, faces: shape.faces.clone() }
+            .rotated(AXIS, 1.1);
         let then = flow(&shape.clone().rotated(AXIS, 1.1), &options);
         assert!(farthest(&first.vertices, &then.vertices) < 1e-9);
     }
@@ -42,7 +43,8 @@ fn rotating_and_stylizing_commute() {
 fn separate_coordinates_depend_on_the_frame() {
     let shape = bumpy();
     let options = StylizeOptions { coupling: Coupling::Separate, ..strong(5) };
-    let first = Shape { vertices: flow(&shape, &options).vertices, faces: shape.faces.clone() }.rotated(AXIS, 1.1);
+    let first =
+        Shape { vertices: flow(&shape, &options).vertices, faces: shape.faces.clone() }.rotated(AXIS, 1.1);
     let then = flow(&shape.clone().rotated(AXIS, 1.1), &options);
     assert!(farthest(&first.vertices, &then.vertices) > 1e-4);
 }

@@ -85,7 +85,10 @@ fn call(seed: u64) -> (&'static str, &'static str) {
     let ended = match shape.mesh().map_err(Error::from).and_then(|mesh| check(tool, &mesh, &mut random)) {
         Ok(()) => "answer",
         Err(error) => {
-            assert!(error == Error::Cancelled || error.to_string().split(' ').count() > 3, "no sentence: {error}");
+            assert!(
+                error == Error::Cancelled || error.to_string().split(' ').count() > 3,
+                "no sentence: {error}"
+            );
             "refused"
         }
     };

@@ -9,7 +9,8 @@ use ridgeform_core::shapes::{self, Random, Shape};
 /// `H u` of a scalar function given at the vertices.
 fn hessian_of(mesh: &Mesh, u: &[f64], dual: Dual) -> Vec<[f64; 4]> {
     let h = hessian(mesh, dual).unwrap();
-    let entries: Vec<f64> = h.outer_iterator().map(|row| row.iter().map(|(c, v)| v * u[c]).sum::<f64>()).collect();
+    let entries: Vec<f64> =
+        h.outer_iterator().map(|row| row.iter().map(|(c, v)| v * u[c]).sum::<f64>()).collect();
     entries.chunks_exact(4).map(|e| [e[0], e[1], e[2], e[3]]).collect()
 }
 
@@ -44,9 +45,12 @@ fn affine_functions_on_a_flat_mesh_have_no_hessian() {
 
 #[test]
 fn constants_have_no_hessian_on_any_mesh() {
-    for shape in
-        [shapes::icosphere(2).noisy(0.05, 2), shapes::cube(4), shapes::torus(9, 7, 2.0, 0.7), shapes::tetrahedron()]
-    {
+    for shape in [
+        shapes::icosphere(2).noisy(0.05, 2),
+        shapes::cube(4),
+        shapes::torus(9, 7, 2.0, 0.7),
+        shapes::tetrahedron(),
+    ] {
         let mesh = shape.mesh().unwrap();
         let u = vec![1.0; shape.vertices.len()];
         let scale = magnitude(&mesh, &u, Dual::Barycentric);
@@ -92,9 +96,11 @@ fn degenerate_faces_have_zero_rows_and_nothing_is_nan() {
     let norms = hessian_norm(&mesh, &x, Dual::Barycentric).unwrap();
     assert!(norms.iter().take(80).all(|&norm| norm > 0.0));
     assert_eq!(norms[80..], [0.0; 3]);
-    let expected: f64 = norms.iter().zip(mesh.edge_lengths()).map(|(norm, &l)| norm * triangle::area(l)).sum();
+    let expected: f64 =
+        norms.iter().zip(mesh.edge_lengths()).map(|(norm, &l)| norm * triangle::area(l)).sum();
     assert!(
-        (EnergyForm::new(Energy::L1Hessian, &mesh, None, Dual::Barycentric).unwrap().evaluate(&x).unwrap() / expected
+        (EnergyForm::new(Energy::L1Hessian, &mesh, None, Dual::Barycentric).unwrap().evaluate(&x).unwrap()
+            / expected
             - 1.0)
             .abs()
             < 1e-14
@@ -103,7 +109,10 @@ fn degenerate_faces_have_zero_rows_and_nothing_is_nan() {
 
 /// Asserts that two matrices with the same pattern agree to 1e-12 of the largest entry.
 fn assert_close(a: &sprs::CsMat<f64>, b: &sprs::CsMat<f64>) {
-    assert_eq!((a.shape(), a.indptr().raw_storage(), a.indices()), (b.shape(), b.indptr().raw_storage(), b.indices()));
+    assert_eq!(
+        (a.shape(), a.indptr().raw_storage(), a.indices()),
+        (b.shape(), b.indptr().raw_storage(), b.indices())
+    );
     let scale = b.data().iter().fold(0.0_f64, |s, x| s.max(x.abs()));
     assert!(scale > 0.0);
     for (x, y) in a.data().iter().zip(b.data()) {
@@ -163,7 +172,12 @@ fn renumbering_permutes_and_turning_a_face_keeps_its_norm() {
     };
     let (expected, found) = (norms(&shape), norms(&renumbered));
     for (old, &new) in faces.iter().enumerate() {
-        assert!((found[new] - expected[old]).abs() <= 1e-12 * expected[old], "{} {}", found[new], expected[old]);
+        assert!(
+            (found[new] - expected[old]).abs() <= 1e-12 * expected[old],
+            "{} {}",
+            found[new],
+            expected[old]
+        );
     }
 }
 
@@ -173,7 +187,8 @@ fn several_columns_share_one_norm() {
     let mesh = shape.mesh().unwrap();
     let columns: Vec<Vec<f64>> = (0..3).map(|k| at_vertices(&shape, |p| p[k])).collect();
     let joint = hessian_norm(&mesh, &columns.concat(), Dual::Barycentric).unwrap();
-    let separate: Vec<Vec<f64>> = columns.iter().map(|u| hessian_norm(&mesh, u, Dual::Barycentric).unwrap()).collect();
+    let separate: Vec<Vec<f64>> =
+        columns.iter().map(|u| hessian_norm(&mesh, u, Dual::Barycentric).unwrap()).collect();
     for (f, norm) in joint.iter().enumerate() {
         let expected = separate.iter().map(|norms| norms[f] * norms[f]).sum::<f64>().sqrt();
         assert!((norm - expected).abs() <= 1e-14 * expected);

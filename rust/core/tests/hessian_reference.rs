@@ -1,5 +1,5 @@
-//! The Hessian against an independent computation in space: the neighbor is rotated about the shared edge into the plane of
-//! the face, gradients are least squares fits, centers are computed from positions.
+//! The Hessian against an independent computation in space: the neighbor is rotated about the shared edge
+//! into the plane of the face, gradients are least squares fits, centers are computed from positions.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use proptest::prelude::*;
@@ -26,8 +26,8 @@ fn unit(a: V) -> V {
     a.map(|x| x / length)
 }
 
-/// The gradient of the affine function with values `u` at `p`, within the plane of `p`: the least squares solution of
-/// `(p_k − p_0) · g = u_k − u_0` by the normal equations of the two edges.
+/// The gradient of the affine function with values `u` at `p`, within the plane of `p`: the least squares
+/// solution of `(p_k − p_0) · g = u_k − u_0` by the normal equations of the two edges.
 fn gradient(p: [V; 3], u: [f64; 3]) -> V {
     let (a, b) = (sub(p[1], p[0]), sub(p[2], p[0]));
     let (s, t) = (u[1] - u[0], u[2] - u[0]);
@@ -57,7 +57,8 @@ fn unfold(q: V, a: V, b: V, p: V) -> V {
     axpy(axpy(a, along, axis), -dot(away, away).sqrt(), inward)
 }
 
-/// `(A_f H_f, rounding scale)` of face `f`, entries `xx, xy, yx, yy`, found from positions and the face list alone.
+/// `(A_f H_f, rounding scale)` of face `f`, entries `xx, xy, yx, yy`,
+/// found from positions and the face list alone.
 fn reference(shape: &Shape, u: &[f64], f: usize, dual: Dual) -> ([f64; 4], f64) {
     let at = |v: u32| shape.vertices[v as usize];
     let value = |v: u32| u[v as usize];
@@ -70,8 +71,10 @@ fn reference(shape: &Shape, u: &[f64], f: usize, dual: Dual) -> ([f64; 4], f64) 
     let (mut h, mut scale) = ([0.0; 4], 0.0);
     for i in 0..3 {
         let (a, b) = (face[(i + 1) % 3], face[(i + 2) % 3]);
-        let across =
-            shape.faces.iter().find_map(|g| (0..3).find(|&k| g[k] == b && g[(k + 1) % 3] == a).map(|k| g[(k + 2) % 3]));
+        let across = shape
+            .faces
+            .iter()
+            .find_map(|g| (0..3).find(|&k| g[k] == b && g[(k + 1) % 3] == a).map(|k| g[(k + 2) % 3]));
         let Some(o) = across else { continue };
         let q = [at(b), at(a), unfold(at(o), at(a), at(b), at(face[i]))];
         let (g_face, g_neighbor) = (gradient(p, face.map(value)), gradient(q, [b, a, o].map(value)));
@@ -98,7 +101,10 @@ fn assert_matches(shape: &Shape, seed: u64, dual: Dual) {
         let (expected, scale) = reference(shape, &u, f, dual);
         for (k, e) in expected.into_iter().enumerate() {
             let found = product.get(4 * f + k).copied().unwrap_or(0.0);
-            assert!((found - e).abs() <= 1e-12 * scale, "face {f}, entry {k}: {found} against {e}, scale {scale}");
+            assert!(
+                (found - e).abs() <= 1e-12 * scale,
+                "face {f}, entry {k}: {found} against {e}, scale {scale}"
+            );
         }
     }
 }
@@ -108,7 +114,9 @@ fn assert_same(a: &sprs::CsMat<f64>, b: &sprs::CsMat<f64>) {
     let (a, b) = (a.to_dense(), b.to_dense());
     assert_eq!(a.shape(), b.shape());
     for row in 0..a.shape()[0] {
-        let scale = (row / 4 * 4..row / 4 * 4 + 4).flat_map(|r| b.row(r).to_vec()).fold(0.0_f64, |s, x| s.max(x.abs()));
+        let scale = (row / 4 * 4..row / 4 * 4 + 4)
+            .flat_map(|r| b.row(r).to_vec())
+            .fold(0.0_f64, |s, x| s.max(x.abs()));
         for column in 0..a.shape()[1] {
             let (x, y) = (a[[row, column]], b[[row, column]]);
             assert!((x - y).abs() <= 1e-12 * scale, "({row}, {column}): {x} against {y}");
@@ -131,7 +139,8 @@ proptest! {
 
     #[test]
     fn noisy_shapes_match_the_computation_in_space(seed in any::<u64>(), amplitude in 0.0..0.2_f64) {
-        for shape in [shapes::icosphere(1), shapes::cube(3), shapes::torus(8, 6, 2.0, 0.8), shapes::grid(4, 5)] {
+        let torus = shapes::torus(8, 6, 2.0, 0.8);
+        for shape in [shapes::icosphere(1), shapes::cube(3), torus, shapes::grid(4, 5)] {
             // Circumcentric duals exist almost everywhere, once the shape is irregular.
             let noisy = shape.noisy(amplitude + 0.05, seed);
             assert_matches(&noisy, seed ^ 1, Dual::Barycentric);
@@ -144,9 +153,11 @@ proptest! {
     fn the_assembled_hessian_is_the_product_of_the_factors(seed in any::<u64>(), amplitude in 0.0..0.2_f64) {
         for shape in [shapes::tetrahedron(), shapes::cylinder(6, 3, 1.0, 2.0), shapes::icosphere(1)] {
             let mesh = shape.noisy(amplitude, seed).mesh().unwrap();
-            assert_same(&hessian(&mesh, Dual::Barycentric).unwrap(), &product_of_factors(&mesh, Dual::Barycentric));
+            let dual = Dual::Barycentric;
+            assert_same(&hessian(&mesh, dual).unwrap(), &product_of_factors(&mesh, dual));
         }
         let mesh = shapes::icosphere(1).noisy(0.3 * amplitude, seed).mesh().unwrap();
-        assert_same(&hessian(&mesh, Dual::Circumcentric).unwrap(), &product_of_factors(&mesh, Dual::Circumcentric));
+        let dual = Dual::Circumcentric;
+        assert_same(&hessian(&mesh, dual).unwrap(), &product_of_factors(&mesh, dual));
     }
 }

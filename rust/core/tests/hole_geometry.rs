@@ -17,7 +17,8 @@ fn flat() -> FillOptions {
 
 /// The loops that are neither an outer border nor refused.
 fn fillable_loops(mesh: &Mesh) -> Result<Vec<Vec<u32>>, Error> {
-    let fillable = find_holes(mesh)?.into_iter().filter(|hole| !hole.is_outer_border && hole.refusal.is_none());
+    let fillable =
+        find_holes(mesh)?.into_iter().filter(|hole| !hole.is_outer_border && hole.refusal.is_none());
     Ok(fillable.map(|hole| hole.vertices).collect())
 }
 
@@ -75,8 +76,11 @@ fn a_square_hole_takes_two_triangles() {
     assert!(patches[0].vertices.is_empty());
     assert_eq!(patches[0].faces.len(), 2);
     assert_eq!(mesh.connectivity().n_faces(), 18);
-    let area: f64 =
-        patches[0].faces.iter().map(|f| area_vector(f.map(|v| mesh.positions().unwrap()[v as usize]))[2]).sum();
+    let area: f64 = patches[0]
+        .faces
+        .iter()
+        .map(|f| area_vector(f.map(|v| mesh.positions().unwrap()[v as usize]))[2])
+        .sum();
     assert!((area - 1.0).abs() < 1e-12);
 }
 
@@ -96,27 +100,36 @@ fn a_flat_hole_is_filled_flat_and_without_overlap_also_where_it_is_not_convex() 
 
 #[test]
 fn a_hole_across_the_edge_of_a_box_gets_one_chamfer_from_end_to_end() {
-    // The cells along an edge of the cube: between its two ends nothing has to bend by more than the 45 degrees of a chamfer.
+    // The cells along an edge of the cube: between its two ends nothing has to bend by more than the 45
+    // degrees of a chamfer.
     let cube = shapes::cube(8);
     let near = |p: &[f64; 3]| p[0] + p[1] > 1.4 && p[2].abs() < 0.6;
-    let hole = cube.clone().without_faces(|f| cube.faces[f].iter().all(|&v| near(&cube.vertices[v as usize])));
+    let hole =
+        cube.clone().without_faces(|f| cube.faces[f].iter().all(|&v| near(&cube.vertices[v as usize])));
     let mesh = hole.mesh().unwrap();
     let patch = fill_loop(&mesh, &fillable_loops(&mesh).unwrap()[0], &flat(), &Progress::new()).unwrap();
     let filled = patched(&mesh, &[patch]).unwrap();
     assert!(shapeliness(&filled, mesh.connectivity().n_faces()).cosine > -1e-9);
 }
 
-/// A fan of a regular polygon with `n` corners at height `height(angle)`, turned inside out: its rim is a hole.
+/// A fan of a regular polygon with `n` corners at height `height(angle)`, turned inside out:
+/// its rim is a hole.
 fn ring(n: usize, height: impl Fn(f64) -> f64) -> Shape {
-    shapes::cylinder(n, 1, 1.0, -1.0)
-        .map(|[x, y, z]| if z == 0.0 { [x, y, height(y.atan2(x))] } else { [1.5 * x, 1.5 * y, z] })
+    shapes::cylinder(n, 1, 1.0, -1.0).map(|[x, y, z]| {
+        if z == 0.0 {
+            [x, y, height(y.atan2(x))]
+        } else {
+            [1.5 * x, 1.5 * y, z]
+        }
+    })
 }
 
 #[test]
 fn a_regular_polygon_and_a_saddle_are_filled_with_even_triangles() {
     for (n, wave) in [(6, 0.0), (7, 0.0), (24, 0.0), (40, 0.4), (60, 0.8)] {
         let mesh = ring(n, |angle| wave * (2.0 * angle).sin()).mesh().unwrap();
-        let rim = find_holes(&mesh).unwrap().into_iter().map(|h| h.vertices).find(|rim| rim.contains(&0)).unwrap();
+        let rim =
+            find_holes(&mesh).unwrap().into_iter().map(|h| h.vertices).find(|rim| rim.contains(&0)).unwrap();
         let simple = fill_loop(&mesh, &rim, &flat(), &Progress::new()).unwrap();
         assert_eq!((simple.vertices.len(), simple.faces.len()), (0, n - 2));
         let patch = fill_loop(&mesh, &rim, &FillOptions::default(), &Progress::new()).unwrap();
@@ -127,13 +140,12 @@ fn a_regular_polygon_and_a_saddle_are_filled_with_even_triangles() {
             assert!(patch.vertices.iter().all(|p| p[2].abs() < 1e-12));
             assert!(patch_corners(&filled, &patch).all(|t| area_vector(t)[2].abs() > 0.0));
         }
-        let edge = rim
-            .iter()
-            .zip(rim.iter().cycle().skip(1))
-            .map(|(&a, &b)| distance(mesh.positions().unwrap()[a as usize], mesh.positions().unwrap()[b as usize]));
+        let edge = rim.iter().zip(rim.iter().cycle().skip(1)).map(|(&a, &b)| {
+            distance(mesh.positions().unwrap()[a as usize], mesh.positions().unwrap()[b as usize])
+        });
         let edge = edge.sum::<f64>() / n as f64;
-        let inside =
-            patch_corners(&filled, &patch).map(|t| distance(t[0], t[1])).sum::<f64>() / patch.faces.len() as f64;
+        let inside = patch_corners(&filled, &patch).map(|t| distance(t[0], t[1])).sum::<f64>()
+            / patch.faces.len() as f64;
         assert!(n < 20 || (inside / edge - 1.0).abs() < 0.35, "{n} {wave}: {inside} of {edge}");
     }
 }
@@ -141,13 +153,18 @@ fn a_regular_polygon_and_a_saddle_are_filled_with_even_triangles() {
 #[test]
 fn the_edge_length_can_be_set_and_faces_be_limited() {
     let mesh = ring(64, |_| 0.0).mesh().unwrap();
-    let rim = find_holes(&mesh).unwrap().into_iter().map(|h| h.vertices).find(|rim| rim.contains(&0)).unwrap();
-    let count = |options: &FillOptions| fill_loop(&mesh, &rim, options, &Progress::new()).unwrap().faces.len();
+    let rim =
+        find_holes(&mesh).unwrap().into_iter().map(|h| h.vertices).find(|rim| rim.contains(&0)).unwrap();
+    let count =
+        |options: &FillOptions| fill_loop(&mesh, &rim, options, &Progress::new()).unwrap().faces.len();
     let usual = count(&FillOptions::default());
     let coarse = count(&FillOptions { edge_length: Some(0.3), ..FillOptions::default() });
     let fine = count(&FillOptions { edge_length: Some(0.05), ..FillOptions::default() });
     let limited = count(&FillOptions { max_faces: 300, ..FillOptions::default() });
-    assert!(coarse < usual && usual < fine && limited < 450 && limited < usual, "{coarse} {usual} {fine} {limited}");
+    assert!(
+        coarse < usual && usual < fine && limited < 450 && limited < usual,
+        "{coarse} {usual} {fine} {limited}"
+    );
 }
 
 #[test]
@@ -156,8 +173,11 @@ fn holes_that_touch_and_rims_that_touch_themselves_are_filled() {
     for cells in [vec![14, 21, 28], vec![7, 14], vec![14, 15, 22, 27, 26], vec![0, 7]] {
         let shape = shapes::grid(6, 6).without_faces(|f| cells.contains(&(f / 2)));
         let (filled, patches) = fill_all(&shape, &FillOptions::default());
-        let area: f64 =
-            patches.iter().flat_map(|p| patch_corners(&filled, p).collect::<Vec<_>>()).map(|t| area_vector(t)[2]).sum();
+        let area: f64 = patches
+            .iter()
+            .flat_map(|p| patch_corners(&filled, p).collect::<Vec<_>>())
+            .map(|t| area_vector(t)[2])
+            .sum();
         let corner_cells = cells.iter().filter(|&&c| c == 0).count();
         assert!((area - (cells.len() - corner_cells) as f64).abs() < 1e-9, "{cells:?}: {area}");
         assert!(report(&filled).nonmanifold_edges.is_empty());
@@ -216,8 +236,9 @@ fn patches_turn_and_grow_with_the_mesh() {
     let (other, _) = fill_all(&turned, &FillOptions::default());
     let back = Shape { vertices: other.positions().unwrap().to_vec(), faces: Vec::new() };
     let back = back.map(|p| p.map(|x| x / 1000.0)).rotated([1.0, 2.0, 0.5], -0.8);
-    let near =
-        |p: &[f64; 3]| filled.positions().unwrap().iter().map(|&q| distance(*p, q)).fold(f64::INFINITY, f64::min);
+    let near = |p: &[f64; 3]| {
+        filled.positions().unwrap().iter().map(|&q| distance(*p, q)).fold(f64::INFINITY, f64::min)
+    };
     // Ties may be decided otherwise by rounding, but the surface is the same.
     assert!(back.vertices.iter().all(|p| near(p) < 0.08));
     assert!(filled.positions().unwrap().iter().all(|&p| dot(p, p) < 1.0 + 1e-9));
@@ -237,13 +258,15 @@ fn long_loops_are_divided_and_still_filled_soundly() {
     });
     let (mesh, patches) = fill_all(&frame, &flat());
     let positions = mesh.positions().unwrap();
-    let area: f64 = patches[0].faces.iter().map(|f| norm(area_vector(f.map(|v| positions[v as usize])))).sum();
+    let area: f64 =
+        patches[0].faces.iter().map(|f| norm(area_vector(f.map(|v| positions[v as usize])))).sum();
     assert!((area - 22500.0).abs() < 1e-6, "{area}");
 }
 
 #[test]
 fn loops_that_cannot_be_filled_are_refused_by_name() {
-    let triangle = Shape { vertices: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], faces: vec![[0, 1, 2]] };
+    let triangle =
+        Shape { vertices: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], faces: vec![[0, 1, 2]] };
     let triangle = triangle.mesh().unwrap();
     assert_eq!(find_holes(&triangle).unwrap()[0].refusal, Some(Refusal::SingleFace));
     assert_eq!(refusal(&triangle, &[0, 1, 2]), Refusal::SingleFace);
@@ -273,7 +296,8 @@ fn wide_ring(n: u32) -> Mesh {
         [radius * angle.cos(), radius * angle.sin(), z]
     };
     let vertices = (0..n).map(|i| at(i, 1.0, 0.0)).chain((0..n).map(|i| at(i, 1.1, 0.05))).collect();
-    let faces = (0..n).flat_map(|i| [[i, n + i, n + (i + 1) % n], [i, n + (i + 1) % n, (i + 1) % n]]).collect();
+    let faces =
+        (0..n).flat_map(|i| [[i, n + i, n + (i + 1) % n], [i, n + (i + 1) % n, (i + 1) % n]]).collect();
     Mesh::new(vertices, faces).unwrap()
 }
 
@@ -285,7 +309,11 @@ fn a_budget_that_a_rim_cannot_meet_gives_way_and_the_patch_stays_bounded() {
         let options = FillOptions { max_faces, ..FillOptions::default() };
         let patch = fill_loop(&mesh, &hole.vertices, &options, &Progress::new()).unwrap();
         let most = 2 * max_faces.max(5 * n as usize);
-        assert!((n as usize - 2..most).contains(&patch.faces.len()), "{n} edges: {} faces", patch.faces.len());
+        assert!(
+            (n as usize - 2..most).contains(&patch.faces.len()),
+            "{n} edges: {} faces",
+            patch.faces.len()
+        );
     }
 }
 

@@ -24,7 +24,8 @@ fn ten_meshes() -> [Shape; 10] {
     ]
 }
 
-/// Cuts and fills `count` times in every mesh, with the seeds from `first` on. Returns how many holes were filled.
+/// Cuts and fills `count` times in every mesh, with the seeds from `first` on.
+/// Returns how many holes were filled.
 fn stress(first: u64, count: u64) -> usize {
     let mut filled_holes = 0;
     let (mut thin, mut folded, mut n_faces) = (0, 0, 0);
@@ -41,7 +42,8 @@ fn stress(first: u64, count: u64) -> usize {
                 .collect();
             let patches = fill_loops(&mesh, &wanted, &FillOptions::default(), &Progress::new())
                 .unwrap_or_else(|error| panic!("mesh {which}, seed {seed}: {error}"));
-            let filled = patched(&mesh, &patches).unwrap_or_else(|why| panic!("mesh {which}, seed {seed}: {why}"));
+            let filled =
+                patched(&mesh, &patches).unwrap_or_else(|why| panic!("mesh {which}, seed {seed}: {why}"));
             let shape = shapeliness(&filled, mesh.connectivity().n_faces());
             assert!(shape.quality > 0.02, "mesh {which}, seed {seed}: {shape:?}");
             if shape.quality < 0.1 || shape.cosine < -0.9 {

@@ -50,7 +50,8 @@ fn the_laplacian_is_the_dirichlet_energy() {
     let shape = shapes::grid(6, 5).noisy(0.3, 3).map(|[x, y, _]| [x, y, 0.0]);
     let mesh = shape.clone().rotated([0.3, 1.0, 0.2], 1.1).mesh().unwrap();
     let laplacian = cotangent_laplacian(mesh.connectivity(), mesh.edge_lengths());
-    let quadratic = |u: &[f64]| laplacian.iter().map(|(value, (row, column))| u[row] * value * u[column]).sum::<f64>();
+    let quadratic =
+        |u: &[f64]| laplacian.iter().map(|(value, (row, column))| u[row] * value * u[column]).sum::<f64>();
     let affine: Vec<f64> = shape.vertices.iter().map(|p| 3.0 * p[0] - 2.0 * p[1] + 1.0).collect();
     assert!((quadratic(&affine) / (13.0 * total_area(&mesh)) - 1.0).abs() < 1e-12);
     assert!(quadratic(&vec![1.0; affine.len()]).abs() < 1e-12);

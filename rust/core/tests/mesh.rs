@@ -3,13 +3,16 @@
 
 use proptest::prelude::*;
 use ridgeform_core::error::MeshError;
-use ridgeform_core::mesh::{boundary_loops, invariants, report, triangle, Connectivity, EdgeKind, Mesh, MeshReport};
+use ridgeform_core::mesh::{
+    boundary_loops, invariants, report, triangle, Connectivity, EdgeKind, Mesh, MeshReport,
+};
 use ridgeform_core::shapes::{self, Shape};
 
 /// A mesh of `faces` whose positions are in general position.
 fn of_faces(faces: &[[u32; 3]]) -> Mesh {
     let n = faces.iter().flatten().max().unwrap() + 1;
-    let vertices = (0..n).map(|v| [(f64::from(v) * 2.4).cos(), (f64::from(v) * 2.4).sin(), (f64::from(v) * 0.9).sin()]);
+    let vertices =
+        (0..n).map(|v| [(f64::from(v) * 2.4).cos(), (f64::from(v) * 2.4).sin(), (f64::from(v) * 0.9).sin()]);
     let mesh = Mesh::new(vertices.collect(), faces.to_vec()).unwrap();
     invariants::check(mesh.connectivity()).unwrap();
     mesh
@@ -35,17 +38,22 @@ fn halfedges_are_opposite_their_corners() {
 
 #[test]
 fn closed_shapes_are_clean() {
-    for shape in [shapes::tetrahedron(), shapes::icosphere(2), shapes::cube(3), shapes::torus(5, 4, 2.0, 0.5)] {
+    for shape in [shapes::tetrahedron(), shapes::icosphere(2), shapes::cube(3), shapes::torus(5, 4, 2.0, 0.5)]
+    {
         let mesh = shape.mesh().unwrap();
         invariants::check(mesh.connectivity()).unwrap();
         assert_eq!(report(&mesh), clean(1, 0));
-        let volume: f64 = shape.faces.iter().map(|f| signed_volume(f.map(|v| shape.vertices[v as usize]))).sum();
+        let volume: f64 =
+            shape.faces.iter().map(|f| signed_volume(f.map(|v| shape.vertices[v as usize]))).sum();
         assert!(volume > 0.5, "faces point outwards");
     }
 }
 
 fn signed_volume([a, b, c]: [[f64; 3]; 3]) -> f64 {
-    (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])) / 6.0
+    (a[0] * (b[1] * c[2] - b[2] * c[1])
+        + a[1] * (b[2] * c[0] - b[0] * c[2])
+        + a[2] * (b[0] * c[1] - b[1] * c[0]))
+        / 6.0
 }
 
 #[test]
@@ -113,7 +121,10 @@ fn a_moebius_strip_has_an_inconsistent_edge_and_one_loop() {
     let mesh = of_faces(&faces);
     let found = report(&mesh);
     assert_eq!(found.inconsistent_edges, [[0, 1]]);
-    assert_eq!(found, MeshReport { nonmanifold_edges: vec![[0, 1]], inconsistent_edges: vec![[0, 1]], ..clean(1, 1) });
+    assert_eq!(
+        found,
+        MeshReport { nonmanifold_edges: vec![[0, 1]], inconsistent_edges: vec![[0, 1]], ..clean(1, 1) }
+    );
     let mut rim = loops(&mesh).remove(0);
     rim.sort_unstable();
     assert_eq!(rim, (0..12).collect::<Vec<u32>>());
@@ -155,7 +166,10 @@ fn duplicate_and_degenerate_faces_are_named() {
 fn empty_meshes_are_meshes() {
     let mesh = Mesh::new(vec![], vec![]).unwrap();
     assert_eq!(report(&mesh), MeshReport::default());
-    assert_eq!(Mesh::new(vec![[0.0; 3]], vec![]).map(|mesh| report(&mesh).unreferenced_vertices), Ok(vec![0]));
+    assert_eq!(
+        Mesh::new(vec![[0.0; 3]], vec![]).map(|mesh| report(&mesh).unreferenced_vertices),
+        Ok(vec![0])
+    );
 }
 
 #[test]
@@ -210,7 +224,9 @@ proptest! {
     })]
 
     #[test]
-    fn any_list_of_faces_has_sound_halfedges_and_loops(faces in prop::collection::vec(prop::array::uniform3(0_u32..9), 1..40)) {
+    fn any_list_of_faces_has_sound_halfedges_and_loops(
+        faces in prop::collection::vec(prop::array::uniform3(0_u32..9), 1..40),
+    ) {
         let connectivity = Connectivity::new(faces, 9).unwrap();
         invariants::check(&connectivity).unwrap();
         let mut boundary = std::collections::HashSet::new();
@@ -222,7 +238,8 @@ proptest! {
             prop_assert!(rim.len() >= 3);
             for (k, &vertex) in rim.iter().enumerate() {
                 let following = rim[(k + 1) % rim.len()];
-                prop_assert!(boundary.remove(&(vertex.min(following), vertex.max(following))), "each edge is in one loop");
+                let edge = (vertex.min(following), vertex.max(following));
+                prop_assert!(boundary.remove(&edge), "each edge is in one loop");
                 prop_assert!(!rim[..k].contains(&vertex));
             }
         }
@@ -232,7 +249,8 @@ proptest! {
     fn manifold_boundaries_are_all_in_loops(holes in prop::collection::vec(0_usize..60, 0..30)) {
         let mesh = shapes::grid(6, 5).without_faces(|f| holes.contains(&f)).mesh().unwrap();
         let connectivity = mesh.connectivity();
-        let boundary = (0..connectivity.n_halfedges()).filter(|&h| connectivity.kind(h) == EdgeKind::Boundary).count();
+        let halfedges = 0..connectivity.n_halfedges();
+        let boundary = halfedges.filter(|&h| connectivity.kind(h) == EdgeKind::Boundary).count();
         let found = boundary_loops(connectivity);
         prop_assert_eq!(boundary, found.iter().map(Vec::len).sum::<usize>());
         for rim in &found {

@@ -28,7 +28,8 @@ fn assert_orthonormal_and_ascending(mesh: &Mesh, found: &Modes, count: usize) {
             let product = inner(&mass, found.values.column(a), found.values.column(b));
             assert!((product - f64::from(u8::from(a == b))).abs() < 1e-10, "{a} {b}: {product}");
         }
-        let largest = found.values.column(a).iter().fold(0.0_f64, |m, x| if x.abs() > m.abs() { *x } else { m });
+        let largest =
+            found.values.column(a).iter().fold(0.0_f64, |m, x| if x.abs() > m.abs() { *x } else { m });
         assert!(largest > 0.0 || found.values.column(a).iter().any(|x| (x + largest).abs() < 1e-5 * x.abs()));
     }
     assert!(found.energies.windows(2).all(|pair| pair[0] <= pair[1]));
@@ -57,8 +58,9 @@ fn quadratic_modes_of_the_sphere_are_spherical_harmonics() {
 
 #[test]
 fn quadratic_modes_of_the_square() {
-    // With zero Neumann conditions ½ (π² (i² + j²))² on the unit square. With natural ones affine functions are free, and then
-    // comes a twist, for which x y with its energy of ½ · 2 · 144 is a bound from above and a tenth too large.
+    // With zero Neumann conditions ½ (π² (i² + j²))² on the unit square. With natural ones affine functions
+    // are free, and then comes a twist, for which x y with its energy of ½ · 2 · 144 is a bound from above
+    // and a tenth too large.
     let mesh = shapes::grid(30, 30).map(|p| p.map(|x| x / 30.0)).mesh().unwrap();
     let neumann = modes(&mesh, 6, Energy::L2Laplacian);
     let square = std::f64::consts::PI.powi(4);
@@ -69,7 +71,11 @@ fn quadratic_modes_of_the_square() {
     for energy in [Energy::L2Hessian, Energy::L2CurvedHessian] {
         let found = modes(&mesh, 6, energy);
         assert_orthonormal_and_ascending(&mesh, &found, 6);
-        assert!(found.energies[2] < 1e-6 && (110.0..145.0).contains(&found.energies[3]), "{:?}", found.energies);
+        assert!(
+            found.energies[2] < 1e-6 && (110.0..145.0).contains(&found.energies[3]),
+            "{:?}",
+            found.energies
+        );
     }
 }
 

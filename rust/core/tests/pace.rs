@@ -1,4 +1,5 @@
-//! A flow that looks for its end by itself: how far it goes, when it has settled, and what does not change that.
+//! A flow that looks for its end by itself: how far it goes, when it has settled,
+//! and what does not change that.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use ridgeform_core::shapes::{self, Shape};
@@ -21,7 +22,8 @@ fn flow(shape: &Shape, options: &StylizeOptions) -> Stylized {
     stylize(&shape.mesh().unwrap(), options, &Progress::new()).unwrap()
 }
 
-/// Root mean square distance, weighted by a third of the faces' areas before, in parts of the root of the area.
+/// Root mean square distance, weighted by a third of the faces' areas before,
+/// in parts of the root of the area.
 fn moved(shape: &Shape, result: &Stylized) -> f64 {
     let (mut sum, mut total) = (0.0, 0.0);
     for face in &shape.faces {
@@ -141,7 +143,8 @@ fn flatness_of_known_shapes() {
     };
     let cube = of(&shapes::cube(8));
     assert_eq!((cube.n_facets, cube.soft_share < 1e-9, cube.plane_share), (6, true, 1.0));
-    // The faces in the two rows beside the edges meet a neighbor at a right angle, but for one triangle of two at some.
+    // The faces in the two rows beside the edges meet a neighbor at a right angle,
+    // but for one triangle of two at some.
     assert!(cube.flat_share > 0.5 && cube.flat_share < 0.9);
     let sheet = of(&shapes::grid(5, 4));
     assert_eq!((sheet.n_facets, sheet.flat_share, sheet.soft_share), (1, 1.0, 0.0));

@@ -21,7 +21,8 @@ fn the_limb_is_the_first_part_at_every_density() {
         let shape = ball_with_a_limb(levels);
         let mesh = shape.mesh().unwrap();
         let found =
-            parts(&mesh, &PartsOptions { n_parts: Some(2), ..PartsOptions::default() }, &Progress::new()).unwrap();
+            parts(&mesh, &PartsOptions { n_parts: Some(2), ..PartsOptions::default() }, &Progress::new())
+                .unwrap();
         assert_eq!(found.n_parts, 2);
         let limb = found.labels[far_face(&shape)];
         for (face, &label) in shape.faces.iter().zip(&found.labels) {

@@ -49,7 +49,11 @@ fn a_stretched_sphere_gets_even_triangles_and_keeps_its_shape() {
     for length in [0.3, 0.12] {
         let (result, mesh) = run(&shape, &with_length(length));
         assert_eq!(report(&mesh), clean(1, 0));
-        assert!(even_share(&mesh, length) > 0.97 && least_quality(&result) > 0.45, "{}", even_share(&mesh, length));
+        assert!(
+            even_share(&mesh, length) > 0.97 && least_quality(&result) > 0.45,
+            "{}",
+            even_share(&mesh, length)
+        );
         for &[x, y, z] in &result.vertices {
             assert!((norm([x, y, z / 4.0]) - 1.0).abs() < 0.02);
         }
@@ -117,7 +121,13 @@ fn edges_and_vertices_that_are_not_manifold_stay() {
             .vertices
             .iter()
             .copied()
-            .chain(sheet.vertices.iter().filter(|p| p[0] > 0.0).flat_map(|p| [[-p[0], p[1], 0.0], [0.0, p[1], p[0]]]))
+            .chain(
+                sheet
+                    .vertices
+                    .iter()
+                    .filter(|p| p[0] > 0.0)
+                    .flat_map(|p| [[-p[0], p[1], 0.0], [0.0, p[1], p[0]]]),
+            )
             .collect(),
         faces: Vec::new(),
     };
@@ -132,7 +142,10 @@ fn edges_and_vertices_that_are_not_manifold_stay() {
     assert_eq!(before.nonmanifold_edges.len(), 6);
     let (result, mesh) = run(&book, &with_length(0.5));
     let after = report(&mesh);
-    assert_eq!((after.nonmanifold_edges.len(), after.degenerate_faces.len(), after.duplicate_faces.len()), (6, 0, 0));
+    assert_eq!(
+        (after.nonmanifold_edges.len(), after.degenerate_faces.len(), after.duplicate_faces.len()),
+        (6, 0, 0)
+    );
     assert!((area(&result) - 72.0).abs() < 1e-9 && result.faces.len() > 2 * book.faces.len());
     // A bow tie keeps its knot.
     let tie = Shape {
@@ -171,15 +184,24 @@ fn slivers_and_faces_without_area_go() {
     let mut random = Random::new(5);
     let squeezed = shapes::grid(12, 12).map(|[x, y, z]| [x, 0.02 * y, z]);
     let (result, _) = run(&squeezed, &with_length(0.1));
-    assert!(least_quality(&result) > 0.2 && (area(&result) - 12.0 * 0.24).abs() < 1e-9, "{}", least_quality(&result));
+    assert!(
+        least_quality(&result) > 0.2 && (area(&result) - 12.0 * 0.24).abs() < 1e-9,
+        "{}",
+        least_quality(&result)
+    );
     // A vertex put onto an edge of its neighbors leaves faces without area.
     let mut flat = shapes::grid(8, 8);
     flat.vertices[30] = flat.vertices[31];
     flat.vertices[50] = flat.vertices[49];
     let (result, mesh) = run(&flat, &with_length(0.9));
-    assert!(report(&mesh).degenerate_faces.is_empty() && least_quality(&result) > 0.2, "{}", least_quality(&result));
-    let rough =
-        shapes::icosphere(3).map(|p| p.map(|x| x + 0.04 * random.clone().symmetric())).noisy(0.02, random.bits());
+    assert!(
+        report(&mesh).degenerate_faces.is_empty() && least_quality(&result) > 0.2,
+        "{}",
+        least_quality(&result)
+    );
+    let rough = shapes::icosphere(3)
+        .map(|p| p.map(|x| x + 0.04 * random.clone().symmetric()))
+        .noisy(0.02, random.bits());
     assert!(least_quality(&run(&rough, &with_length(0.13)).0) > 0.2);
 }
 
@@ -194,7 +216,10 @@ fn wrong_options_are_refused() {
         assert_eq!(refused(with_length(length)), "edge_length");
     }
     assert_eq!(refused(RemeshOptions { fixed: Some(vec![true]), ..RemeshOptions::default() }), "fixed");
-    assert_eq!(refused(RemeshOptions { feature_angle: Some(4.0), ..RemeshOptions::default() }), "feature_angle");
+    assert_eq!(
+        refused(RemeshOptions { feature_angle: Some(4.0), ..RemeshOptions::default() }),
+        "feature_angle"
+    );
     let cancelled = Progress::new();
     cancelled.cancel();
     assert_eq!(remesh(&mesh, &RemeshOptions::default(), &cancelled), Err(Error::Cancelled));
@@ -205,12 +230,14 @@ fn wrong_options_are_refused() {
 #[test]
 fn the_tree_finds_the_closest_point() {
     let shape = shapes::torus(12, 9, 2.0, 0.7);
-    let triangles: Vec<[Point; 3]> = shape.faces.iter().map(|f| f.map(|v| shape.vertices[v as usize])).collect();
+    let triangles: Vec<[Point; 3]> =
+        shape.faces.iter().map(|f| f.map(|v| shape.vertices[v as usize])).collect();
     let tree = ClosestPoint::new(triangles.clone());
     let mut random = Random::new(3);
     for _ in 0..200 {
         let p = [0; 3].map(|_| 3.0 * random.symmetric());
-        let least = triangles.iter().map(|&t| distance(p, closest_on_triangle(p, t))).fold(f64::INFINITY, f64::min);
+        let least =
+            triangles.iter().map(|&t| distance(p, closest_on_triangle(p, t))).fold(f64::INFINITY, f64::min);
         for guess in [None, Some(7)] {
             let found = tree.closest(p, guess, |_| true).unwrap();
             assert!((found.squared.sqrt() - least).abs() < 1e-12);
@@ -254,12 +281,14 @@ proptest! {
         prop_assert_eq!(report(&mesh), clean(1, n_loops));
         prop_assert!(least_quality(&result) > 0.08, "{}", least_quality(&result));
         let connectivity = mesh.connectivity();
-        let normal = |f: usize| unit(area_vector(connectivity.faces()[f].map(|v| result.vertices[v as usize])));
+        let corners = |f: usize| connectivity.faces()[f].map(|v| result.vertices[v as usize]);
+        let normal = |f: usize| unit(area_vector(corners(f)));
         let folds = connectivity.edges().filter(|&h| {
             connectivity.twin(h).is_some_and(|twin| dot(normal(h / 3), normal(twin / 3)) < -0.9)
         });
         prop_assert_eq!(folds.count(), 0);
-        let again = remesh(&rough.mesh().unwrap(), &with_length(factor * unit_length), &Progress::new()).unwrap();
+        let longer = with_length(factor * unit_length);
+        let again = remesh(&rough.mesh().unwrap(), &longer, &Progress::new()).unwrap();
         prop_assert_eq!(again, result);
     }
 }

@@ -1,4 +1,5 @@
-//! Denoising and interpolation with every energy: against dense systems, between the solvers, and what must be refused.
+//! Denoising and interpolation with every energy: against dense systems, between the solvers,
+//! and what must be refused.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use ridgeform_core::intrinsic::{delaunay_flips, delaunay_flips_carrying};
@@ -7,7 +8,9 @@ use ridgeform_core::mesh::{triangle, Mesh};
 use ridgeform_core::operators::{voronoi_mass, Dual, Energy, EnergyForm};
 use ridgeform_core::shapes::{self, Random};
 use ridgeform_core::solve::{Coupling, Solution, Solver, Status};
-use ridgeform_core::tools::{denoise, interpolate, DenoiseOptions, EnergyOptions, ScalarOptions, SolveOptions};
+use ridgeform_core::tools::{
+    denoise, interpolate, DenoiseOptions, EnergyOptions, ScalarOptions, SolveOptions,
+};
 use ridgeform_core::{Error, Progress, Result};
 
 fn options(energy: Energy, solver: Solver, tolerance: f64) -> ScalarOptions {
@@ -143,10 +146,13 @@ fn quadratic_problems_keep_linear_constraints_and_need_no_fixed_value_then() {
     rows.add_triplet(2, 33, 1.0);
     let constraints = (rows.to_csr(), Columns::from_column(vec![1.5, 0.7, -0.2]));
     for (name, energy) in quadratic() {
-        let scalar =
-            ScalarOptions { linear_constraints: Some(constraints.clone()), ..options(energy, Solver::Auto, 1e-8) };
+        let scalar = ScalarOptions {
+            linear_constraints: Some(constraints.clone()),
+            ..options(energy, Solver::Auto, 1e-8)
+        };
         let fitted = denoised(&mesh, 10.0, scalar.clone());
-        let free = interpolate(&mesh, &[7], &Columns::from_column(vec![1.0]), &scalar, &Progress::new()).unwrap();
+        let free =
+            interpolate(&mesh, &[7], &Columns::from_column(vec![1.0]), &scalar, &Progress::new()).unwrap();
         let form = EnergyForm::new(energy, &mesh, None, Dual::Barycentric).unwrap();
         for solution in [&fitted, &free] {
             let u = solution.values.column(0);
@@ -193,12 +199,14 @@ fn both_solvers_agree_on_the_l1_energies() {
 fn affine_data_on_the_plane_comes_back_from_a_few_points() {
     let mesh = shapes::grid(10, 7).mesh().unwrap();
     let affine: Vec<f64> = mesh.positions().unwrap().iter().map(|p| 2.0 * p[0] - p[1] + 1.0).collect();
-    // No three of them on a line, so that they determine the function; the corners, which some energies do not see, are free.
+    // No three of them on a line, so that they determine the function; the corners,
+    // which some energies do not see, are free.
     let indices = [14, 30, 47, 69];
     let values = Columns::from_column(indices.iter().map(|&i| affine[i]).collect());
     for (name, energy) in Energy::ALL.into_iter().filter(|(_, energy)| *energy != Energy::L2Laplacian) {
         let solution =
-            interpolate(&mesh, &indices, &values, &options(energy, Solver::Auto, 1e-3), &Progress::new()).unwrap();
+            interpolate(&mesh, &indices, &values, &options(energy, Solver::Auto, 1e-3), &Progress::new())
+                .unwrap();
         let tolerance = if energy.is_quadratic() { 1e-6 } else { 2e-2 };
         assert_close(solution.values.column(0), &affine, tolerance, name);
     }
@@ -213,12 +221,19 @@ fn columns_and_weights_count() {
         let run = |values: &Columns, face_weights: Option<Vec<f64>>, fidelity: f64, coupling: Coupling| {
             let mut scalar = ScalarOptions { coupling, ..options(energy, Solver::Auto, 1e-4) };
             scalar.energy.face_weights = face_weights;
-            denoise(&mesh, values, &DenoiseOptions { fidelity, scalar, ..DenoiseOptions::default() }, &Progress::new())
-                .unwrap()
+            denoise(
+                &mesh,
+                values,
+                &DenoiseOptions { fidelity, scalar, ..DenoiseOptions::default() },
+                &Progress::new(),
+            )
+            .unwrap()
         };
         let separate = run(&points, None, 8.0, Coupling::Separate);
         let single: f64 = (0..3)
-            .map(|c| run(&Columns::from_column(points.column(c).to_vec()), None, 8.0, Coupling::Joint).objective)
+            .map(|c| {
+                run(&Columns::from_column(points.column(c).to_vec()), None, 8.0, Coupling::Joint).objective
+            })
             .sum();
         assert!((separate.objective / single - 1.0).abs() < 3e-4, "{name}");
         // Weights of 2 with twice the fidelity are the same problem times 2.

@@ -27,7 +27,8 @@ fn face_laplacian(connectivity: &Connectivity, weights: &[[f64; 3]]) -> sprs::Cs
 fn the_face_laplacian_is_symmetric_knows_constants_and_squares_of_a_lattice() {
     let mesh = shapes::lattice(6, 6).mesh().unwrap();
     let (connectivity, positions) = (mesh.connectivity(), mesh.positions().unwrap());
-    let centroid = |f: &[u32; 3]| [0, 1, 2].map(|c| f.iter().map(|&v| positions[v as usize][c]).sum::<f64>() / 3.0);
+    let centroid =
+        |f: &[u32; 3]| [0, 1, 2].map(|c| f.iter().map(|&v| positions[v as usize][c]).sum::<f64>() / 3.0);
     let centroids: Vec<[f64; 3]> = connectivity.faces().iter().map(centroid).collect();
     let weights = face_laplacian_weights(connectivity, mesh.edge_lengths(), &centroids);
     // Edges of length 1, centroids two inradii apart.

@@ -21,7 +21,11 @@ fn scaled_mass(mesh: &Mesh, alpha: f64) -> Vec<f64> {
 /// A ridge on the positions, with noise.
 fn noisy_ridge(mesh: &Mesh, noise: f64, seed: u64) -> Columns {
     let mut random = Random::new(seed);
-    let values = mesh.positions().unwrap().iter().map(|p| (p[0] - 0.1).abs() + 0.3 * p[1] + noise * random.symmetric());
+    let values = mesh
+        .positions()
+        .unwrap()
+        .iter()
+        .map(|p| (p[0] - 0.1).abs() + 0.3 * p[1] + noise * random.symmetric());
     Columns::from_column(values.collect())
 }
 
@@ -150,8 +154,12 @@ fn joint_and_separate_columns() {
     assert!(separate.objective > joint.objective);
     let single: f64 = (0..3)
         .map(|c| {
-            run(&problem(&mesh, &h, 20.0, Columns::from_column(points.column(c).to_vec())), Solver::Fast, 1e-4)
-                .objective
+            run(
+                &problem(&mesh, &h, 20.0, Columns::from_column(points.column(c).to_vec())),
+                Solver::Fast,
+                1e-4,
+            )
+            .objective
         })
         .sum();
     assert!((single - separate.objective).abs() < 2e-4 * single);
@@ -221,7 +229,8 @@ fn cancelling_and_finishing() {
     let progress = Progress::new();
     progress.finish();
     let solution =
-        solve(&p, Solver::Fast, &Settings { tolerance: Some(1e-9), ..Settings::default() }, &progress).unwrap();
+        solve(&p, Solver::Fast, &Settings { tolerance: Some(1e-9), ..Settings::default() }, &progress)
+            .unwrap();
     assert_eq!((solution.status, solution.iterations), (Status::Stopped, 1));
     assert!(solution.objective.is_finite());
 }

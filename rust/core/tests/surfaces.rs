@@ -69,7 +69,10 @@ fn every_kind_is_found_exactly_without_noise_and_near_under_noise() {
             let found = fit(kind, &clean, 1e-6).unwrap();
             assert!(off(&found.surface, &truth) < 1e-7, "{kind:?} {arc}: {:e}", off(&found.surface, &truth));
             assert_eq!(found.surface.kind(), kind);
-            assert_eq!(clean.side(&found.surface), if dot_of(&clean, &found.surface) < 0.0 { -1.0 } else { 1.0 });
+            assert_eq!(
+                clean.side(&found.surface),
+                if dot_of(&clean, &found.surface) < 0.0 { -1.0 } else { 1.0 }
+            );
             for seed in 0..10 {
                 let (noisy, truth) = samples(kind, 25, arc, 0.02, 10 + seed, 0.05);
                 let found = fit(kind, &noisy, 0.02).unwrap();
@@ -90,8 +93,9 @@ fn dot_of(samples: &Samples, surface: &Surface) -> f64 {
 fn the_simplest_kind_costs_least_with_its_parameters() {
     for truth in Kind::ALL {
         let (noisy, _) = samples(truth, 25, 3.0, 0.02, 5, 0.0);
-        let cost =
-            |kind: Kind| fit(kind, &noisy, 0.02).map_or(f64::INFINITY, |f| f.cost + 3.2 * kind.n_parameters() as f64);
+        let cost = |kind: Kind| {
+            fit(kind, &noisy, 0.02).map_or(f64::INFINITY, |f| f.cost + 3.2 * kind.n_parameters() as f64)
+        };
         let best = Kind::ALL.into_iter().min_by(|&a, &b| cost(a).total_cmp(&cost(b))).unwrap();
         assert_eq!(best, truth);
     }

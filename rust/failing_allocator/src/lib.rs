@@ -18,10 +18,15 @@ impl Failing {
     /// Nothing is counted, nothing fails.
     #[must_use]
     pub const fn new() -> Self {
-        Self { large: AtomicUsize::new(usize::MAX), count: AtomicUsize::new(0), which: AtomicUsize::new(usize::MAX) }
+        Self {
+            large: AtomicUsize::new(usize::MAX),
+            count: AtomicUsize::new(0),
+            which: AtomicUsize::new(usize::MAX),
+        }
     }
 
-    /// Counts allocations of at least `large` bytes from now on, from 0, and fails the one with the number `which`.
+    /// Counts allocations of at least `large` bytes from now on, from 0,
+    /// and fails the one with the number `which`.
     pub fn fail(&self, which: usize, large: usize) {
         self.count.store(0, Relaxed);
         self.which.store(which, Relaxed);
@@ -45,7 +50,8 @@ impl Default for Failing {
     }
 }
 
-// SAFETY: every request goes to the system's allocator as it is, or is answered by null, which the trait permits.
+// SAFETY: every request goes to the system's allocator as it is, or is answered by null,
+// which the trait permits.
 unsafe impl GlobalAlloc for Failing {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         if self.fails(layout.size()) {

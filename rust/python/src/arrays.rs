@@ -1,4 +1,5 @@
-//! The one doorway for arrays: any numeric dtype and memory order in, fresh C-contiguous `float64` and `int32` out.
+//! The one doorway for arrays: any numeric dtype and memory order in,
+//! fresh C-contiguous `float64` and `int32` out.
 
 use numpy::ndarray::Array2;
 use numpy::{
@@ -44,17 +45,26 @@ impl<T: Copy> Numbers<T> {
     ///
     /// # Errors
     /// `ArgumentError` for another shape; `what` says what there is one entry for.
-    pub(crate) fn exactly(self, py: Python<'_>, name: &'static str, length: usize, what: &str) -> PyResult<Vec<T>> {
+    pub(crate) fn exactly(
+        self,
+        py: Python<'_>,
+        name: &'static str,
+        length: usize,
+        what: &str,
+    ) -> PyResult<Vec<T>> {
         if self.shape != [length] {
-            let problem =
-                format!("expected one entry for each {what}, shape ({length},), got {}", shape_text(&self.shape));
+            let problem = format!(
+                "expected one entry for each {what}, shape ({length},), got {}",
+                shape_text(&self.shape)
+            );
             return Err(argument(py, name, problem));
         }
         Ok(self.data)
     }
 }
 
-/// The array itself if it is one of shape (k, N) in C order with entries of type `T`, to be read without a copy.
+/// The array itself if it is one of shape (k, N) in C order with entries of type `T`,
+/// to be read without a copy.
 pub(crate) fn plain_rows<'py, T: Element, const N: usize>(
     object: &Bound<'py, PyAny>,
 ) -> Option<PyReadonlyArray2<'py, T>> {
@@ -113,7 +123,12 @@ pub(crate) fn integers(name: &'static str, object: &Bound<'_, PyAny>) -> PyResul
 ///
 /// # Errors
 /// `ArgumentError` for another shape or an index out of range; `what` names the things.
-pub(crate) fn mask(name: &'static str, object: &Bound<'_, PyAny>, length: usize, what: &str) -> PyResult<Vec<bool>> {
+pub(crate) fn mask(
+    name: &'static str,
+    object: &Bound<'_, PyAny>,
+    length: usize,
+    what: &str,
+) -> PyResult<Vec<bool>> {
     if numeric_array(name, object)?.dtype().kind() == b'b' {
         let numbers: Numbers<f64> = floats(name, object)?;
         return Ok(numbers.exactly(object.py(), name, length, what)?.iter().map(|&x| x != 0.0).collect());
@@ -143,7 +158,11 @@ pub(crate) fn indices(
     }
     let index = |&i: &i64| {
         let outside = || {
-            argument(py, name, format!("index {i} is out of range: there are {length} entries, one for each {what}"))
+            argument(
+                py,
+                name,
+                format!("index {i} is out of range: there are {length} entries, one for each {what}"),
+            )
         };
         usize::try_from(i).ok().filter(|&i| i < length).ok_or_else(outside)
     };
@@ -211,7 +230,8 @@ pub(crate) fn joined_rows<T: Copy, U: Element + Copy, const N: usize>(
     convert: impl Fn(T) -> U,
     more: &[U],
 ) -> PyResult<Py<PyArray2<U>>> {
-    let mut whole = memory::reserved(RESULT, rows.len() + more.len() / N).map_err(|error| exception(py, &error))?;
+    let mut whole =
+        memory::reserved(RESULT, rows.len() + more.len() / N).map_err(|error| exception(py, &error))?;
     whole.extend(rows.iter().map(|row| row.map(&convert)));
     whole.extend_from_slice(more.as_chunks::<N>().0);
     Ok(Array2::from(whole).into_pyarray(py).unbind())
@@ -226,9 +246,13 @@ pub(crate) fn index_array<'py>(py: Python<'py>, indices: &[u32]) -> PyResult<Bou
 }
 
 /// `object` as a NumPy array of booleans, integers or floating-point numbers.
-fn numeric_array<'py>(name: &'static str, object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyUntypedArray>> {
+fn numeric_array<'py>(
+    name: &'static str,
+    object: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyUntypedArray>> {
     let py = object.py();
-    let refuse = |found: String| argument(py, name, format!("expected an array of real numbers, got {found}"));
+    let refuse =
+        |found: String| argument(py, name, format!("expected an array of real numbers, got {found}"));
     let array = py
         .import("numpy")?
         .call_method1("asarray", (object,))

@@ -1,4 +1,5 @@
-//! Functions on vertices: `(n,)` or `(n,k)` in Python, columns in the core, and back in the shape that came in.
+//! Functions on vertices: `(n,)` or `(n,k)` in Python, columns in the core,
+//! and back in the shape that came in.
 
 use numpy::ndarray::{Array1, Array2};
 use numpy::IntoPyArray;
@@ -29,8 +30,14 @@ impl Values {
 /// Read an array (rows,) or (rows,k), k ≥ 1, of finite numbers.
 ///
 /// # Errors
-/// `ArgumentError` for another shape, `what` says what there is one row for, and for numbers that are not finite.
-pub(crate) fn read(name: &'static str, object: &Bound<'_, PyAny>, rows: usize, what: &str) -> PyResult<Values> {
+/// `ArgumentError` for another shape, `what` says what there is one row for,
+/// and for numbers that are not finite.
+pub(crate) fn read(
+    name: &'static str,
+    object: &Bound<'_, PyAny>,
+    rows: usize,
+    what: &str,
+) -> PyResult<Values> {
     let numbers = finite_floats(name, object)?;
     let (single, k) = match numbers.shape[..] {
         [found] if found == rows => (true, 1),

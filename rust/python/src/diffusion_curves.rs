@@ -17,12 +17,13 @@ use crate::progress::{handle, Progress};
 /// What `diffusion_curves` returns: curves with a color on each side, and the colors that they rebuild.
 #[pyclass(frozen, get_all, module = "ridgeform")]
 pub struct DiffusionCurves {
-    /// The vertices of every edge of the curves, (k,2) int32, one curve after another and each in its direction.
+    /// The vertices of every edge of the curves, (k,2) int32,
+    /// one curve after another and each in its direction.
     edges: Py<PyArray2<i32>>,
     /// Where each curve starts among the edges, and last their number, (q+1,) int32.
     starts: Py<PyArray1<i32>>,
-    /// The colors at the start and the end of every edge on its left, (k,2,c) float64: on the side of the face that runs from
-    /// start to end. The region there has the smaller label.
+    /// The colors at the start and the end of every edge on its left, (k,2,c) float64: on the side of the
+    /// face that runs from start to end. The region there has the smaller label.
     left: Py<PyAny>,
     /// The same on the right; at a rim, where there is no face on the right, those on the left.
     right: Py<PyAny>,
@@ -30,21 +31,23 @@ pub struct DiffusionCurves {
     points: Py<PyArray1<i32>>,
     /// Its color: the mean of the piece, (j,c) float64.
     point_colors: Py<PyAny>,
-    /// The rebuilt colors, (n,c) float64. A vertex on a curve has that of its side, or the mean of its sides; one without
-    /// faces 0.
+    /// The rebuilt colors, (n,c) float64. A vertex on a curve has that of its side,
+    /// or the mean of its sides; one without faces 0.
     colors: Py<PyAny>,
     /// The rebuilt colors at the corners of the faces, (m,3,c) float64: across a curve they jump.
     corners: Py<PyAny>,
-    /// The face whose side a vertex takes, (n,) int32; -1 for vertices that blend their sides, and for those without faces.
+    /// The face whose side a vertex takes, (n,) int32; -1 for vertices that blend their sides,
+    /// and for those without faces.
     sides: Py<PyArray1<i32>>,
     /// The region of every face, (m,) int32.
     labels: Py<PyArray1<i32>>,
     /// The mean squared error of `colors` over the area of the surface and the channels.
     error: f64,
-    /// The same as a peak signal-to-noise ratio in decibels, for colors between 0 and 1; infinite without error.
+    /// The same as a peak signal-to-noise ratio in decibels, for colors between 0 and 1;
+    /// infinite without error.
     psnr: f64,
-    /// How many numbers the curves are: two for each of their vertices (which it is, and its side), the colors, one more for
-    /// each knot where `color_error` thins them, vertex and color of each point.
+    /// How many numbers the curves are: two for each of their vertices (which it is, and its side), the
+    /// colors, one more for each knot where `color_error` thins them, vertex and color of each point.
     n_numbers: usize,
     /// How many numbers they stand for: the entries of the colors given.
     n_numbers_before: usize,
@@ -52,7 +55,8 @@ pub struct DiffusionCurves {
 
 #[pymethods]
 impl DiffusionCurves {
-    /// The vertices along every curve, a list of (j,) int32 arrays; the first vertex of a closed curve comes last again.
+    /// The vertices along every curve, a list of (j,) int32 arrays;
+    /// the first vertex of a closed curve comes last again.
     #[getter]
     fn polylines<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray1<i32>>>> {
         let (edges, starts) = (self.edges.bind(py).to_vec()?, self.starts.bind(py).to_vec()?);
@@ -75,25 +79,30 @@ impl DiffusionCurves {
 
 /// The curves along the borders of regions, with a color on each side, that rebuild a painted surface.
 ///
-/// The regions are those given, or else what `segment` finds with the colors as its signal and one norm for all channels; their
-/// borders are then moved until no vertex beside them has the color of the other side.
-/// On each piece of the surface cut open along the borders, min uᵀ L u + fidelity (u - colors)ᵀ M (u - colors) is solved with the
-/// cotangent Laplacian L; its values at the borders are the colors of the curves, and `redraw` rebuilds the surface from them.
-/// A vertex on a border counts for the side whose color is nearest, and for none where it is nearer to their mean. All colors stay within the range of those given, channel
-/// by channel.
+/// The regions are those given, or else what `segment` finds with the colors as its signal and one norm for
+/// all channels; their borders are then moved until no vertex beside them has the color of the other side.
+/// On each piece of the surface cut open along the borders, min uᵀ L u + fidelity (u - colors)ᵀ M (u -
+/// colors) is solved with the cotangent Laplacian L; its values at the borders are the colors of the curves,
+/// and `redraw` rebuilds the surface from them. A vertex on a border counts for the side whose color is
+/// nearest, and for none where it is nearer to their mean. All colors stay within the range of those given,
+/// channel by channel.
 ///
 /// Parameters
 /// ----------
 /// mesh : Mesh
 /// colors : (n,) or (n,c) array, a color a vertex, usually between 0 and 1
 /// labels : (m,) array of whole numbers, the region of each face; None to find regions by their colors
-/// n_regions, length_weight, min_faces : for finding regions: `n_segments`, `length_weight` and `min_faces` of `segment`
-/// face_groups : (m,) array of whole numbers ≥ 0 or None: faces with the same number, the triangles of a polygon, are found in one
-///     region
-/// fidelity : float > 0; colors are smoothed over a length of 1 / √fidelity times the square root of the surface's area
+/// n_regions, length_weight, min_faces : for finding regions: `n_segments`,
+///     `length_weight` and `min_faces` of `segment`
+/// face_groups : (m,) array of whole numbers ≥ 0 or None: faces with the same number, the triangles of a
+///     polygon, are found in one region
+/// fidelity : float > 0; colors are smoothed over a length of 1 / √fidelity times the square root of the
+///     surface's area
 /// rims : the rims of an open mesh are curves too, with the colors of their one side
-/// refine : improve the colors of the curves by least squares until the rebuilt surface is closest to `colors`
-/// color_error : how much a color on a curve may change so that few of them have to be stored; 0 keeps one at every vertex
+/// refine : improve the colors of the curves by least squares until the rebuilt surface is closest to
+///     `colors`
+/// color_error : how much a color on a curve may change so that few of them have to be stored;
+///     0 keeps one at every vertex
 /// progress : Progress or None
 ///
 /// Returns
@@ -108,7 +117,8 @@ impl DiffusionCurves {
 /// ----------
 /// Rowe et al. 2024, section 7.6, eqs. (26) and (27); Orzan et al. 2008.
 #[pyfunction]
-#[pyo3(signature = (mesh, colors, *, labels=None, n_regions=None, length_weight=0.5, min_faces=20, face_groups=None, fidelity=1e3, rims=false,
+#[pyo3(signature = (mesh, colors, *, labels=None, n_regions=None, length_weight=0.5, min_faces=20,
+    face_groups=None, fidelity=1e3, rims=false,
     refine=true, color_error=0.0, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn diffusion_curves(
@@ -172,7 +182,8 @@ pub(crate) fn diffusion_curves(
 /// What `redraw` returns: the colors of a surface between curves.
 #[pyclass(frozen, get_all, module = "ridgeform")]
 pub struct Redrawn {
-    /// A color a vertex, (n,c) float64. A vertex on a curve has that of its side, else the mean of its sides; one without faces 0.
+    /// A color a vertex, (n,c) float64. A vertex on a curve has that of its side,
+    /// else the mean of its sides; one without faces 0.
     colors: Py<PyAny>,
     /// The colors at the corners of the faces, (m,3,c) float64: across a curve they jump.
     corners: Py<PyAny>,
@@ -187,21 +198,21 @@ impl Redrawn {
 
 /// Diffuse the colors of curves over a surface: Laplace's equation between them.
 ///
-/// The mesh is cut open along the curves, and each side of a curve keeps its own colors. Curves may end anywhere, and where
-/// they meet the colors that they give to the same side are averaged. No color leaves the range of those given, channel by
-/// channel.
+/// The mesh is cut open along the curves, and each side of a curve keeps its own colors. Curves may end
+/// anywhere, and where they meet the colors that they give to the same side are averaged. No color leaves the
+/// range of those given, channel by channel.
 ///
 /// Parameters
 /// ----------
 /// mesh : Mesh
 /// edges : (k,2) array, vertices that an edge of the mesh joins
-/// left : (k,2) or (k,2,c) array, the colors at the start and the end of each edge on its left: on the side of the face that
-///     runs from start to end; not used where there is none
+/// left : (k,2) or (k,2,c) array, the colors at the start and the end of each edge on its left: on the side
+///     of the face that runs from start to end; not used where there is none
 /// right : array of the same shape, the same on the right
 /// points : (j,) array of vertices with a color of their own, away from the curves, or None
 /// point_colors : (j,) or (j,c) array, or None
-/// sides : (n,) array, the face whose side each vertex takes in `Redrawn.colors` (`DiffusionCurves.sides`), -1 or None for the
-///     mean of its sides
+/// sides : (n,) array, the face whose side each vertex takes in `Redrawn.colors` (`DiffusionCurves.sides`),
+///     -1 or None for the mean of its sides
 /// progress : Progress or None
 ///
 /// Returns
@@ -210,7 +221,8 @@ impl Redrawn {
 ///
 /// Raises
 /// ------
-/// ArgumentError (also for a piece of surface that neither a curve nor a point reaches), SolveError (memory), Cancelled
+/// ArgumentError (also for a piece of surface that neither a curve nor a point reaches),
+/// SolveError (memory), Cancelled
 ///
 /// References
 /// ----------
@@ -235,7 +247,8 @@ pub(crate) fn redraw(
     if same != channels {
         return Err(argument(py, "right", "needs the shape of left"));
     }
-    let points = points.map(|given| arrays::indices("points", given, mesh.n_vertices(), "vertex")).transpose()?;
+    let points =
+        points.map(|given| arrays::indices("points", given, mesh.n_vertices(), "vertex")).transpose()?;
     let points: Vec<u32> = points.unwrap_or_default().into_iter().map(|v| v as u32).collect();
     let point_colors = match point_colors {
         None => Vec::new(),
@@ -251,7 +264,8 @@ pub(crate) fn redraw(
     let (single, n_channels) = (channels.is_none(), channels.unwrap_or(1));
     let curves = ColoredCurves { edges, n_channels, left, right, points, point_colors };
     let progress = handle(progress);
-    let redrawn = doorway::call(py, &progress, || tools::redraw(mesh.inner(), &curves, sides.as_deref(), &progress))?;
+    let redrawn =
+        doorway::call(py, &progress, || tools::redraw(mesh.inner(), &curves, sides.as_deref(), &progress))?;
     Ok(Redrawn {
         colors: columns::write(py, Values { columns: redrawn.colors, single }).unbind(),
         corners: shaped(py, redrawn.corners, &[mesh.n_faces(), 3], n_channels, single)?,
@@ -260,8 +274,9 @@ pub(crate) fn redraw(
 
 /// Places for curves on a surface that are smooth lines, to be looked at.
 ///
-/// Curves run along edges of the mesh, with saw teeth where the mesh is irregular. Each place is at most 0.6 mean edges of its curves
-/// away from its vertex, on the surface. Ends of curves and vertices on the rim of the mesh stay.
+/// Curves run along edges of the mesh, with saw teeth where the mesh is irregular. Each place is at most 0.6
+/// mean edges of its curves away from its vertex, on the surface. Ends of curves and vertices on the rim of
+/// the mesh stay.
 ///
 /// Parameters
 /// ----------
@@ -302,7 +317,8 @@ where
 {
     let py = object.py();
     let numbers = arrays::integers(name, object)?.exactly(py, name, n_faces, "face")?;
-    let narrow = |&number: &i64| T::try_from(number).map_err(|_| argument(py, name, format!("{number} is {what}")));
+    let narrow =
+        |&number: &i64| T::try_from(number).map_err(|_| argument(py, name, format!("{number} is {what}")));
     numbers.iter().map(narrow).collect()
 }
 
@@ -319,7 +335,11 @@ fn read_edges(object: &Bound<'_, PyAny>, n_vertices: usize) -> PyResult<Vec<[u32
 }
 
 /// Colors of shape `rows` (no channels: none) or `rows` and channels.
-fn read_colors(name: &'static str, object: &Bound<'_, PyAny>, rows: &[usize]) -> PyResult<(Vec<f64>, Option<usize>)> {
+fn read_colors(
+    name: &'static str,
+    object: &Bound<'_, PyAny>,
+    rows: &[usize],
+) -> PyResult<(Vec<f64>, Option<usize>)> {
     let numbers = finite_floats(name, object)?;
     let shape = &numbers.shape;
     if shape == rows {
@@ -349,12 +369,14 @@ fn write_sides(py: Python<'_>, sides: &[Option<u32>]) -> Py<PyArray1<i32>> {
     faces.into_pyarray(py).unbind()
 }
 
-/// A fresh C-contiguous array of shape `rows` and `k` channels, or of shape `rows` where colors are single numbers.
+/// A fresh C-contiguous array of shape `rows` and `k` channels,
+/// or of shape `rows` where colors are single numbers.
 fn shaped(py: Python<'_>, data: Vec<f64>, rows: &[usize], k: usize, single: bool) -> PyResult<Py<PyAny>> {
     let mut shape = rows.to_vec();
     if !single {
         shape.push(k);
     }
-    let array = ArrayD::from_shape_vec(shape, data).map_err(|error| errors::internal(py, &error.to_string()))?;
+    let array =
+        ArrayD::from_shape_vec(shape, data).map_err(|error| errors::internal(py, &error.to_string()))?;
     Ok(array.into_pyarray(py).into_any().unbind())
 }

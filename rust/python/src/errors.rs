@@ -5,7 +5,8 @@ use pyo3::types::PyType;
 use ridgeform_core::error::SolveError;
 use ridgeform_core::Error;
 
-/// A `MeshError`, `ArgumentError`, `SolveError`, `MemoryLimitError`, `Cancelled` or `RidgeformError` that says what `error` says.
+/// A `MeshError`, `ArgumentError`, `SolveError`, `MemoryLimitError`,
+/// `Cancelled` or `RidgeformError` that says what `error` says.
 pub(crate) fn exception(py: Python<'_>, error: &Error) -> PyErr {
     let class = match error {
         Error::Mesh(_) => "MeshError",
@@ -25,7 +26,8 @@ pub(crate) fn argument(py: Python<'_>, name: &'static str, problem: impl Into<St
 
 /// A `RidgeformError` for a panic in the core, with the panic's message.
 pub(crate) fn internal(py: Python<'_>, message: &str) -> PyErr {
-    let sentence = format!("an internal check failed: {message}; please report this with the mesh that caused it");
+    let sentence =
+        format!("an internal check failed: {message}; please report this with the mesh that caused it");
     raise(py, "RidgeformError", sentence)
 }
 

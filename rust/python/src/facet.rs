@@ -36,7 +36,8 @@ pub struct Faceted {
     /// The facet nearest to each face of the mesh, (m,) int32; -1 for faces that name a vertex twice.
     #[pyo3(get)]
     labels: Py<PyArray1<i32>>,
-    /// The plane of each facet, (k,4) float64: a unit normal that points outside, and the distance from the origin along it.
+    /// The plane of each facet, (k,4) float64: a unit normal that points outside,
+    /// and the distance from the origin along it.
     #[pyo3(get)]
     planes: Py<PyArray2<f64>>,
     /// Number of facets that were made; `planes` has further ones for faces that were to stay.
@@ -88,7 +89,8 @@ impl Faceted {
     }
 
     fn __repr__(&self) -> String {
-        let crossing = if self.n_crossings > 0 { format!(", {} crossing", self.n_crossings) } else { String::new() };
+        let crossing =
+            if self.n_crossings > 0 { format!(", {} crossing", self.n_crossings) } else { String::new() };
         format!(
             "<ridgeform.Faceted: {} facets, RMS distance {:.3e}{crossing}, {}>",
             self.n_facets, self.rms, self.status
@@ -131,21 +133,24 @@ fn run(
 
 /// Make a mesh of flat polygons with straight ridges, as a low-poly artist models.
 ///
-/// Faces merge into regions, always those that lie best on one plane, as long as the regions can be the facets of a
-/// polyhedron. Then planes and corners are found together, so that every corner lies on the planes of all its facets, and
-/// faces and planes take turns until the planes are nearest. Facets that would cross are repaired or divided; what is closed
-/// stays closed. `stylize` first where the mesh is round: it decides where the ridges run.
+/// Faces merge into regions, always those that lie best on one plane, as long as the regions can be the
+/// facets of a polyhedron. Then planes and corners are found together, so that every corner lies on the
+/// planes of all its facets, and faces and planes take turns until the planes are nearest. Facets that would
+/// cross are repaired or divided; what is closed stays closed. `stylize` first where the mesh is round: it
+/// decides where the ridges run.
 ///
 /// Parameters
 /// ----------
 /// mesh : Mesh with positions
-/// facets : number of facets wanted, or None: as `error` has it. It is met unless the shape has no fewer, or facets had to be
-///     divided
-/// error : root mean square distance from the mesh that is allowed, in its unit, or None: as many facets as the faces give
-///     evidence for (Bayesian information criterion), at most as many as 0.5 % of the diagonal of the bounding box needs
-/// edge_weights : (m,3) array ≥ 0, what borders of facets cost along edges, column i opposite corner i: 1 is neutral,
-///     smaller attracts them; the smaller entry of both faces counts
-/// faces : faces to make facets of, (m,) booleans or (j,) indices; None for all. The others, and all vertices of theirs, stay
+/// facets : number of facets wanted, or None: as `error` has it. It is met unless the shape has no fewer, or
+///     facets had to be divided
+/// error : root mean square distance from the mesh that is allowed, in its unit, or None: as many facets as
+///     the faces give evidence for (Bayesian information criterion), at most as many as 0.5 % of the diagonal
+///     of the bounding box needs
+/// edge_weights : (m,3) array ≥ 0, what borders of facets cost along edges, column i opposite corner i: 1 is
+///     neutral, smaller attracts them; the smaller entry of both faces counts
+/// faces : faces to make facets of, (m,) booleans or (j,) indices; None for all. The others,
+///     and all vertices of theirs, stay
 /// threads : int or None
 /// progress : Progress or None
 ///
@@ -159,10 +164,11 @@ fn run(
 ///
 /// References
 /// ----------
-/// Merging: Garland, Willmott and Heckbert, Hierarchical face clustering on polygonal surfaces, 2001. Faces and planes in
-/// turns: Cohen-Steiner, Alliez and Desbrun, Variational shape approximation, 2004.
+/// Merging: Garland, Willmott and Heckbert, Hierarchical face clustering on polygonal surfaces, 2001. Faces
+/// and planes in turns: Cohen-Steiner, Alliez and Desbrun, Variational shape approximation, 2004.
 #[pyfunction]
-#[pyo3(signature = (mesh, *, facets=None, error=None, edge_weights=None, faces=None, threads=None, progress=None))]
+#[pyo3(signature = (mesh, *, facets=None, error=None, edge_weights=None, faces=None, threads=None,
+    progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn facet(
     py: Python<'_>,
@@ -175,7 +181,9 @@ pub(crate) fn facet(
     progress: Option<&Bound<'_, Progress>>,
 ) -> PyResult<Faceted> {
     let m = mesh.get().n_faces();
-    let rows = |given: &Bound<'_, PyAny>| arrays::finite_floats("edge_weights", given)?.rows::<3>(py, "edge_weights");
+    let rows = |given: &Bound<'_, PyAny>| {
+        arrays::finite_floats("edge_weights", given)?.rows::<3>(py, "edge_weights")
+    };
     let options = FacetOptions {
         facets: facets.map(|count| at_least(py, "facets", count, 1)).transpose()?,
         error,

@@ -24,21 +24,24 @@ pub struct Hole {
 impl Hole {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let kind = if self.is_outer_border { "outer border" } else { "hole" };
-        let refused = self.refusal.as_ref().map_or(String::new(), |reason| format!(", not fillable: {reason}"));
+        let refused =
+            self.refusal.as_ref().map_or(String::new(), |reason| format!(", not fillable: {reason}"));
         Ok(format!("<ridgeform.Hole: {kind} of {} edges{refused}>", self.vertices.bind(py).len()?))
     }
 }
 
-/// All boundary loops, a list of Hole in the order of `boundary_loops`, then the rims that do not close: which are holes, and which
-/// of them cannot be filled.
+/// All boundary loops, a list of Hole in the order of `boundary_loops`, then the rims that do not close:
+/// which are holes, and which of them cannot be filled.
 ///
-/// Faces are oriented and seams joined first. A loop is an outer border if the faces along it lie inside it; where they stand too
-/// steeply to say so and the loop is no planar rim that calls for a lid, it is the largest loop of a component whose area
-/// vectors add up to more than 0.57 of its area. A tube has none: its two ends are holes. MeshError for a mesh without positions.
+/// Faces are oriented and seams joined first. A loop is an outer border if the faces along it lie inside it;
+/// where they stand too steeply to say so and the loop is no planar rim that calls for a lid, it is the
+/// largest loop of a component whose area vectors add up to more than 0.57 of its area. A tube has none: its
+/// two ends are holes. MeshError for a mesh without positions.
 #[pyfunction]
 pub(crate) fn find_holes(py: Python<'_>, mesh: &Mesh) -> PyResult<Vec<Hole>> {
-    let holes =
-        doorway::call_sized(py, mesh.inner().demand(Tool::FindHoles), || hole_filling::find_holes(mesh.inner()))?;
+    let holes = doorway::call_sized(py, mesh.inner().demand(Tool::FindHoles), || {
+        hole_filling::find_holes(mesh.inner())
+    })?;
     let convert = |hole: hole_filling::Hole| {
         PyResult::Ok(Hole {
             vertices: index_array(py, &hole.vertices)?.unbind(),

@@ -17,16 +17,19 @@ solver_function! {
     /// mesh : Mesh
     /// indices : (j,) array of vertex indices
     /// values : (j,) or (j,k) array, one row for each index
-    /// energy : "l1_hessian" (sharp ridges), "l2_hessian", "l2_curved_hessian" or "l2_laplacian" (smooth), "l1_hessian_stein2018",
-    ///     "l1_edge_laplacian"; see `energy`
-    /// face_weights : (m,) array w ≥ 0, 1 where None; energies on vertices and edges take the mean of the faces around them
-    /// linear_constraints : (A, b) with A (p,n): SparseMatrix, SciPy sparse matrix or array, and b (p,) or (p,k)
+    /// energy : "l1_hessian" (sharp ridges), "l2_hessian", "l2_curved_hessian" or "l2_laplacian" (smooth),
+    ///     "l1_hessian_stein2018", "l1_edge_laplacian"; see `energy`
+    /// face_weights : (m,) array w ≥ 0, 1 where None; energies on vertices and edges take the mean of the
+    ///     faces around them
+    /// linear_constraints : (A, b) with A (p,n): SparseMatrix, SciPy sparse matrix or array,
+    ///     and b (p,) or (p,k)
     /// coupling : "joint" (one norm for all columns) or "separate" (each column is a problem of its own)
-    /// dual : "barycentric", "circumcentric" (MeshError where a dual edge has no length) or "circumcentric_or_barycentric"
-    ///     (barycenters for such edges); for "l1_hessian" only
-    /// delaunay : flip edges to the intrinsic Delaunay triangulation first; values stay at the vertices, face weights are averaged
-    ///     over the two faces of each flip; not for energies in space
-    /// sharpness : 0 (the convex problem) to 1, reweighted rounds that concentrate curvature; for "l1_hessian" only
+    /// dual : "barycentric", "circumcentric" (MeshError where a dual edge has no length) or
+    ///     "circumcentric_or_barycentric" (barycenters for such edges); for "l1_hessian" only
+    /// delaunay : flip edges to the intrinsic Delaunay triangulation first; values stay at the vertices, face
+    ///     weights are averaged over the two faces of each flip; not for energies in space
+    /// sharpness : 0 (the convex problem) to 1, reweighted rounds that concentrate curvature;
+    ///     for "l1_hessian" only
     solver keywords
     /// progress : Progress or None
     ///
@@ -36,13 +39,14 @@ solver_function! {
     ///
     /// Raises
     /// ------
-    /// ArgumentError, MeshError, SolveError (contradictory constraints; "l2_curved_hessian" on open saddles with
-    /// few given values, where it is not convex), Cancelled
+    /// ArgumentError, MeshError, SolveError (contradictory constraints; "l2_curved_hessian" on open saddles
+    /// with few given values, where it is not convex), Cancelled
     ///
     /// References
     /// ----------
     /// Rowe et al. 2024, eq. (22).
-    signature = (mesh, indices, values, *, energy="l1_hessian", face_weights=None, linear_constraints=None, coupling="joint", dual="barycentric", delaunay=false, sharpness=0.0), tolerance = 1e-3;
+    signature = (mesh, indices, values, *, energy="l1_hessian", face_weights=None, linear_constraints=None,
+        coupling="joint", dual="barycentric", delaunay=false, sharpness=0.0), tolerance = 1e-3;
     pub fn interpolate(py: Python<'_>, solve, progress;
         mesh: &Mesh,
         indices: &Bound<'_, PyAny>,

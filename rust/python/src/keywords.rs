@@ -2,30 +2,33 @@
 
 /// A Python function whose keywords end with those of the solver.
 ///
-/// Where `solver keywords` stands in its documentation, theirs comes in; `tolerance` is the default of that one. The body is
-/// given the interpreter, a call that reads the solver's options, and the progress handle.
+/// Where `solver keywords` stands in its documentation, theirs comes in; `tolerance` is the default of that
+/// one. The body is given the interpreter, a call that reads the solver's options, and the progress handle.
 macro_rules! solver_function {
     (
         $(#[doc = $before:literal])*
         solver keywords
         $(#[doc = $after:literal])*
         signature = ($($signature:tt)*), tolerance = $tolerance:tt $(, text_signature = $text:literal)?;
-        pub fn $name:ident $(<$lifetime:lifetime>)? ($py:ident: $python:ty, $solve:ident, $progress:ident; $($argument:ident: $type:ty),* $(,)?)
+        pub fn $name:ident $(<$lifetime:lifetime>)? (
+            $py:ident: $python:ty, $solve:ident, $progress:ident; $($argument:ident: $type:ty),* $(,)?
+        )
             -> $result:ty $body:block
     ) => {
         $(#[doc = $before])*
-        /// solver : "auto", "fast", "clarabel", "clarabel-qdldl" or "clarabel-faer"; "auto" alone for quadratic energies, which
-        ///     take one sparse factorization
-        /// tolerance : certified relative gap to reach in every problem that is solved; None stops on residuals and reports the gap
-        ///     reached
+        /// solver : "auto", "fast", "clarabel", "clarabel-qdldl" or "clarabel-faer"; "auto" alone for
+        ///     quadratic energies, which take one sparse factorization
+        /// tolerance : certified relative gap to reach in every problem that is solved; None stops on
+        ///     residuals and reports the gap reached
         /// max_iterations : at most so many solver iterations for each of them, or None
-        /// memory_limit : bytes that the factor of the linear system, the larger part of all memory, may take, or None; SolveError
-        ///     with the bytes needed where it does not fit. Clarabel does not know it
+        /// memory_limit : bytes that the factor of the linear system, the larger part of all memory, may
+        ///     take, or None; SolveError with the bytes needed where it does not fit. Clarabel does not know
+        ///     it
         /// threads : int or None
         $(#[doc = $after])*
         #[pyfunction]
-        #[pyo3(signature = ($($signature)*, solver="auto", tolerance=$tolerance, max_iterations=None, memory_limit=None,
-            threads=None, progress=None) $(, text_signature = $text)?)]
+        #[pyo3(signature = ($($signature)*, solver="auto", tolerance=$tolerance, max_iterations=None,
+            memory_limit=None, threads=None, progress=None) $(, text_signature = $text)?)]
         #[allow(clippy::too_many_arguments)]
         pub(crate) fn $name $(<$lifetime>)? (
             $py: $python,

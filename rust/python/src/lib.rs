@@ -1,7 +1,7 @@
 //! The Python bindings of `ridgeform-core`: a thin crate, arrays in and arrays out.
 //!
-//! [`arrays`] is the doorway for data, [`doorway`] that for calls and [`errors`] that for failures; then one file for each
-//! thing that Python sees.
+//! [`arrays`] is the doorway for data, [`doorway`] that for calls and [`errors`] that for failures; then one
+//! file for each thing that Python sees.
 
 #[macro_use]
 mod keywords;

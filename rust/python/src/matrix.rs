@@ -12,7 +12,8 @@ use crate::columns;
 use crate::doorway;
 use crate::errors::{argument, exception};
 
-/// A sparse matrix in compressed rows (CSR): row i owns the entries `indptr[i]:indptr[i + 1]` of `indices` and `data`.
+/// A sparse matrix in compressed rows (CSR): row i owns the entries `indptr[i]:indptr[i + 1]` of `indices`
+/// and `data`.
 #[pyclass(frozen, module = "ridgeform")]
 pub struct SparseMatrix {
     matrix: CsMat<f64>,
@@ -26,7 +27,8 @@ impl SparseMatrix {
     pub fn new(py: Python<'_>, matrix: CsMat<f64>) -> PyResult<Self> {
         let most = matrix.nnz().max(matrix.rows()).max(matrix.cols());
         if i32::try_from(most).is_err() {
-            let problem = format!("its matrix has {most} entries, more than 32-bit indices can count; split the mesh");
+            let problem =
+                format!("its matrix has {most} entries, more than 32-bit indices can count; split the mesh");
             return Err(exception(py, &Error::argument("mesh", problem)));
         }
         Ok(Self { matrix: matrix.into_csr() })
@@ -72,13 +74,18 @@ impl SparseMatrix {
         let py = slf.py();
         let sparse = py.import("scipy.sparse").map_err(|error| {
             if error.is_instance_of::<PyModuleNotFoundError>(py) {
-                PyModuleNotFoundError::new_err("SparseMatrix.to_scipy needs SciPy; install it with: pip install scipy")
+                PyModuleNotFoundError::new_err(
+                    "SparseMatrix.to_scipy needs SciPy; install it with: pip install scipy",
+                )
             } else {
                 error
             }
         })?;
         let matrix = slf.get();
-        sparse.call_method1("csr_array", ((matrix.data(py), matrix.indices(py), matrix.indptr(py)), matrix.shape()))
+        sparse.call_method1(
+            "csr_array",
+            ((matrix.data(py), matrix.indices(py), matrix.indptr(py)), matrix.shape()),
+        )
     }
 
     /// The product with an array (columns,) or (columns,k): (rows,) or (rows,k) float64.
@@ -151,11 +158,20 @@ fn from_scipy(name: &'static str, object: &Bound<'_, PyAny>) -> PyResult<CsMat<f
     let mut triplets = TriMat::with_capacity(shape, data.len());
     for (row, range) in starts.windows(2).enumerate() {
         for k in range[0]..range[1] {
-            let entry =
-                usize::try_from(k).ok().and_then(|k| Some((usize::try_from(*indices.get(k)?).ok()?, *data.get(k)?)));
+            let entry = usize::try_from(k)
+                .ok()
+                .and_then(|k| Some((usize::try_from(*indices.get(k)?).ok()?, *data.get(k)?)));
             match entry {
-                Some((column, value)) if row < shape.0 && column < shape.1 => triplets.add_triplet(row, column, value),
-                _ => return Err(argument(py, name, "is not a valid sparse matrix: an index lies outside its shape")),
+                Some((column, value)) if row < shape.0 && column < shape.1 => {
+                    triplets.add_triplet(row, column, value)
+                }
+                _ => {
+                    return Err(argument(
+                        py,
+                        name,
+                        "is not a valid sparse matrix: an index lies outside its shape",
+                    ))
+                }
             }
         }
     }

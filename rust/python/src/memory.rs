@@ -9,8 +9,8 @@ use crate::mesh::Mesh;
 use crate::numbers::at_least;
 use crate::options;
 
-/// Bytes that this process may still take: what the machine has free, and on Linux what is left under the limits of its control
-/// groups, of `ulimit -v` and of `ulimit -d`.
+/// Bytes that this process may still take: what the machine has free, and on Linux what is left under the
+/// limits of its control groups, of `ulimit -v` and of `ulimit -d`.
 ///
 /// Without `memory_limit` a call takes at most 80 % of it.
 #[pyfunction]
@@ -18,14 +18,15 @@ pub(crate) fn memory_available() -> usize {
     memory::available()
 }
 
-/// Bytes that a call would take at its peak, besides what is there already, about: within a quarter on meshes that are about as
-/// wide as long.
+/// Bytes that a call would take at its peak, besides what is there already, about: within a quarter on meshes
+/// that are about as wide as long.
 ///
 /// Parameters
 /// ----------
-/// tool : the name of a function of this package, "mesh" or "report"; for quadratic energies "denoise_quadratic",
-///     "interpolate_quadratic" and "vibration_modes_quadratic"
-/// mesh : Mesh, or its numbers of vertices and faces; for "fill_holes" a Mesh, since it is the longest hole that counts
+/// tool : the name of a function of this package, "mesh" or "report"; for quadratic energies
+///     "denoise_quadratic", "interpolate_quadratic" and "vibration_modes_quadratic"
+/// mesh : Mesh, or its numbers of vertices and faces; for "fill_holes" a Mesh,
+///     since it is the longest hole that counts
 /// columns : columns of the values, ≥ 1; for "vibration_modes" the number of modes
 /// solver : as the tool takes it
 /// longest : for "fill_holes", the edges of the longest hole that is filled, or None: of all of the Mesh

@@ -12,11 +12,12 @@ use crate::arrays::{self, float_rows, floats, index_array, index_rows, integers,
 use crate::numbers::at_least;
 use crate::{doorway, errors};
 
-/// An immutable triangle mesh from vertices (n,3), any length unit, and faces (m,3), counter-clockwise vertex indices.
+/// An immutable triangle mesh from vertices (n,3), any length unit, and faces (m,3),
+/// counter-clockwise vertex indices.
 ///
-/// Non-manifold edges, inconsistent orientation and faces without area are accepted and count as boundary; `report` tells of
-/// them. Raises MeshError for coordinates that are not finite and for faces that name missing vertices, ArgumentError for
-/// arrays of another shape.
+/// Non-manifold edges, inconsistent orientation and faces without area are accepted and count as boundary;
+/// `report` tells of them. Raises MeshError for coordinates that are not finite and for faces that name
+/// missing vertices, ArgumentError for arrays of another shape.
 #[pyclass(frozen, module = "ridgeform")]
 pub struct Mesh {
     inner: core::Mesh,
@@ -61,9 +62,9 @@ impl Mesh {
 
     /// A mesh known by its edge lengths only: lengths (m,3), column i opposite corner i of the face.
     ///
-    /// Without n_vertices the vertices are those up to the largest index that a face names. Such a mesh has all operators,
-    /// `denoise` and `interpolate`, but no positions to stylize. Raises MeshError for lengths that are negative, not finite,
-    /// different on the two faces of an edge or that form no triangle.
+    /// Without n_vertices the vertices are those up to the largest index that a face names. Such a mesh has
+    /// all operators, `denoise` and `interpolate`, but no positions to stylize. Raises MeshError for lengths
+    /// that are negative, not finite, different on the two faces of an edge or that form no triangle.
     #[staticmethod]
     #[pyo3(signature = (faces, lengths, n_vertices=None))]
     fn from_edge_lengths(
@@ -121,7 +122,8 @@ impl Mesh {
     /// What is unusual about the mesh, a MeshReport.
     #[getter]
     fn report(&self, py: Python<'_>) -> PyResult<MeshReport> {
-        // Never waited for: a lock held at a fork is not released in the child, and making the report again is cheap.
+        // Never waited for: a lock held at a fork is not released in the child,
+        // and making the report again is cheap.
         if let Some(report) = self.report.try_lock().ok().and_then(|kept| kept.clone()) {
             return MeshReport::new(py, &report);
         }
@@ -139,7 +141,8 @@ impl Mesh {
     }
 }
 
-/// What is unusual about a mesh: counts, and the edges, vertices and faces that are not as in a clean surface.
+/// What is unusual about a mesh: counts, and the edges,
+/// vertices and faces that are not as in a clean surface.
 #[pyclass(frozen, get_all, module = "ridgeform")]
 pub struct MeshReport {
     /// Number of connected components among the faces; faces that share a vertex are connected.
@@ -150,7 +153,8 @@ pub struct MeshReport {
     nonmanifold_edges: Py<PyArray2<i32>>,
     /// Those of the non-manifold edges that have two faces, (k,2) int32.
     inconsistent_edges: Py<PyArray2<i32>>,
-    /// Faces turned against the faces around them, (k,) int32; tools take them the other way around, `orient` turns them.
+    /// Faces turned against the faces around them, (k,) int32; tools take them the other way around,
+    /// `orient` turns them.
     flipped_faces: Py<PyArray1<i32>>,
     /// Vertices whose faces do not form one fan, (k,) int32.
     nonmanifold_vertices: Py<PyArray1<i32>>,
@@ -160,7 +164,8 @@ pub struct MeshReport {
     duplicate_faces: Py<PyArray1<i32>>,
     /// Faces that lie on another one from a common edge on, as second lids do, (k,) int32.
     doubled_faces: Py<PyArray1<i32>>,
-    /// Vertices in the middle of border edges of other faces, (k,) int32; `segment` takes the two sides as joined.
+    /// Vertices in the middle of border edges of other faces, (k,) int32;
+    /// `segment` takes the two sides as joined.
     t_junctions: Py<PyArray1<i32>>,
     /// Vertices that no face names, (k,) int32.
     unreferenced_vertices: Py<PyArray1<i32>>,
@@ -190,7 +195,8 @@ impl MeshReport {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let count = |list: &Py<PyArray1<i32>>| list.bind(py).len();
         Ok(format!(
-            "<ridgeform.MeshReport: {} components, {} boundary loops, {} non-manifold edges, {} non-manifold vertices, \
+            "<ridgeform.MeshReport: {} components, {} boundary loops, {} non-manifold edges, {} non-manifold \
+            vertices, \
              {} degenerate, {} duplicate, {} doubled faces, {} T-junctions, {} unreferenced vertices>",
             self.n_components,
             self.n_boundary_loops,
@@ -234,7 +240,10 @@ fn vertex_rows<T: Copy + Into<i64>>(
     if let Some(face) = rows.iter().position(|row| !row.iter().all(fits)) {
         let vertex = rows[face].iter().find(|&vertex| !fits(vertex)).map_or(-1, |&vertex| vertex.into());
         let n_vertices = n_vertices.unwrap_or(i32::MAX as usize);
-        return Err(errors::exception(py, &Error::Mesh(MeshError::VertexOutOfRange { face, vertex, n_vertices })));
+        return Err(errors::exception(
+            py,
+            &Error::Mesh(MeshError::VertexOutOfRange { face, vertex, n_vertices }),
+        ));
     }
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     arrays::converted(py, "faces", rows, |row| row.map(|vertex| vertex.into() as u32))

@@ -13,9 +13,11 @@ use crate::{doorway, options};
 solver_function! {
     /// The first vibration modes of a surface: orthonormal functions of least energy, one after the other.
     ///
-    /// With a quadratic energy they are the eigenvectors of the smallest eigenvalues. With an L1 energy they are compressed modes with
-    /// sharp ridges: alternately u = argmin E(u) among functions orthogonal to the modes before with (c, u) = 1, and c = u / |u|,
-    /// until the energy falls by a smaller share than the tolerance, starting from the modes of the squares; functions without energy (constants, on a plane affine functions) come first.
+    /// With a quadratic energy they are the eigenvectors of the smallest eigenvalues. With an L1 energy they
+    /// are compressed modes with sharp ridges: alternately u = argmin E(u) among functions orthogonal to the
+    /// modes before with (c, u) = 1, and c = u / |u|, until the energy falls by a smaller share than the
+    /// tolerance, starting from the modes of the squares; functions without energy (constants, on a plane
+    /// affine functions) come first.
     ///
     /// Parameters
     /// ----------
@@ -29,17 +31,20 @@ solver_function! {
     ///
     /// Returns
     /// -------
-    /// (n,count) array, a mode a column, with ascending energies, orthonormal with respect to `voronoi_mass` (of the flipped mesh
-    /// with `delaunay`); the entry of largest magnitude is positive. After `Progress.finish` there may be fewer columns.
+    /// (n,count) array, a mode a column, with ascending energies, orthonormal with respect to `voronoi_mass`
+    /// (of the flipped mesh with `delaunay`); the entry of largest magnitude is positive. After
+    /// `Progress.finish` there may be fewer columns.
     ///
     /// Raises
     /// ------
-    /// ArgumentError, MeshError, SolveError, Cancelled; warns with RuntimeWarning if a problem in between missed its tolerance
+    /// ArgumentError, MeshError, SolveError, Cancelled;
+    /// warns with RuntimeWarning if a problem in between missed its tolerance
     ///
     /// References
     /// ----------
     /// Rowe et al. 2024, eq. (38), in the limit of large μ; Brandt and Hildebrandt 2017.
-    signature = (mesh, count, *, energy="l1_hessian", face_weights=None, dual="barycentric", delaunay=false), tolerance = 1e-3;
+    signature = (mesh, count, *, energy="l1_hessian", face_weights=None, dual="barycentric", delaunay=false),
+        tolerance = 1e-3;
     pub fn vibration_modes<'py>(py: Python<'py>, solve, progress;
         mesh: &Mesh,
         count: i64,
@@ -53,10 +58,13 @@ solver_function! {
             energy: options::EnergyWords { energy, face_weights, dual, delaunay }.read(py, mesh)?,
             solve: solve()?,
         };
-        let modes = doorway::call(py, &progress, || tools::vibration_modes(mesh.inner(), count, &options, &progress))?;
+        let modes = doorway::call(py, &progress, || {
+            tools::vibration_modes(mesh.inner(), count, &options, &progress)
+        })?;
         if modes.status == Status::Inaccurate {
             let category = py.get_type::<PyRuntimeWarning>();
-            let message = c"a problem between the modes missed its tolerance; allow more iterations or a larger tolerance";
+            let message = c"a problem between the modes missed its tolerance; allow more iterations or a \
+            larger tolerance";
             PyErr::warn(py, &category, message, 1)?;
         }
         Ok(columns::write(py, Values { columns: modes.values, single: false }))

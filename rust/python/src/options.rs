@@ -14,7 +14,12 @@ use crate::numbers::at_least;
 ///
 /// # Errors
 /// `ArgumentError` that lists the accepted words.
-pub(crate) fn choice<T: Copy>(py: Python<'_>, name: &'static str, given: &str, accepted: &[(&str, T)]) -> PyResult<T> {
+pub(crate) fn choice<T: Copy>(
+    py: Python<'_>,
+    name: &'static str,
+    given: &str,
+    accepted: &[(&str, T)],
+) -> PyResult<T> {
     accepted.iter().find(|(word, _)| *word == given).map(|&(_, value)| value).ok_or_else(|| {
         let words: Vec<_> = accepted.iter().map(|(word, _)| format!("\"{word}\"")).collect();
         argument(py, name, format!("\"{given}\" is not known here; use {}", words.join(" or ")))

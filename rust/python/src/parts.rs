@@ -30,8 +30,8 @@ pub struct Parts {
 
 #[pymethods]
 impl Parts {
-    /// The division into `n_parts` parts, or the nearest number that `range` allows, from the hierarchy: at once,
-    /// and nested.
+    /// The division into `n_parts` parts, or the nearest number that `range` allows, from the hierarchy:
+    /// at once, and nested.
     ///
     /// Parameters
     /// ----------
@@ -57,11 +57,12 @@ impl Parts {
         (fewest, most)
     }
 
-    /// What the cuts cost that make two parts of one, three of two, and so on, float64. They come in the order of
-    /// how much they are worth, which grows with the areas that they part: not ascending.
+    /// What the cuts cost that make two parts of one, three of two, and so on, float64. They come in the
+    /// order of how much they are worth, which grows with the areas that they part: not ascending.
     #[getter]
     fn costs<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        let costs: Vec<f64> = self.hierarchy.strengths().iter().rev().map(|strength| 1.0 / strength).collect();
+        let costs: Vec<f64> =
+            self.hierarchy.strengths().iter().rev().map(|strength| 1.0 / strength).collect();
         costs.into_pyarray(py)
     }
 
@@ -73,23 +74,24 @@ impl Parts {
 
 /// Divide the faces into the parts that people name: limbs, heads, handles.
 ///
-/// People cut where a closed curve is short against what it cuts off, and runs through hollows (minima rule) or
-/// where the thickness changes. A cut costs the length of its border, in hollows and at changes of thickness down
-/// to a tenth of it, over the 0.7th power of the area of the smaller side, in units of the whole area. The part
-/// with the cheapest cut is divided, over and over, as long as cuts cost little; where fewer parts are wanted, those
-/// become one that lose least: the logarithm of how cheap their cut is, times the product of their areas. Any mesh will do: vertices at the same place count as one,
-/// faces are turned to agree, pieces that nothing joins are parts or belong to what lies nearest. For the faces
-/// of what is plane or evenly curved use `segment`.
+/// People cut where a closed curve is short against what it cuts off, and runs through hollows (minima rule)
+/// or where the thickness changes. A cut costs the length of its border, in hollows and at changes of
+/// thickness down to a tenth of it, over the 0.7th power of the area of the smaller side, in units of the
+/// whole area. The part with the cheapest cut is divided, over and over, as long as cuts cost little; where
+/// fewer parts are wanted, those become one that lose least: the logarithm of how cheap their cut is, times
+/// the product of their areas. Any mesh will do: vertices at the same place count as one, faces are turned to
+/// agree, pieces that nothing joins are parts or belong to what lies nearest. For the faces of what is plane
+/// or evenly curved use `segment`.
 ///
 /// Parameters
 /// ----------
 /// mesh : Mesh with positions
 /// n_parts : number of parts wanted, or None: as `coarseness` has it; fewer where the shape has no more
-/// coarseness : float > 0, larger gives fewer parts: cuts are made up to a cost of 1.25 / coarseness. Cuts of about
-///     the same cost, as of two arms, are made all or none
+/// coarseness : float > 0, larger gives fewer parts: cuts are made up to a cost of 1.25 / coarseness. Cuts of
+///     about the same cost, as of two arms, are made all or none
 /// face_weights : (m,) array ≥ 0, what borders cost there: 1 is neutral, smaller attracts them
-/// edge_weights : (m,3) array ≥ 0, the same for edges, column i opposite corner i; the mean of both faces' entries
-///     counts
+/// edge_weights : (m,3) array ≥ 0, the same for edges, column i opposite corner i;
+///     the mean of both faces' entries counts
 /// faces : faces to divide, (m,) booleans or (j,) indices; None for all
 /// threads : int or None
 /// progress : Progress or None
@@ -122,7 +124,9 @@ pub(crate) fn parts(
     progress: Option<&Bound<'_, Progress>>,
 ) -> PyResult<Parts> {
     let m = mesh.n_faces();
-    let rows = |given: &Bound<'_, PyAny>| arrays::finite_floats("edge_weights", given)?.rows::<3>(py, "edge_weights");
+    let rows = |given: &Bound<'_, PyAny>| {
+        arrays::finite_floats("edge_weights", given)?.rows::<3>(py, "edge_weights")
+    };
     let options = tools::PartsOptions {
         n_parts: n_parts.map(|count| at_least(py, "n_parts", count, 1)).transpose()?,
         coarseness,

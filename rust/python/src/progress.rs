@@ -9,7 +9,8 @@ use crate::arrays::{float_rows, index_rows};
 /// Vertices (k,3) and faces (j,3) as NumPy arrays.
 type Surface<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i32>>);
 
-/// A handle to pass as `progress=` and to use from another thread while the call runs; make a fresh one for each call.
+/// A handle to pass as `progress=` and to use from another thread while the call runs;
+/// make a fresh one for each call.
 #[pyclass(frozen, module = "ridgeform")]
 #[derive(Default)]
 pub struct Progress {
@@ -54,7 +55,8 @@ impl Progress {
         self.inner.last_report().gap
     }
 
-    /// How often the call has asked so far whether to stop; between two questions it does not hear `cancel` and `finish`.
+    /// How often the call has asked so far whether to stop;
+    /// between two questions it does not hear `cancel` and `finish`.
     #[getter]
     fn asked(&self) -> u64 {
         self.inner.n_asked()
@@ -75,17 +77,20 @@ impl Progress {
         self.inner.snapshot().map(|vertices| float_rows(py, &vertices)).transpose()
     }
 
-    /// The number of that step, from 1, and its vertices (n,3) float64, read at once; None before the first. Counted are the
-    /// steps that were published through this handle: give every call its own.
-    fn numbered_snapshot<'py>(&self, py: Python<'py>) -> PyResult<Option<(usize, Bound<'py, PyArray2<f64>>)>> {
+    /// The number of that step, from 1, and its vertices (n,3) float64, read at once; None before the first.
+    /// Counted are the steps that were published through this handle: give every call its own.
+    fn numbered_snapshot<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Option<(usize, Bound<'py, PyArray2<f64>>)>> {
         self.inner
             .numbered_snapshot()
             .map(|(number, vertices)| PyResult::Ok((number, float_rows(py, &vertices)?)))
             .transpose()
     }
 
-    /// The faces that a call which makes some (`fill_holes`) has made so far: their vertices (k,3) float64 and faces (j,3)
-    /// int32 among these, fresh arrays; None before the first.
+    /// The faces that a call which makes some (`fill_holes`) has made so far: their vertices (k,3) float64
+    /// and faces (j,3) int32 among these, fresh arrays; None before the first.
     fn snapshot_surface<'py>(&self, py: Python<'py>) -> PyResult<Option<Surface<'py>>> {
         let read = |surface: std::sync::Arc<ridgeform_core::progress::Surface>| {
             PyResult::Ok((float_rows(py, &surface.0)?, index_rows(py, &surface.1)?))

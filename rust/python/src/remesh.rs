@@ -16,8 +16,8 @@ pub struct Remeshed {
     vertices: Py<PyArray2<f64>>,
     /// The vertex indices of every face, (m',3) int32.
     faces: Py<PyArray2<i32>>,
-    /// For every vertex the index of the input's vertex that it is, unmoved (fixed vertices, corners, non-manifold vertices),
-    /// or -1, (n',) int32.
+    /// For every vertex the index of the input's vertex that it is, unmoved (fixed vertices, corners,
+    /// non-manifold vertices), or -1, (n',) int32.
     origin: Py<PyArray1<i32>>,
     /// The target edge length.
     edge_length: f64,
@@ -35,20 +35,21 @@ impl Remeshed {
     }
 }
 
-/// Remesh a surface with edges of about the same length and triangles close to equilateral, without moving it.
+/// Remesh a surface with edges of about the same length and triangles close to equilateral,
+/// without moving it.
 ///
-/// Each round splits edges longer than 4/3 of the target, collapses those shorter than 4/5, flips edges toward valence 6,
-/// moves vertices along the surface to the center of their neighbors and projects them back onto the input. Borders and
-/// feature lines keep their course and their corners, non-manifold edges stay. Nothing is folded over, and slivers are
-/// removed where possible.
+/// Each round splits edges longer than 4/3 of the target, collapses those shorter than 4/5, flips edges
+/// toward valence 6, moves vertices along the surface to the center of their neighbors and projects them back
+/// onto the input. Borders and feature lines keep their course and their corners, non-manifold edges stay.
+/// Nothing is folded over, and slivers are removed where possible.
 ///
 /// Parameters
 /// ----------
 /// mesh : Mesh with positions
 /// edge_length : float > 0, the target; None is the mean of the mesh's edges
 /// iterations : number of rounds, ≥ 0
-/// fixed : vertices that stay, bit by bit: (n,) booleans or (j,) indices; border and feature edges between two of them and
-///     faces with three stay too
+/// fixed : vertices that stay, bit by bit: (n,) booleans or (j,) indices; border and feature edges between
+///     two of them and faces with three stay too
 /// feature_angle : degrees, 0 to 180; edges whose faces turn by more are kept as lines; None keeps none
 /// progress : Progress or None
 ///

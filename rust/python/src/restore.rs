@@ -16,21 +16,23 @@ pub struct Restored {
     vertices: Py<PyArray2<f64>>,
     /// Index into `surfaces` for each face, (m,) int32; -1 for faces that took no part.
     labels: Py<PyArray1<i32>>,
-    /// For each surface a dict that JSON can hold: "kind" ("plane", "sphere", "cylinder", "cone", "torus" or "free"), its parameters
-    /// ("normal" and "offset"; "center" and "radius"; "point", "axis" and "radius"; "apex", "axis", half "angle" in radians,
-    /// "point" on the axis and "radius" there; "center", "axis", "major" and "minor"), "inside" (whether the faces look to its
-    /// inside, as in a bore), "rms" (root mean square distance of the vertices as they came), and "faces", how many.
+    /// For each surface a dict that JSON can hold: "kind" ("plane", "sphere", "cylinder", "cone", "torus" or
+    /// "free"), its parameters ("normal" and "offset"; "center" and "radius"; "point", "axis" and "radius";
+    /// "apex", "axis", half "angle" in radians, "point" on the axis and "radius" there; "center", "axis",
+    /// "major" and "minor"), "inside" (whether the faces look to its inside, as in a bore), "rms" (root mean
+    /// square distance of the vertices as they came), and "faces", how many.
     surfaces: Py<PyList>,
     /// Standard deviation of the noise along the normal, in the units of the input: as given or as found.
     noise: f64,
     /// What `regularize` made parallel, orthogonal or equal, in words.
     relations: Vec<String>,
-    /// Vertices that would have had to move farther than allowed: they are on fewer surfaces than their faces, or stayed.
+    /// Vertices that would have had to move farther than allowed:
+    /// they are on fewer surfaces than their faces, or stayed.
     n_held: usize,
     /// Faces that are still folded over their surface.
     n_folded: usize,
-    /// "restored", "unsure" (no piece is sure to be a surface of a known kind: nothing moved) or "stopped" (`Progress.finish`
-    /// was called: vertices may be as they came).
+    /// "restored", "unsure" (no piece is sure to be a surface of a known kind: nothing moved) or "stopped"
+    /// (`Progress.finish` was called: vertices may be as they came).
     status: &'static str,
 }
 
@@ -82,19 +84,21 @@ fn described<'py>(py: Python<'py>, piece: &RestoredSurface) -> PyResult<Bound<'p
 solver_function! {
     /// Put a noisy part onto the planes, spheres, cylinders, cones and tori that it was made of.
     ///
-    /// Segments are labeled with surfaces by one energy: the negative logarithm of the likelihood of the vertices under the mesh's own
-    /// noise, the length of borders, and a price for each parameter. Neighbors that one surface explains are merged, and faces at
-    /// borders moved. Then every vertex goes onto its surface, onto the curve of two, into
-    /// the corner of three, and vertices move within these until no triangle is folded. Connectivity stays.
+    /// Segments are labeled with surfaces by one energy: the negative logarithm of the likelihood of the
+    /// vertices under the mesh's own noise, the length of borders, and a price for each parameter. Neighbors
+    /// that one surface explains are merged, and faces at borders moved. Then every vertex goes onto its
+    /// surface, onto the curve of two, into the corner of three, and vertices move within these until no
+    /// triangle is folded. Connectivity stays.
     ///
     /// Parameters
     /// ----------
     /// mesh : Mesh with positions
-    /// max_move : float > 0, how far a vertex may move, in the mesh's units; None: four standard deviations of the noise and half
-    ///     a mean edge
-    /// noise : float > 0, standard deviation of the noise along the normal, in the mesh's units; None: as found in the mesh
-    /// regularize : degrees, 0 to 30, up to which directions are made parallel and orthogonal, and in the same proportion radii
-    ///     equal; None: surfaces as fitted
+    /// max_move : float > 0, how far a vertex may move, in the mesh's units; None: four standard deviations
+    ///     of the noise and half a mean edge
+    /// noise : float > 0, standard deviation of the noise along the normal, in the mesh's units; None:
+    ///     as found in the mesh
+    /// regularize : degrees, 0 to 30, up to which directions are made parallel and orthogonal, and in the
+    ///     same proportion radii equal; None: surfaces as fitted
     /// free : whether pieces of no known kind are denoised by the flow; otherwise they stay
     /// fixed : vertices that stay where they are: (n,) booleans or (j,) indices
     /// faces : faces to restore, (m,) booleans or (j,) indices; None for all. Vertices of others stay
@@ -111,9 +115,10 @@ solver_function! {
     ///
     /// References
     /// ----------
-    /// Isack and Boykov, Energy-based geometric multi-model fitting, 2012; Delong et al., Fast approximate energy minimization
-    /// with label costs, 2012.
-    signature = (mesh, *, max_move=None, noise=None, regularize=None, free=true, fixed=None, faces=None), tolerance = 1e-3;
+    /// Isack and Boykov, Energy-based geometric multi-model fitting, 2012; Delong et al., Fast approximate
+    /// energy minimization with label costs, 2012.
+    signature = (mesh, *, max_move=None, noise=None, regularize=None, free=true, fixed=None, faces=None),
+        tolerance = 1e-3;
     pub fn restore(py: Python<'_>, solve, progress;
         mesh: &Mesh,
         max_move: Option<f64>,

@@ -12,7 +12,8 @@ use crate::{arrays, doorway, errors, options};
 /// What `segment` returns: a label for every face, and finer and coarser segmentations nested with it.
 #[pyclass(frozen, module = "ridgeform")]
 pub struct Segmentation {
-    /// The segment of each face, (m,) int32, from 0 in the order of their first faces; -1 for faces that took no part.
+    /// The segment of each face, (m,) int32, from 0 in the order of their first faces;
+    /// -1 for faces that took no part.
     #[pyo3(get)]
     labels: Py<PyArray1<i32>>,
     /// Number of segments.
@@ -21,7 +22,8 @@ pub struct Segmentation {
     /// (m,) float64, near 1 inside segments and near 0 at borders.
     #[pyo3(get)]
     indicator: Py<PyArray1<f64>>,
-    /// The signal with borders sharpened, float64, in its shape and units; without `values` the vertices, (n,3).
+    /// The signal with borders sharpened, float64, in its shape and units;
+    /// without `values` the vertices, (n,3).
     #[pyo3(get)]
     values: Py<PyAny>,
     /// The vertices of the edges between segments, (k,2) int32.
@@ -47,7 +49,8 @@ pub struct Segmentation {
 
 #[pymethods]
 impl Segmentation {
-    /// The segmentation with `n_segments` segments, or the nearest number that `range` allows, from the hierarchy: at once, and nested.
+    /// The segmentation with `n_segments` segments, or the nearest number that `range` allows, from the
+    /// hierarchy: at once, and nested.
     ///
     /// Parameters
     /// ----------
@@ -73,8 +76,8 @@ impl Segmentation {
         (fewest, most)
     }
 
-    /// The strength of the border that falls with each merge, ascending, from `range[1]` segments down to `range[0]`, float64. For
-    /// shapes radians, the mean bend across the border.
+    /// The strength of the border that falls with each merge, ascending, from `range[1]` segments down to
+    /// `range[0]`, float64. For shapes radians, the mean bend across the border.
     #[getter]
     fn strengths<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.hierarchy.strengths().to_vec().into_pyarray(py)
@@ -82,35 +85,44 @@ impl Segmentation {
 
     fn __repr__(&self) -> String {
         let (fewest, most) = self.range();
-        format!("<ridgeform.Segmentation: {} segments of {fewest} to {most}, {}>", self.n_segments, self.status)
+        format!(
+            "<ridgeform.Segmentation: {} segments of {fewest} to {most}, {}>",
+            self.n_segments, self.status
+        )
     }
 }
 
 solver_function! {
-    /// Divide the faces into segments on which the shape, or a function on it, is nearly plane (affine), with borders along the ridges.
+    /// Divide the faces into segments on which the shape, or a function on it, is nearly plane (affine), with
+    /// borders along the ridges.
     ///
-    /// Minimizes fidelity ‖u - u₀‖²_M + Σ_f v_f² ‖(H u)_f‖ + length_weight (epsilon vᵀ L v + ‖1 - v‖² / (4 epsilon)) in turns over the
-    /// signal u and the indicator of borders v on the faces, epsilon halved from start to end. Smoothly curved parts stay one segment.
+    /// Minimizes fidelity ‖u - u₀‖²_M + Σ_f v_f² ‖(H u)_f‖ + length_weight (epsilon vᵀ L v + ‖1 - v‖² / (4
+    /// epsilon)) in turns over the signal u and the indicator of borders v on the faces, epsilon halved from
+    /// start to end. Smoothly curved parts stay one segment.
     ///
     /// Parameters
     /// ----------
     /// mesh : Mesh with positions
-    /// values : (n,) or (n,k) array, the signal, k ≤ 16; None for the positions. A signal is scaled to a range of 1
-    /// length_weight : float > 0, what a border costs per length: two parts of a shape that meet at an edge bent by less than about 0.8
-    ///     times this (radians) become one; smaller gives more segments
-    /// fidelity : float > 0, how closely u follows the signal; None: as the noise found in the signal wants it (1000 for "paper")
-    /// epsilon_start, epsilon_end : widths of the bands in which v falls, in the unit that `scale` sets; "fitted" goes no lower than
-    ///     the mesh is fine
+    /// values : (n,) or (n,k) array, the signal, k ≤ 16; None for the positions.
+    ///     A signal is scaled to a range of 1
+    /// length_weight : float > 0, what a border costs per length: two parts of a shape that meet at an edge
+    ///     bent by less than about 0.8 times this (radians) become one; smaller gives more segments
+    /// fidelity : float > 0, how closely u follows the signal; None:
+    ///     as the noise found in the signal wants it (1000 for "paper")
+    /// epsilon_start, epsilon_end : widths of the bands in which v falls, in the unit that `scale` sets;
+    ///     "fitted" goes no lower than the mesh is fine
     /// inner_tolerance : the mean squared change of v at which epsilon is halved
     /// cut_threshold : 0 to 1, edges with a lower v are cut; for "paper"
-    /// min_faces : segments of fewer faces are merged; None: 20, and for "fitted" down to 4 the less noise there is, and 0 for
-    ///     modeled shapes
-    /// scale : "extent" (a cube has its side, whatever its rotation), "bounding_box" (the longest side is 1), "area" or "max_edge"
-    /// method : "fitted" (watershed of v, merging of what bends little, border faces moved to the segment that they fit best) or "paper"
-    ///     (cuts below the threshold, small pieces merged by majority)
+    /// min_faces : segments of fewer faces are merged; None: 20, and for "fitted" down to 4 the less noise
+    ///     there is, and 0 for modeled shapes
+    /// scale : "extent" (a cube has its side, whatever its rotation),
+    ///     "bounding_box" (the longest side is 1), "area" or "max_edge"
+    /// method : "fitted" (watershed of v, merging of what bends little, border faces moved to the segment
+    ///     that they fit best) or "paper" (cuts below the threshold, small pieces merged by majority)
     /// n_segments : number of segments wanted, or None; fewer where the finest segmentation has fewer
     /// face_weights : (m,) array ≥ 0, what borders cost there: 1 is neutral, smaller attracts them
-    /// edge_weights : (m,3) array ≥ 0, the same for edges, column i opposite corner i; the mean of both faces' entries counts
+    /// edge_weights : (m,3) array ≥ 0, the same for edges, column i opposite corner i;
+    ///     the mean of both faces' entries counts
     /// faces : faces to segment, (m,) booleans or (j,) indices; None for all
     solver keywords
     /// progress : Progress or None
@@ -126,7 +138,9 @@ solver_function! {
     /// References
     /// ----------
     /// Rowe et al. 2024, eqs. (25) and (41), section 7.5, supplement E.
-    signature = (mesh, *, values=None, length_weight=0.5, fidelity=None, epsilon_start=0.1, epsilon_end=0.001, inner_tolerance=1e-5, cut_threshold=0.6, min_faces=None, scale="extent", method="fitted", n_segments=None, face_weights=None, edge_weights=None, faces=None), tolerance = None;
+    signature = (mesh, *, values=None, length_weight=0.5, fidelity=None, epsilon_start=0.1, epsilon_end=0.001,
+        inner_tolerance=1e-5, cut_threshold=0.6, min_faces=None, scale="extent", method="fitted",
+        n_segments=None, face_weights=None, edge_weights=None, faces=None), tolerance = None;
     pub fn segment(py: Python<'_>, solve, progress;
         mesh: &Mesh,
         values: Option<&Bound<'_, PyAny>>,
@@ -147,7 +161,8 @@ solver_function! {
         let (n, m) = (mesh.n_vertices(), mesh.n_faces());
         let signal = values.map(|given| columns::read("values", given, n, "vertex")).transpose()?;
         let methods = [("fitted", SegmentMethod::Fitted), ("paper", SegmentMethod::Paper)];
-        let rows = |given: &Bound<'_, PyAny>| arrays::finite_floats("edge_weights", given)?.rows::<3>(py, "edge_weights");
+        let name = "edge_weights";
+        let rows = |given: &Bound<'_, PyAny>| arrays::finite_floats(name, given)?.rows::<3>(py, name);
         let options = tools::SegmentOptions {
             method: options::choice(py, "method", method, &methods)?,
             length_weight,
@@ -165,7 +180,8 @@ solver_function! {
             solve: solve()?,
         };
         let given = signal.as_ref().map(|signal| &signal.columns);
-        let found = doorway::call(py, &progress, || tools::segment(mesh.inner(), given, &options, &progress))?;
+        let found =
+            doorway::call(py, &progress, || tools::segment(mesh.inner(), given, &options, &progress))?;
         let single = signal.as_ref().is_some_and(|signal| signal.single);
         Ok(Segmentation {
             labels: found.labels.into_pyarray(py).unbind(),

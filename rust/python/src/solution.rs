@@ -12,14 +12,15 @@ pub struct Solution {
     values: Py<PyAny>,
     /// The objective at `values`.
     objective: f64,
-    /// The certified relative duality gap: no feasible point has an objective lower by more than this share. With a quadratic
-    /// energy, what another step of the linear solver would lower it by.
+    /// The certified relative duality gap: no feasible point has an objective lower by more than this share.
+    /// With a quadratic energy, what another step of the linear solver would lower it by.
     gap: f64,
     /// Inner iterations, all rounds and columns together.
     iterations: usize,
     /// Numeric factorizations, all rounds and columns together.
     factorisations: usize,
-    /// "solved" (the tolerance was reached), "inaccurate" (it was not: the best point is returned) or "stopped".
+    /// "solved" (the tolerance was reached), "inaccurate" (it was not: the best point is returned) or
+    /// "stopped".
     status: &'static str,
     /// The solver that was used; "cholesky" with a quadratic energy.
     solver: &'static str,

@@ -23,15 +23,18 @@ pub struct Stylized {
     iterations: usize,
     /// Numeric factorizations, all steps together.
     factorisations: usize,
-    /// The part of the area in faces that meet all neighbors at less than 2 degrees, before and after, (2,) float64.
+    /// The part of the area in faces that meet all neighbors at less than 2 degrees, before and after,
+    /// (2,) float64.
     flat_share: Py<PyArray1<f64>>,
-    /// Facets that one would count afterward: parts whose faces meet at less than 2 degrees, with at least 3e-4 of the area.
+    /// Facets that one would count afterward: parts whose faces meet at less than 2 degrees,
+    /// with at least 3e-4 of the area.
     n_facets: usize,
-    /// "finished" (all steps done), "reached" (moved as far as `movement` allows, or as flat as `flat_share` asks), "settled"
-    /// (more steps would make no more of it flat), "inaccurate" (as finished, but a step missed its tolerance), "converged"
-    /// (nothing moves any more), "collapsed" (the shape has no extent left; its last sound step is returned), "diverged" (a
-    /// step left the surroundings of the shape: its triangles are too uneven for numbers; its last sound step is returned) or
-    /// "stopped" (`Progress.finish` was called).
+    /// "finished" (all steps done), "reached" (moved as far as `movement` allows, or as flat as `flat_share`
+    /// asks), "settled" (more steps would make no more of it flat), "inaccurate" (as finished, but a step
+    /// missed its tolerance), "converged" (nothing moves any more), "collapsed" (the shape has no extent
+    /// left; its last sound step is returned), "diverged" (a step left the surroundings of the shape: its
+    /// triangles are too uneven for numbers; its last sound step is returned) or "stopped" (`Progress.finish`
+    /// was called).
     status: &'static str,
 }
 
@@ -45,29 +48,34 @@ impl Stylized {
 solver_function! {
     /// Turn a mesh piecewise flat with crisp ridges, in steps of the L1 Hessian flow.
     ///
-    /// Each step minimizes Σ_f w_f ‖(H x)_f‖ + fidelity (x - x₀)ᵀ M (x - x₀) over the vertex positions x, with H and M from the
-    /// positions x₀ before the step.
+    /// Each step minimizes Σ_f w_f ‖(H x)_f‖ + fidelity (x - x₀)ᵀ M (x - x₀) over the vertex positions x,
+    /// with H and M from the positions x₀ before the step.
     ///
     /// Parameters
     /// ----------
     /// mesh : Mesh with positions
     /// iterations : number of steps, ≥ 0
-    /// fidelity : float > 0, how strongly a step holds on to the shape, in the unit that `scale` sets; larger changes less
-    /// movement : None (all steps alike) or float > 0: how far the vertices may move, root mean square by area, in parts of
-    ///     the square root of the surface's area. Then `fidelity` is that of the first step, each step doubles the time of the
-    ///     flow, and it ends when that movement is reached or the planes have settled, after at most `iterations` steps
-    /// flat_share : None or float from 0 to 1: as with `movement`, but the flow ends when this part of the area is flat (as
-    ///     `Stylized.flat_share` measures it) and facets have formed; with both, at whichever comes first
-    /// sharpness : 0 (the paper's energy) to 1 (most angular): reweighting from step to step, w_f ∝ (curvature + 0.1)^(-sharpness)
-    /// coupling : "joint" (one norm for the three coordinates, independent of the axes) or "separate" (the paper's)
-    /// scale : "max_edge" (the longest edge is 1: the paper's unit), "bounding_box" (the longest side is 1), "area" (the surface is 1)
-    ///     or "extent" (a cube has its side, whatever its rotation)
+    /// fidelity : float > 0, how strongly a step holds on to the shape, in the unit that `scale` sets;
+    ///     larger changes less
+    /// movement : None (all steps alike) or float > 0: how far the vertices may move, root mean square by
+    ///     area, in parts of the square root of the surface's area. Then `fidelity` is that of the first
+    ///     step, each step doubles the time of the flow, and it ends when that movement is reached or the
+    ///     planes have settled, after at most `iterations` steps
+    /// flat_share : None or float from 0 to 1: as with `movement`, but the flow ends when this part of the
+    ///     area is flat (as `Stylized.flat_share` measures it) and facets have formed; with both, at
+    ///     whichever comes first
+    /// sharpness : 0 (the paper's energy) to 1 (most angular): reweighting from step to step, w_f ∝
+    ///     (curvature + 0.1)^(-sharpness)
+    /// coupling : "joint" (one norm for the three coordinates, independent of the axes) or "separate" (the
+    ///     paper's)
+    /// scale : "max_edge" (the longest edge is 1: the paper's unit), "bounding_box" (the longest side is 1),
+    ///     "area" (the surface is 1) or "extent" (a cube has its side, whatever its rotation)
     /// fixed : vertices that stay where they are: (n,) booleans or (j,) indices
     /// strength : (n,) array, 0 (stay) to 1 (full effect)
     /// ridge_weights : (m,) array > 0, 1 is neutral, smaller makes ridges cheaper there
     /// delaunay : flip edges to intrinsic Delaunay before each step
-    /// dual : "barycentric", "circumcentric" (MeshError where a dual edge has no length) or "circumcentric_or_barycentric"
-    ///     (barycenters for such edges)
+    /// dual : "barycentric", "circumcentric" (MeshError where a dual edge has no length) or
+    ///     "circumcentric_or_barycentric" (barycenters for such edges)
     solver keywords
     /// progress : Progress or None; its snapshot() shows the vertices after the last finished step
     ///
@@ -82,7 +90,9 @@ solver_function! {
     /// References
     /// ----------
     /// Rowe et al. 2024, eq. (24), section 7.3; reweighting: Candès et al. 2008.
-    signature = (mesh, *, iterations=20, fidelity=500.0, movement=None, flat_share=None, sharpness=0.5, coupling="joint", scale="max_edge", fixed=None, strength=None, ridge_weights=None, delaunay=false, dual="barycentric"), tolerance = 1e-3;
+    signature = (mesh, *, iterations=20, fidelity=500.0, movement=None, flat_share=None, sharpness=0.5,
+        coupling="joint", scale="max_edge", fixed=None, strength=None, ridge_weights=None, delaunay=false,
+        dual="barycentric"), tolerance = 1e-3;
     pub fn stylize(py: Python<'_>, solve, progress;
         mesh: &Mesh,
         iterations: i64,

@@ -17,14 +17,16 @@ use crate::mesh::read_faces;
 /// ----------
 /// vertices : (n,3), any length unit
 /// faces : (m,3) vertex indices
-/// tolerance : float ≥ 0, by how much each coordinate may differ; None for the rounding of the coordinates: a hundred-thousandth of the
-///     size of the borders, as files of six digits have it, or four units in the last place (of float32 where all
-///     coordinates fit in it), but a tenth of the shortest border edge there at most
+/// tolerance : float ≥ 0, by how much each coordinate may differ; None for the rounding of the coordinates: a
+///     hundred-thousandth of the size of the borders, as files of six digits have it, or four units in the
+///     last place (of float32 where all coordinates fit in it), but a tenth of the shortest border edge there
+///     at most
 ///
 /// Returns
 /// -------
 /// vertices : (k,3) float64, the first of those that are one, in the order of the input and with its bits
-/// faces : (m,3) int32, as many and in the order of the input; one whose corners became one names a vertex twice
+/// faces : (m,3) int32, as many and in the order of the input;
+///     one whose corners became one names a vertex twice
 /// index : (n,) int32, the welded vertex of every vertex: `faces` is `index[input faces]`
 ///
 /// Raises
@@ -40,7 +42,11 @@ pub(crate) fn weld<'py>(
     tolerance: Option<f64>,
 ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i32>>, Bound<'py, PyArray1<i32>>)> {
     if let Some(tolerance) = tolerance.filter(|t| !(*t >= 0.0 && t.is_finite())) {
-        return Err(argument(py, "tolerance", format!("is {tolerance}; it must be at least 0, or None for rounding")));
+        return Err(argument(
+            py,
+            "tolerance",
+            format!("is {tolerance}; it must be at least 0, or None for rounding"),
+        ));
     }
     let vertices = finite_floats("vertices", vertices)?.rows::<3>(py, "vertices")?;
     let faces = read_faces(faces, Some(vertices.len()))?;
@@ -59,9 +65,9 @@ pub(crate) fn weld<'py>(
 
 /// Turn faces over so that neighbors agree on which side is outside.
 ///
-/// In each part of the surface connected across edges the smaller number of faces is turned, of two equal numbers those that do not
-/// agree with its first face. Across edges with three faces or more nothing is compared; a surface with one side only, as a
-/// Möbius strip, keeps a line along which faces disagree.
+/// In each part of the surface connected across edges the smaller number of faces is turned, of two equal
+/// numbers those that do not agree with its first face. Across edges with three faces or more nothing is
+/// compared; a surface with one side only, as a Möbius strip, keeps a line along which faces disagree.
 ///
 /// Parameters
 /// ----------
@@ -83,7 +89,8 @@ pub(crate) fn orient<'py>(
 ) -> PyResult<(Bound<'py, PyArray2<i32>>, Bound<'py, PyArray1<bool>>)> {
     let faces = read_faces(faces, None)?;
     let n_vertices = faces.iter().flatten().map(|&v| v as usize + 1).max().unwrap_or(0);
-    let (faces, flipped) =
-        doorway::call_briefly(py, || orient_faces(faces, n_vertices).map_err(|error: MeshError| Error::from(error)))?;
+    let (faces, flipped) = doorway::call_briefly(py, || {
+        orient_faces(faces, n_vertices).map_err(|error: MeshError| Error::from(error))
+    })?;
     Ok((index_rows(py, &faces)?, flipped.into_pyarray(py)))
 }

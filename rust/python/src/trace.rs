@@ -14,8 +14,8 @@ type Traced<'py> = (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<i32>>, Bound<
 
 /// Paths along the edges of a mesh that follow lines drawn on or near it.
 ///
-/// Every point goes to the nearest corner of the nearest face; between them runs the shortest path that keeps to the line. Steps
-/// forth and back over one edge are left out.
+/// Every point goes to the nearest corner of the nearest face; between them runs the shortest path that keeps
+/// to the line. Steps forth and back over one edge are left out.
 ///
 /// Parameters
 /// ----------
@@ -26,9 +26,10 @@ type Traced<'py> = (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<i32>>, Bound<
 ///
 /// Returns
 /// -------
-/// (vertices, starts, places) : the vertices along the paths (k,) int32, where each path starts among them (q+1,) int32, and where
-///     on its line each vertex lies (k,) float64: i + t between point i of the line and the next. The first vertex of a closed
-///     path does not come last again
+/// (vertices, starts, places) : the vertices along the paths (k,) int32,
+/// where each path starts among them (q+1,) int32, and where
+///     on its line each vertex lies (k,) float64: i + t between point i of the line and the next. The first
+///     vertex of a closed path does not come last again
 ///
 /// Raises
 /// ------
@@ -51,7 +52,10 @@ pub(crate) fn trace_curves<'py>(
         None => vec![0, points.len()],
         Some(given) => arrays::indices("starts", given, points.len() + 1, "point")?,
     };
-    if starts.first() != Some(&0) || starts.last() != Some(&points.len()) || starts.windows(2).any(|s| s[0] > s[1]) {
+    if starts.first() != Some(&0)
+        || starts.last() != Some(&points.len())
+        || starts.windows(2).any(|s| s[0] > s[1])
+    {
         let problem = format!("must ascend from 0 to the number of points, {}", points.len());
         return Err(argument(py, "starts", problem));
     }

@@ -25,8 +25,8 @@ pub(crate) enum Outcome<T, I> {
 
 /// Run `work` on a worker thread and ask `interrupted` every [`INTERVAL`] for a reason to stop.
 ///
-/// At the first reason `progress` is cancelled; the call returns once the work has noticed, so nothing outlives it. A
-/// panic of the work ends here.
+/// At the first reason `progress` is cancelled; the call returns once the work has noticed, so nothing
+/// outlives it. A panic of the work ends here.
 pub(crate) fn watch<T: Send, I>(
     progress: &Progress,
     work: impl FnOnce() -> T + Send,

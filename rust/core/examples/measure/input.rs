@@ -97,7 +97,8 @@ impl Problem {
         Ok(if path.exists() { Some(doubles(&path)?) } else { None })
     }
 
-    /// `constraint_*`, if there are any: the entries of `A` by row, column and value, and `b`, for one column of values.
+    /// `constraint_*`, if there are any: the entries of `A` by row, column and value, and `b`,
+    /// for one column of values.
     pub(crate) fn linear_constraints(&self) -> Result<Option<Equations>, Box<dyn Error>> {
         if !self.folder.join("constraint_rows.u32").exists() {
             return Ok(None);

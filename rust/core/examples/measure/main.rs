@@ -1,8 +1,8 @@
 //! Times one thing on one mesh and prints a line of JSON: the measuring hand of `benchmarks/`.
 //!
-//! `measure KIND FOLDER [KEY=VALUE ...]`, where FOLDER holds the problem as raw little-endian numbers ([`input`]).
-//! Kinds: `flow`, `interpolate`, `denoise`, `yardstick`, `assembly`. One process measures one thing, so that its peak
-//! of memory is that thing's.
+//! `measure KIND FOLDER [KEY=VALUE ...]`, where FOLDER holds the problem as raw little-endian numbers
+//! ([`input`]). Kinds: `flow`, `interpolate`, `denoise`, `yardstick`, `assembly`. One process measures one
+//! thing, so that its peak of memory is that thing's.
 #![allow(missing_docs)]
 
 mod clock;
@@ -61,7 +61,10 @@ fn solve_options(arguments: &Arguments) -> Result<SolveOptions, Box<dyn std::err
 }
 
 /// The weights and constraints of the folder; several columns share one norm.
-fn scalar_options(problem: &Problem, arguments: &Arguments) -> Result<ScalarOptions, Box<dyn std::error::Error>> {
+fn scalar_options(
+    problem: &Problem,
+    arguments: &Arguments,
+) -> Result<ScalarOptions, Box<dyn std::error::Error>> {
     Ok(ScalarOptions {
         energy: EnergyOptions { face_weights: problem.face_weights()?, ..EnergyOptions::default() },
         linear_constraints: problem.linear_constraints()?,

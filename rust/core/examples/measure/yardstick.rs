@@ -1,8 +1,9 @@
-//! The quadratic problem on the same mesh, with the same Cholesky factorization: what every solver is compared with.
+//! The quadratic problem on the same mesh, with the same Cholesky factorization:
+//! what every solver is compared with.
 //!
-//! `min_u Σ_f w_f A_f ‖H_f u‖²` with the values at `indices.u32` known (`fidelity=0`), or plus `α ‖u − u₀‖²_M`: one
-//! factorization, one solve of all columns. Linear constraints are left out. Its parts are timed as well, in the order in
-//! which they run.
+//! `min_u Σ_f w_f A_f ‖H_f u‖²` with the values at `indices.u32` known (`fidelity=0`), or plus
+//! `α ‖u − u₀‖²_M`: one factorization, one solve of all columns. Linear constraints are left out. Its parts
+//! are timed as well, in the order in which they run.
 
 use std::convert::Infallible;
 
@@ -31,7 +32,8 @@ fn of_columns<const K: usize>(problem: &Problem, arguments: &Arguments) -> Outco
     let fidelity = arguments.number("fidelity", 0.0)?;
     let known = if fidelity > 0.0 { Vec::new() } else { problem.known()?.0 };
     let columns = problem.values()?;
-    let values: Vec<[f64; K]> = (0..columns.n_rows).map(|i| std::array::from_fn(|c| columns.column(c)[i])).collect();
+    let values: Vec<[f64; K]> =
+        (0..columns.n_rows).map(|i| std::array::from_fn(|c| columns.column(c)[i])).collect();
     let weights = problem.face_weights()?;
     let set_up = || Quadratic::new(&mesh, &values, &known, fidelity, weights.as_deref());
     let mut whole = Samples::new(arguments)?;
@@ -83,7 +85,8 @@ impl<const K: usize> Quadratic<K> {
         known.iter().for_each(|&i| is_known[i] = true);
         let (operator, constant) = without_columns(&whole, values, &is_known);
         let free: Vec<usize> = (0..values.len()).filter(|&i| !is_known[i]).collect();
-        let mut right: Vec<[f64; K]> = free.iter().map(|&i| values[i].map(|x| fidelity * mass[i] * x)).collect();
+        let mut right: Vec<[f64; K]> =
+            free.iter().map(|&i| values[i].map(|x| fidelity * mass[i] * x)).collect();
         for (b, constant) in constant.iter().enumerate() {
             let (columns, entries) = operator.block(b);
             for (&column, entry) in columns.iter().zip(entries) {

@@ -3,15 +3,17 @@
 use crate::mesh::vector::{add, area_vector, norm, scale, Point};
 use crate::mesh::{loop_area_vector, Connectivity, EdgeKind};
 
-/// A component counts as an open sheet if its mean normal is longer than this (1 on a flat sheet, 0 on a closed surface or
-/// a tube). Between a hemisphere at 0.5, which is closed with a lid, and a sheet bent to half a tube at 0.64, which is not.
+/// A component counts as an open sheet if its mean normal is longer than this (1 on a flat sheet, 0 on a
+/// closed surface or a tube). Between a hemisphere at 0.5, which is closed with a lid, and a sheet bent to
+/// half a tube at 0.64, which is not.
 const OPEN_SHEET: f64 = 0.57;
 
 /// The components that were asked for.
 ///
-/// The area vectors of a component add up to those of its loops, so that nothing is an open sheet whose area is larger than
-/// the area vectors of all loops together allow: such a component is left as soon as that much of it was seen. Small holes in
-/// a large closed surface are told apart from its border by the faces near them.
+/// The area vectors of a component add up to those of its loops, so that nothing is an open sheet whose area
+/// is larger than the area vectors of all loops together allow: such a component is left as soon as that much
+/// of it was seen. Small holes in a large closed surface are told apart from its border by the faces near
+/// them.
 pub(super) struct Components<'a> {
     connectivity: &'a Connectivity,
     positions: &'a [Point],
@@ -40,7 +42,13 @@ impl<'a> Components<'a> {
         let total: f64 = loops.iter().map(|vertices| norm(loop_area_vector(vertices, positions))).sum();
         // Rounding must not end a search that one more face would have made whole.
         let largest_sheet = if is_plain { 1.01 * total / OPEN_SHEET } else { f64::INFINITY };
-        Self { connectivity, positions, seen: vec![0; connectivity.n_faces()], found: Vec::new(), largest_sheet }
+        Self {
+            connectivity,
+            positions,
+            seen: vec![0; connectivity.n_faces()],
+            found: Vec::new(),
+            largest_sheet,
+        }
     }
 
     /// The number of the component of a face.
@@ -55,14 +63,16 @@ impl<'a> Components<'a> {
     pub(super) fn sheet_normal(&self, number: usize) -> Option<Point> {
         let component = &self.found[number];
         let length = norm(component.area_vector);
-        (component.is_whole && length > OPEN_SHEET * component.area).then(|| scale(component.area_vector, 1.0 / length))
+        (component.is_whole && length > OPEN_SHEET * component.area)
+            .then(|| scale(component.area_vector, 1.0 / length))
     }
 
     fn root(&self, number: usize) -> usize {
         self.found[number].same_as.unwrap_or(number)
     }
 
-    /// Adds the component of `seed`. A face that disagrees with its neighbors on the orientation counts the other way round.
+    /// Adds the component of `seed`. A face that disagrees with its neighbors on the orientation counts the
+    /// other way round.
     fn search(&mut self, seed: usize) -> usize {
         let number = self.found.len();
         let mut component = Component { area: 0.0, area_vector: [0.0; 3], same_as: None, is_whole: true };
@@ -125,7 +135,8 @@ mod tests {
         assert_eq!(loops.len(), 3);
         let mut components = Components::new(mesh.connectivity(), mesh.positions().unwrap(), &loops);
         for vertices in &loops {
-            let face = mesh.connectivity().faces().iter().position(|face| face.contains(&vertices[0])).unwrap();
+            let face =
+                mesh.connectivity().faces().iter().position(|face| face.contains(&vertices[0])).unwrap();
             let number = components.of_face(face);
             assert_eq!(components.sheet_normal(number), None);
         }
@@ -140,7 +151,8 @@ mod tests {
         for shape in [sheet.clone().and(&sphere), sphere.and(&sheet)] {
             let holes = find_holes(&shape.mesh().unwrap()).unwrap();
             assert_eq!(holes.len(), 5);
-            let outer: Vec<usize> = holes.iter().filter(|h| h.is_outer_border).map(|h| h.vertices.len()).collect();
+            let outer: Vec<usize> =
+                holes.iter().filter(|h| h.is_outer_border).map(|h| h.vertices.len()).collect();
             assert_eq!(outer, [80]);
         }
     }

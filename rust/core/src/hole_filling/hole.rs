@@ -6,8 +6,8 @@ use crate::mesh::vector::Point;
 /// A boundary loop and what it is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hole {
-    /// The vertices in the order of [`crate::mesh::boundary_loops`]. Where the ring around an island is pinched at a vertex, that vertex is
-    /// there twice.
+    /// The vertices in the order of [`crate::mesh::boundary_loops`]. Where the ring around an island is
+    /// pinched at a vertex, that vertex is there twice.
     pub vertices: Vec<u32>,
     /// Whether this is the outer border of an open sheet, which is filled only if asked for.
     pub is_outer_border: bool,
@@ -20,8 +20,8 @@ pub struct Hole {
 pub struct Patch {
     /// Positions of the new vertices; those on the rim are the mesh's.
     pub vertices: Vec<Point>,
-    /// Vertex triples, oriented as the mesh around. Numbers below the mesh's vertex count are its vertices; new ones
-    /// follow, first those of the patches before this one of the same call.
+    /// Vertex triples, oriented as the mesh around. Numbers below the mesh's vertex count are its vertices;
+    /// new ones follow, first those of the patches before this one of the same call.
     pub faces: Vec<[u32; 3]>,
     /// Whether it lies in the mean plane of its rim, but for what closes notches in that.
     pub is_flat: bool,

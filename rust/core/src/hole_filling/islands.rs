@@ -6,11 +6,12 @@ use crate::error::Refusal;
 use crate::mesh::vector::{add, cross, distance, dot, norm, scale, sub, unit, Point};
 use crate::mesh::{cycle, loop_area_vector};
 
-/// Pieces of less than this part of a hole's area are specks: they do not keep it from being filled, and stay where they are.
+/// Pieces of less than this part of a hole's area are specks: they do not keep it from being filled,
+/// and stay where they are.
 const SPECK: f64 = 0.01;
 
-/// A piece this far from the mean plane of a hole, as part of the square root of its area, is not inside it. The rim of a
-/// hemisphere is 0.56 from its top.
+/// A piece this far from the mean plane of a hole, as part of the square root of its area, is not inside it.
+/// The rim of a hemisphere is 0.56 from its top.
 const FAR: f64 = 0.6;
 
 /// Rounding must not leave out what lies on the edge of a search.
@@ -25,20 +26,30 @@ struct Outline {
 impl Outline {
     fn of(vertices: &[u32], positions: &[Point]) -> Self {
         let sum = vertices.iter().fold([0.0; 3], |sum, &v| add(sum, positions[v as usize]));
-        Self { area: loop_area_vector(vertices, positions), center: scale(sum, 1.0 / vertices.len().max(1) as f64) }
+        Self {
+            area: loop_area_vector(vertices, positions),
+            center: scale(sum, 1.0 / vertices.len().max(1) as f64),
+        }
     }
 }
 
-/// Refuses the holes in which the whole border of an open sheet lies: a patch would cross it. Where that border touches the rim at a
-/// vertex the hole is a ring around the sheet, pinched there, and both loops become one.
+/// Refuses the holes in which the whole border of an open sheet lies: a patch would cross it. Where that
+/// border touches the rim at a vertex the hole is a ring around the sheet, pinched there, and both loops
+/// become one.
 ///
-/// `components` is the component of every hole. A sheet is in a hole of another component if its border runs the other way
-/// around, lies near the hole's mean plane, and its center is inside the hole in the projection onto that plane.
-pub(super) fn settle_islands(holes: &mut Vec<Hole>, components: &mut Vec<Option<usize>>, positions: &[Point]) {
+/// `components` is the component of every hole. A sheet is in a hole of another component if its border runs
+/// the other way around, lies near the hole's mean plane, and its center is inside the hole in the projection
+/// onto that plane.
+pub(super) fn settle_islands(
+    holes: &mut Vec<Hole>,
+    components: &mut Vec<Option<usize>>,
+    positions: &[Point],
+) {
     let outlines: Vec<Outline> = holes.iter().map(|hole| Outline::of(&hole.vertices, positions)).collect();
     let mut joined = vec![false; holes.len()];
-    let borders =
-        Places::new((0..holes.len()).filter(|&j| holes[j].is_outer_border).map(|j| (outlines[j].center, j)).collect());
+    let borders = Places::new(
+        (0..holes.len()).filter(|&j| holes[j].is_outer_border).map(|j| (outlines[j].center, j)).collect(),
+    );
     for i in 0..holes.len() {
         if holes[i].is_outer_border || holes[i].refusal.is_some() {
             continue;
@@ -79,7 +90,8 @@ pub(super) fn settle_islands(holes: &mut Vec<Hole>, components: &mut Vec<Option<
     components.retain(|_| is_left.next().unwrap_or(true));
 }
 
-/// The rim of a hole and the border of an island in it that share a vertex, as one closed walk, which visits that vertex twice.
+/// The rim of a hole and the border of an island in it that share a vertex, as one closed walk,
+/// which visits that vertex twice.
 fn ring(rim: &[u32], island: &[u32]) -> Option<Vec<u32>> {
     let (i, j) = (0..rim.len()).find_map(|i| Some((i, island.iter().position(|&v| v == rim[i])?)))?;
     let turned = |walk: &[u32], from: usize| [&walk[from..], &walk[..from]].concat();

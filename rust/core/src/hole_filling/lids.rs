@@ -1,5 +1,5 @@
-//! Rims that are closed flat: planar ones that the surface meets steeply all round, as the missing side of a box or the cut end of
-//! a tube.
+//! Rims that are closed flat: planar ones that the surface meets steeply all round, as the missing side of a
+//! box or the cut end of a tube.
 
 use super::long_loops::{triangulate, Triangulation};
 use super::options::FillOptions;
@@ -9,15 +9,17 @@ use super::rims::Rims;
 use crate::mesh::vector::{add, area_vector, cross, distance, dot, norm, scale, sub, unit, Point};
 use crate::{Progress, Result};
 
-/// A rim is planar if its vertices are off its mean plane by no more than this part of an edge, root mean square: noise of a third
-/// of an edge and the steps of a cut along faces are.
+/// A rim is planar if its vertices are off its mean plane by no more than this part of an edge, root mean
+/// square: noise of a third of an edge and the steps of a cut along faces are.
 const OFF_EDGE: f64 = 0.5;
 
-/// And by no more than this part of the square root of its area: four edges around a hole are planar by chance.
+/// And by no more than this part of the square root of its area:
+/// four edges around a hole are planar by chance.
 const OFF_SIZE: f64 = 0.1;
 
-/// The surface meets the plane of the rim steeply where its normal leans out of that plane by no more than these sines: out of
-/// the hole by 25 degrees, as a finger does at its tip, which is closed round, and inwards by 30, as the foot of a bust does.
+/// The surface meets the plane of the rim steeply where its normal leans out of that plane by no more than
+/// these sines: out of the hole by 25 degrees, as a finger does at its tip, which is closed round, and
+/// inwards by 30, as the foot of a bust does.
 const STEEP: [f64; 2] = [-0.42, 0.5];
 
 /// That much of the rim must be steep.
@@ -26,15 +28,16 @@ const STEEP_SHARE: f64 = 0.9;
 /// How far the surface leans is a mean over so many edges on either side: single faces are noise.
 const WINDOW: usize = 4;
 
-/// Notches in the rim that are deeper than these parts of an edge are closed with faces that go on with the surface around,
-/// the deep ones first; without any if that leaves a lid that is in order.
+/// Notches in the rim that are deeper than these parts of an edge are closed with faces that go on with the
+/// surface around, the deep ones first; without any if that leaves a lid that is in order.
 const DEPTHS: [f64; 4] = [f64::INFINITY, 0.6, 0.3, 0.1];
 
-/// A notch is closed by a triangle that goes on with the faces beside it: turned from those on one side by less than 45 degrees,
-/// and from those on the other by no more than 95, as around the edge of a box.
+/// A notch is closed by a triangle that goes on with the faces beside it: turned from those on one side by
+/// less than 45 degrees, and from those on the other by no more than 95, as around the edge of a box.
 const ALONG: [f64; 2] = [-0.09, std::f64::consts::FRAC_1_SQRT_2];
 
-/// What closes notches is no more than this part of the lid: a hole that is closed by going on with the sides around it has none.
+/// What closes notches is no more than this part of the lid:
+/// a hole that is closed by going on with the sides around it has none.
 const MOST_NOTCHES: f64 = 0.5;
 
 /// Faces of a lid look along its normal by more than this, those at a noisy rim too.
@@ -83,20 +86,22 @@ struct Trimmed {
     outside: Vec<Point>,
 }
 
-/// The normal of a lid, to the side that it shows, if the rim of a hole calls for one: if it is planar, but for notches, and met
-/// steeply all round.
+/// The normal of a lid, to the side that it shows, if the rim of a hole calls for one: if it is planar, but
+/// for notches, and met steeply all round.
 pub(super) fn normal(polygon: &Polygon) -> Option<Point> {
     let rims = DEPTHS.into_iter().map(|depth| trimmed(polygon, depth, |_, _| false));
-    let mut few =
-        rims.take_while(|rim| notches_area(polygon, rim) <= MOST_NOTCHES * lid_area(&points_of(polygon, rim)));
+    let mut few = rims
+        .take_while(|rim| notches_area(polygon, rim) <= MOST_NOTCHES * lid_area(&points_of(polygon, rim)));
     few.find_map(|rim| plane_of(polygon, &rim)).map(|plane| plane.normal)
 }
 
-/// The new points of a flat patch, and its faces as places in the polygon; places from its length on are the new points.
+/// The new points of a flat patch, and its faces as places in the polygon;
+/// places from its length on are the new points.
 pub(super) type FlatPatch = (Vec<Point>, Vec<[u32; 3]>);
 
-/// The flat patch of a rim: its new points, and its faces as places in the polygon, places from its length on being the new
-/// points. Nothing if the rim does not call for one and `any` rim is not asked for, or if none is in order.
+/// The flat patch of a rim: its new points, and its faces as places in the polygon, places from its length on
+/// being the new points. Nothing if the rim does not call for one and `any` rim is not asked for, or if none
+/// is in order.
 pub(super) fn lid(
     polygon: &Polygon,
     rims: &Rims,
@@ -116,7 +121,9 @@ pub(super) fn lid(
         if notches_area(polygon, &rim) > MOST_NOTCHES * lid_area(&points_of(polygon, &rim)) {
             break;
         }
-        let Some(plane) = plane_of(polygon, &rim).or_else(|| any.then(|| Plane::of(&points_of(polygon, &rim)))) else {
+        let Some(plane) =
+            plane_of(polygon, &rim).or_else(|| any.then(|| Plane::of(&points_of(polygon, &rim))))
+        else {
             continue;
         };
         if let Some(patch) = closed(polygon, &rim, plane, rims, options, progress)? {
@@ -133,8 +140,9 @@ fn points_of(polygon: &Polygon, rim: &Trimmed) -> Vec<Point> {
 /// The area of the projection of a polygon onto its mean plane.
 fn lid_area(points: &[Point]) -> f64 {
     let Some(&first) = points.first() else { return 0.0 };
-    let doubled =
-        points.windows(2).fold([0.0; 3], |sum, pair| add(sum, cross(sub(pair[0], first), sub(pair[1], first))));
+    let doubled = points
+        .windows(2)
+        .fold([0.0; 3], |sum, pair| add(sum, cross(sub(pair[0], first), sub(pair[1], first))));
     0.5 * norm(doubled)
 }
 
@@ -170,15 +178,20 @@ fn plane_of(polygon: &Polygon, rim: &Trimmed) -> Option<Plane> {
     (is_planar && steep >= STEEP_SHARE * total).then_some(plane)
 }
 
-/// Closes notches deeper than `depth` edges, the narrowest first, as long as a triangle over one goes on with the surface beside it.
+/// Closes notches deeper than `depth` edges, the narrowest first,
+/// as long as a triangle over one goes on with the surface beside it.
 fn trimmed(polygon: &Polygon, depth: f64, is_taken: impl Fn(usize, usize) -> bool) -> Trimmed {
-    let mut rim =
-        Trimmed { notches: Vec::new(), places: (0..polygon.len()).collect(), outside: polygon.outside.clone() };
+    let mut rim = Trimmed {
+        notches: Vec::new(),
+        places: (0..polygon.len()).collect(),
+        outside: polygon.outside.clone(),
+    };
     if !depth.is_finite() {
         return rim;
     }
-    let total: f64 =
-        (0..polygon.len()).map(|i| distance(polygon.points[i], polygon.points[(i + 1) % polygon.len()])).sum();
+    let total: f64 = (0..polygon.len())
+        .map(|i| distance(polygon.points[i], polygon.points[(i + 1) % polygon.len()]))
+        .sum();
     let least = depth * total / polygon.len() as f64;
     loop {
         let n = rim.places.len();
@@ -196,7 +209,8 @@ fn trimmed(polygon: &Polygon, depth: f64, is_taken: impl Fn(usize, usize) -> boo
             let free = !is_taken(rim.places[(i + n - 1) % n], rim.places[(i + 1) % n]);
             (goes_on && height > least && free).then_some((width, i, normal))
         };
-        let Some((_, i, normal)) = (0..n).filter_map(span).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
+        let Some((_, i, normal)) =
+            (0..n).filter_map(span).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
         else {
             return rim;
         };
@@ -208,7 +222,8 @@ fn trimmed(polygon: &Polygon, depth: f64, is_taken: impl Fn(usize, usize) -> boo
     }
 }
 
-/// The notches and the flat patch in the `plane` of what is left of the rim; nothing if its projection overlaps itself.
+/// The notches and the flat patch in the `plane` of what is left of the rim;
+/// nothing if its projection overlaps itself.
 fn closed(
     polygon: &Polygon,
     rim: &Trimmed,
@@ -226,8 +241,8 @@ fn closed(
         let area = area_vector(corners);
         dot(area, plane.normal) > least * norm(area)
     };
-    let is_plain =
-        coarse.extra.is_empty() && coarse.faces.iter().all(|f| looks_out(f.map(|v| flat.points[v as usize]), 0.0));
+    let is_plain = coarse.extra.is_empty()
+        && coarse.faces.iter().all(|f| looks_out(f.map(|v| flat.points[v as usize]), 0.0));
     if !is_plain {
         return Ok(None);
     }

@@ -9,9 +9,9 @@ use crate::Progress;
 /// Vertices of the coarse polygon. Its table takes a quarter of the time of the largest full one.
 const COARSE: usize = 250;
 
-/// Parts of a long polygon, narrow pieces along its sides, are divided from this many vertices on, along a coarse polygon of
-/// [`PART_COARSE`]: their tables would grow with the square of the polygon's length. 20,000 vertices took 5.7 s of processor
-/// time so, three times as much as half of them.
+/// Parts of a long polygon, narrow pieces along its sides, are divided from this many vertices on, along a
+/// coarse polygon of [`PART_COARSE`]: their tables would grow with the square of the polygon's length. 20,000
+/// vertices took 5.7 s of processor time so, three times as much as half of them.
 const PART_LIMIT: usize = 64;
 
 /// Vertices of the coarse polygon of a part.
@@ -28,10 +28,11 @@ pub(super) struct Triangulation {
 /// A triangulation of the polygon that makes no edge which is taken.
 ///
 /// - Up to [`TABLE_LIMIT`] vertices: that of minimum weight.
-/// - Longer polygons: [`COARSE`] of the vertices, denser at corners, form a coarse polygon. The chords of its triangulation of
-///   minimum weight cut the polygon into parts, one for each coarse triangle, with the whole run of vertices in place of a
-///   coarse edge. The parts are triangulated in the same way, so that the time grows in proportion to the length; 5000 vertices
-///   take some 0.5 s. The weight is then not the least possible, but no fold across the hole is decided by less than all of it.
+/// - Longer polygons: [`COARSE`] of the vertices, denser at corners, form a coarse polygon. The chords of its
+///   triangulation of minimum weight cut the polygon into parts, one for each coarse triangle, with the whole
+///   run of vertices in place of a coarse edge. The parts are triangulated in the same way, so that the time
+///   grows in proportion to the length; 5000 vertices take some 0.5 s. The weight is then not the least
+///   possible, but no fold across the hole is decided by less than all of it.
 /// - Where every triangulation needs an edge that is taken, a fan around one new point at the middle.
 pub(super) fn triangulate(polygon: &Polygon, rims: &Rims, progress: &Progress) -> Triangulation {
     let mut result = Triangulation { extra: Vec::new(), faces: Vec::new() };
@@ -41,8 +42,8 @@ pub(super) fn triangulate(polygon: &Polygon, rims: &Rims, progress: &Progress) -
     result
 }
 
-/// Adds the triangles of the part of `polygon` at `places`, along a coarse polygon of `n_coarse` vertices if it has more than
-/// `limit`.
+/// Adds the triangles of the part of `polygon` at `places`, along a coarse polygon of `n_coarse` vertices if
+/// it has more than `limit`.
 fn add_part(
     polygon: &Polygon,
     places: &[usize],
@@ -68,8 +69,11 @@ fn add_part(
     };
     let normals: Vec<Point> =
         faces.iter().map(|face| unit(area_vector(face.map(|v| coarse.points[v as usize])))).collect();
-    let beyond: std::collections::HashMap<[u32; 2], usize> =
-        faces.iter().enumerate().flat_map(|(f, &[a, b, c])| [([a, b], f), ([b, c], f), ([c, a], f)]).collect();
+    let beyond: std::collections::HashMap<[u32; 2], usize> = faces
+        .iter()
+        .enumerate()
+        .flat_map(|(f, &[a, b, c])| [([a, b], f), ([b, c], f), ([c, a], f)])
+        .collect();
     for &[a, b, c] in &faces {
         if progress.is_cancelled() {
             return;
@@ -101,8 +105,8 @@ fn add_fan(polygon: &Polygon, places: &[usize], result: &mut Triangulation) {
     result.faces.extend(ends.map(|(&a, &b)| [a as u32, b as u32, center]));
 }
 
-/// So many places of the polygon, equally spaced by a measure that is half length and half turning angle, so that
-/// corners are met more closely than straight runs.
+/// So many places of the polygon, equally spaced by a measure that is half length and half turning angle, so
+/// that corners are met more closely than straight runs.
 fn samples(polygon: &Polygon, count: usize) -> Vec<usize> {
     let n = polygon.len();
     let edge = |i: usize| sub(polygon.points[(i + 1) % n], polygon.points[i]);

@@ -12,25 +12,30 @@ use crate::mesh::vector::{area_vector, between, distance, dot, norm, sub, unit, 
 use crate::mesh::{boundary_walks, cycle, loop_area_vector, Connectivity, Mesh, Working};
 use crate::Result;
 
-/// A loop is the outer border of its surface if the faces along it lie inside it, seen along its area vector: if they show more
-/// than this part of their area there, with the sign of the side that they show. A sheet's border has 1, a hole in a sheet −1, the
-/// end of a tube 0, the border of a bowl of which a third of the sphere is missing 0.5.
+/// A loop is the outer border of its surface if the faces along it lie inside it, seen along its area vector:
+/// if they show more than this part of their area there, with the sign of the side that they show. A sheet's
+/// border has 1, a hole in a sheet −1, the end of a tube 0, the border of a bowl of which a third of the
+/// sphere is missing 0.5.
 const INSIDE: f64 = 0.5;
 
-/// The sides of a loop lie on each other if its vertices are off its other edges by no more than this part of its length.
+/// The sides of a loop lie on each other if its vertices are off its other edges by no more than this part of
+/// its length.
 const ON_EACH_OTHER: f64 = 1e-5;
 
-/// All boundary loops of `mesh`, in the order of [`crate::mesh::boundary_loops`], then the rims that do not close, and what each is.
+/// All boundary loops of `mesh`, in the order of [`crate::mesh::boundary_loops`], then the rims that do not
+/// close, and what each is.
 ///
-/// A loop is an outer border if the faces along it lie inside it ([`INSIDE`]). Where these stand too steeply to say so, and the loop is
-/// no planar rim that they meet steeply all round, the whole surface decides: an open sheet, whose area vectors add up to more
-/// than 0.57 of its area, keeps the loop with the largest area in the projection along its mean normal.
+/// A loop is an outer border if the faces along it lie inside it ([`INSIDE`]). Where these stand too steeply
+/// to say so, and the loop is no planar rim that they meet steeply all round, the whole surface decides: an
+/// open sheet, whose area vectors add up to more than 0.57 of its area, keeps the loop with the largest area
+/// in the projection along its mean normal.
 ///
 /// - Faces are oriented, and seams joined, first ([`Working`]).
-/// - Holes that touch at a vertex are separate loops, and so are the loops of a rim that touches itself. A ring around an island
-///   that is pinched at a vertex is one.
+/// - Holes that touch at a vertex are separate loops, and so are the loops of a rim that touches itself. A
+///   ring around an island that is pinched at a vertex is one.
 /// - The two ends of a tube with a ring missing are two holes, and each gets a lid.
-/// - A hole in which another open sheet lies is refused ([`Refusal::Island`]); [`super::fill_loops`] fills it all the same.
+/// - A hole in which another open sheet lies is refused ([`Refusal::Island`]);
+///   [`super::fill_loops`] fills it all the same.
 /// - A rim that ends at a non-manifold edge is no loop and is refused ([`Refusal::OpenRim`]).
 ///
 /// # Errors
@@ -60,7 +65,11 @@ pub(crate) fn holes_of(mesh: &Mesh) -> Result<Vec<Hole>> {
     let mut undecided = Vec::new();
     for vertices in walks.loops {
         let refusal = refusal(&vertices, positions, connectivity, &halfedges);
-        let side = if refusal.is_none() { side(&vertices, positions, connectivity, &halfedges) } else { Side::Unknown };
+        let side = if refusal.is_none() {
+            side(&vertices, positions, connectivity, &halfedges)
+        } else {
+            Side::Unknown
+        };
         if side == Side::Unknown {
             undecided.push(holes.len());
         }
@@ -153,7 +162,8 @@ fn refusal(
     has_no_width(vertices, positions).then_some(Refusal::TJunction)
 }
 
-/// Whether the two sides of a loop lie on each other: all vertices, but two where the sides meet, on edges that they do not end.
+/// Whether the two sides of a loop lie on each other: all vertices, but two where the sides meet,
+/// on edges that they do not end.
 fn has_no_width(vertices: &[u32], positions: &[Point]) -> bool {
     let points: Vec<Point> = vertices.iter().map(|&v| positions[v as usize]).collect();
     let n = points.len();
@@ -166,7 +176,8 @@ fn has_no_width(vertices: &[u32], positions: &[Point]) -> bool {
         (0..n).any(|j| {
             let (a, b) = (points[j], points[(j + 1) % n]);
             let along = sub(b, a);
-            let t = (dot(sub(points[i], a), along) / dot(along, along).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            let t =
+                (dot(sub(points[i], a), along) / dot(along, along).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
             j != i && (j + 1) % n != i && distance(between(a, b, t), points[i]) <= off
         })
     };

@@ -1,19 +1,22 @@
-//! Filling holes: which boundary loops are holes, and a triangulated patch for each, at the resolution of its rim.
+//! Filling holes: which boundary loops are holes, and a triangulated patch for each,
+//! at the resolution of its rim.
 //!
-//! 1. [`find_holes`] lists the boundary loops, says which is the outer border of an open sheet and which cannot be filled
-//!    and why ([`Refusal`]).
-//! 2. [`fill_loops`] (or [`fill_loop`] for one) makes the patches: a triangulation of minimum weight [Liepa 2003], his
-//!    refinement, and isotropic remeshing of the patch alone [Botsch and Kobbelt 2004].
+//! 1. [`find_holes`] lists the boundary loops, says which is the outer border of an open sheet and which
+//!    cannot be filled and why ([`Refusal`]).
+//! 2. [`fill_loops`] (or [`fill_loop`] for one) makes the patches: a triangulation of minimum weight [Liepa
+//!    2003], his refinement, and isotropic remeshing of the patch alone [Botsch and Kobbelt 2004].
 //!
 //! ```text
 //! find_holes(mesh: &Mesh) -> Result<Vec<Hole>>
 //! fill_loop(mesh: &Mesh, boundary_loop: &[u32], options: &FillOptions, progress: &Progress) -> Result<Patch>
-//! fill_loops(mesh: &Mesh, loops: &[Vec<u32>], options: &FillOptions, progress: &Progress) -> Result<Vec<Patch>>
+//! fill_loops(mesh: &Mesh, loops: &[Vec<u32>], options: &FillOptions, progress: &Progress)
+//!     -> Result<Vec<Patch>>
 //! faces_at(mesh: &Mesh, loops: &[Vec<u32>]) -> Result<Vec<u32>>
 //! ```
 //!
-//! The mesh with its patches is its vertices, then those of each patch; its faces, then those of each patch. Vertices on
-//! the rim are the mesh's own and do not move. No patch makes an edge that the mesh or another patch has.
+//! The mesh with its patches is its vertices, then those of each patch; its faces, then those of each patch.
+//! Vertices on the rim are the mesh's own and do not move. No patch makes an edge that the mesh or another
+//! patch has.
 
 mod components;
 mod hole;
@@ -42,29 +45,40 @@ use crate::{Error, Progress, Result};
 use polygon::Polygon;
 use rims::Rims;
 
-/// A rim encloses nothing if its triangulation has less than this part of its squared length in area: rounding alone.
+/// A rim encloses nothing if its triangulation has less than this part of its squared length in area:
+/// rounding alone.
 const NO_EXTENT: f64 = 1e-13;
 
 /// Fills one hole; see [`fill_loops`].
 ///
 /// # Errors
 /// Those of [`fill_loops`].
-pub fn fill_loop(mesh: &Mesh, boundary_loop: &[u32], options: &FillOptions, progress: &Progress) -> Result<Patch> {
+pub fn fill_loop(
+    mesh: &Mesh,
+    boundary_loop: &[u32],
+    options: &FillOptions,
+    progress: &Progress,
+) -> Result<Patch> {
     Ok(fill_loops(mesh, &[boundary_loop.to_vec()], options, progress)?.pop().unwrap_or_default())
 }
 
 /// Fills holes, each given as the vertices around it in either direction, without repeats ([`find_holes`]).
 ///
 /// # Errors
-/// [`MeshError::NoPositions`]; [`MeshError::Unfillable`] for the first loop that cannot be filled, with the reason;
-/// [`crate::Error::Cancelled`].
-pub fn fill_loops(mesh: &Mesh, loops: &[Vec<u32>], options: &FillOptions, progress: &Progress) -> Result<Vec<Patch>> {
+/// [`MeshError::NoPositions`]; [`MeshError::Unfillable`] for the first loop that cannot be filled, with the
+/// reason; [`crate::Error::Cancelled`].
+pub fn fill_loops(
+    mesh: &Mesh,
+    loops: &[Vec<u32>],
+    options: &FillOptions,
+    progress: &Progress,
+) -> Result<Vec<Patch>> {
     let patches = fill_loops_at(mesh, loops, &faces_at(mesh, loops)?, options, progress)?;
     Ok(patches.into_iter().collect::<std::result::Result<_, MeshError>>()?)
 }
 
-/// [`fill_loops`], given the faces at the loops ([`faces_at`]) or at more than those; those that cannot be filled are left out, with
-/// the reason.
+/// [`fill_loops`], given the faces at the loops ([`faces_at`]) or at more than those; those that cannot be
+/// filled are left out, with the reason.
 pub(crate) fn fill_loops_at(
     mesh: &Mesh,
     loops: &[Vec<u32>],
@@ -104,8 +118,9 @@ fn fill_one(
     progress.check()?;
     let polygon = Polygon::new(positions, rim, rims).map_err(refused)?;
     let n = polygon.len();
-    let number =
-        |local: u32| polygon.vertices.get(local as usize).copied().unwrap_or_else(|| first_new + local - n as u32);
+    let number = |local: u32| {
+        polygon.vertices.get(local as usize).copied().unwrap_or_else(|| first_new + local - n as u32)
+    };
     let numbered = |faces: Vec<[u32; 3]>| faces.into_iter().map(|face| face.map(number)).collect();
     let lid_normal = lids::normal(&polygon);
     if options.lids == Lids::Always || options.lids == Lids::Planar && lid_normal.is_some() {

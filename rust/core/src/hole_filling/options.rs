@@ -6,7 +6,8 @@ pub enum Lids {
     /// None.
     #[default]
     Never,
-    /// Those with a planar rim that the surface meets steeply all round: the missing side of a box, the cut end of a tube.
+    /// Those with a planar rim that the surface meets steeply all round: the missing side of a box,
+    /// the cut end of a tube.
     Planar,
     /// All whose rim does not overlap itself in its mean plane.
     Always,
@@ -17,8 +18,8 @@ pub enum Lids {
 pub struct FillOptions {
     /// The edge length inside the patch; without it, that of the rim continues into the patch.
     pub edge_length: Option<f64>,
-    /// Whether to refine and remesh; without, a patch is the triangulation of minimum weight alone and has no new vertex
-    /// unless nothing else is possible.
+    /// Whether to refine and remesh; without, a patch is the triangulation of minimum weight alone and has no
+    /// new vertex unless nothing else is possible.
     pub refine: bool,
     /// Rounds of isotropic remeshing, 0 for Liepa's refinement alone.
     pub remesh_iterations: usize,

@@ -13,16 +13,17 @@ use crate::remesh::sizing::{growth, Sizing};
 use crate::remesh::{budget, guard, EditableMesh};
 use crate::{Progress, Result};
 
-/// A patch with a bend beyond this (120 degrees) that was not there before it was remeshed is taken as it was: narrow
-/// tongues of surface that reach into a hole can make the passes lay faces against them.
+/// A patch with a bend beyond this (120 degrees) that was not there before it was remeshed is taken as it
+/// was: narrow tongues of surface that reach into a hole can make the passes lay faces against them.
 const FOLD_COSINE: f64 = -0.5;
 
-/// Refines and remeshes a triangulation. Returns the new points, and the faces as places in the polygon; places from its
-/// length on are the new points.
+/// Refines and remeshes a triangulation. Returns the new points, and the faces as places in the polygon;
+/// places from its length on are the new points.
 ///
-/// Edges are as long as those of the rim, interpolated smoothly where these differ, or `edge_length`. If that would take
-/// more faces than `max_faces` they grow with their distance from the rim: with growth g and a rim of length P some
-/// `P / (0.433 g L)` faces are made, however large the hole; a rim that needs more even so gets them.
+/// Edges are as long as those of the rim, interpolated smoothly where these differ, or `edge_length`. If that
+/// would take more faces than `max_faces` they grow with their distance from the rim: with growth g and a rim
+/// of length P some `P / (0.433 g L)` faces are made, however large the hole; a rim that needs more even so
+/// gets them.
 pub(super) fn refined(
     polygon: &Polygon,
     flat: &Triangulation,
@@ -40,7 +41,8 @@ pub(super) fn refined(
         mesh.set_beyond(i as u32, ((i + 1) % n) as u32, normal);
     }
     let surface = Surface::of(&mesh);
-    let rim_edges: Vec<f64> = (0..n).map(|i| distance(polygon.points[i], polygon.points[(i + 1) % n])).collect();
+    let rim_edges: Vec<f64> =
+        (0..n).map(|i| distance(polygon.points[i], polygon.points[(i + 1) % n])).collect();
     let rim_length: f64 = rim_edges.iter().sum();
     let rim_size = |i: usize| 0.5 * (rim_edges[i] + rim_edges[(i + n - 1) % n]);
     let typical = options.edge_length.unwrap_or(rim_length / n as f64);
@@ -53,8 +55,9 @@ pub(super) fn refined(
         .map(|i| options.edge_length.map_or(rim_size(i), |length| length.max(rim_size(i))))
         .chain(flat.extra.iter().map(|_| typical))
         .collect();
-    // Sizes that grow by as much for every unit of distance, from the nearest corner as from any other: means of them would be
-    // those of the middle of the hole a third of the way from there to the rim, and leave needles all around.
+    // Sizes that grow by as much for every unit of distance, from the nearest corner as from any other: means
+    // of them would be those of the middle of the hole a third of the way from there to the rim, and leave
+    // needles all around.
     let grown = |sizes: [f64; 3], far: [f64; 3]| {
         sizes.iter().zip(far).map(|(size, far)| size + growth * far).fold(f64::INFINITY, f64::min)
     };

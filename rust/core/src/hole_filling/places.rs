@@ -56,12 +56,14 @@ mod tests {
         for n in [0, 1, 2, 3, 50, 300] {
             // Many in the same place, and many with the same coordinate.
             let mut coordinate = || (random.uniform() * 6.0).floor();
-            let points: Vec<(Point, usize)> = (0..n).map(|i| ([coordinate(), coordinate(), coordinate()], i)).collect();
+            let points: Vec<(Point, usize)> =
+                (0..n).map(|i| ([coordinate(), coordinate(), coordinate()], i)).collect();
             let tree = Places::new(points.clone());
             for radius in [0.0, 1.0, 2.5, 100.0] {
                 for center in [[0.0; 3], [3.0, 2.0, 4.0], [-2.0, 3.5, 3.0]] {
                     let is_in = |p: Point| (0..3).all(|k| (p[k] - center[k]).abs() <= radius);
-                    let expected: Vec<usize> = points.iter().filter(|(p, _)| is_in(*p)).map(|&(_, i)| i).collect();
+                    let expected: Vec<usize> =
+                        points.iter().filter(|(p, _)| is_in(*p)).map(|&(_, i)| i).collect();
                     assert_eq!(tree.within(center, radius), expected);
                 }
             }

@@ -16,7 +16,8 @@ pub(super) struct Polygon {
 }
 
 impl Polygon {
-    /// The polygon of a loop that runs as the halfedges of the faces along it, with the unit normals of these.
+    /// The polygon of a loop that runs as the halfedges of the faces along it,
+    /// with the unit normals of these.
     pub(super) fn around(vertices: &[u32], positions: &[Point], mut outside: Vec<Point>) -> Self {
         let mut vertices = vertices.to_vec();
         vertices.reverse();
@@ -38,13 +39,15 @@ impl Polygon {
             return Err(Refusal::NotALoop);
         }
         let mut vertices = rim.to_vec();
-        let is_free =
-            |vertices: &[u32]| cycle(vertices).all(|[a, b]| rims.normal(b, a).is_some() && rims.normal(a, b).is_none());
+        let is_free = |vertices: &[u32]| {
+            cycle(vertices).all(|[a, b]| rims.normal(b, a).is_some() && rims.normal(a, b).is_none())
+        };
         if !is_free(&vertices) {
             vertices.reverse();
         }
         if !is_free(&vertices) {
-            let is_rim = cycle(&vertices).all(|[a, b]| rims.normal(a, b).is_some() != rims.normal(b, a).is_some());
+            let is_rim =
+                cycle(&vertices).all(|[a, b]| rims.normal(a, b).is_some() != rims.normal(b, a).is_some());
             return Err(if is_rim { Refusal::InconsistentOrientation } else { Refusal::NotALoop });
         }
         if rims.has_face(&sorted) {

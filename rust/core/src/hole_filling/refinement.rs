@@ -9,28 +9,32 @@ use crate::remesh::{budget, EditableMesh};
 use crate::shape_guard::SLIVER;
 use crate::{Progress, Result};
 
-/// A face is split if its center is this much farther from each corner than the lengths wanted there: Liepa's density
-/// factor.
+/// A face is split if its center is this much farther from each corner than the lengths wanted there:
+/// Liepa's density factor.
 const DENSITY: f64 = SQRT_2;
 
-/// A face that is split leaves three whose longest edges are two thirds as long, or are flipped: so many rounds make any length
-/// that double precision holds of any other.
+/// A face that is split leaves three whose longest edges are two thirds as long, or are flipped: so many
+/// rounds make any length that double precision holds of any other.
 const ROUNDS: usize = 100;
 
 /// Flips past this many an edge are rounding, not progress.
 const FLIPS_PER_EDGE: usize = 20;
 
-/// Two angles opposite an edge must exceed π by this for a flip, so that four points on a circle do not flip forever.
+/// Two angles opposite an edge must exceed π by this for a flip,
+/// so that four points on a circle do not flip forever.
 const ANGLE_TOLERANCE: f64 = 1e-9;
 
-/// Edges whose faces turn by more than this (60 degrees) are the patch's shape, not its mesh, and are not flipped.
+/// Edges whose faces turn by more than this (60 degrees) are the patch's shape, not its mesh,
+/// and are not flipped.
 const FOLD_COSINE: f64 = 0.5;
 
-/// Inserts vertices at the centers of faces that are too large and flips edges to be Delaunay, in turns, until no face is.
+/// Inserts vertices at the centers of faces that are too large and flips edges to be Delaunay,
+/// in turns, until no face is.
 ///
-/// `sizes` is the length wanted at every vertex; `size_between` gives that at a new one from those at the corners of its face
-/// and its distances from them. The mesh is to have about `most` faces at most; where lengths are wanted that coordinates cannot
-/// tell apart, or that no patch of so many faces has, it ends with longer ones.
+/// `sizes` is the length wanted at every vertex; `size_between` gives that at a new one from those at the
+/// corners of its face and its distances from them. The mesh is to have about `most` faces at most; where
+/// lengths are wanted that coordinates cannot tell apart, or that no patch of so many faces has, it ends with
+/// longer ones.
 pub(super) fn refine(
     mesh: &mut EditableMesh,
     sizes: &mut Vec<f64>,
@@ -39,8 +43,9 @@ pub(super) fn refine(
     progress: &Progress,
 ) -> Result<()> {
     flip_to_delaunay(mesh);
-    let wanted =
-        |(_, face): (u32, [u32; 3])| (mesh.corners(face), face.map(|v| sizes[v as usize]).iter().sum::<f64>() / 3.0);
+    let wanted = |(_, face): (u32, [u32; 3])| {
+        (mesh.corners(face), face.map(|v| sizes[v as usize]).iter().sum::<f64>() / 3.0)
+    };
     let limit = mesh.n_faces() + budget::faces_to_add(mesh.faces().map(wanted), most);
     for _ in 0..ROUNDS {
         progress.check()?;
@@ -65,13 +70,17 @@ pub(super) fn refine(
     Ok(())
 }
 
-/// Flips edges whose opposite angles sum to more than π, unless that folds the surface or makes its faces worse.
+/// Flips edges whose opposite angles sum to more than π,
+/// unless that folds the surface or makes its faces worse.
 fn flip_to_delaunay(mesh: &mut EditableMesh) {
     let mut stack = mesh.edges();
     let mut left = FLIPS_PER_EDGE * stack.len();
     while let Some([a, b]) = stack.pop() {
         let Some(wings) = mesh.wings(a, b) else { continue };
-        if left > 0 && excess(mesh, a, b) > ANGLE_TOLERANCE && is_flat(mesh, wings.faces) && guard::may_flip(mesh, a, b)
+        if left > 0
+            && excess(mesh, a, b) > ANGLE_TOLERANCE
+            && is_flat(mesh, wings.faces)
+            && guard::may_flip(mesh, a, b)
         {
             left -= 1;
             mesh.flip(a, b);

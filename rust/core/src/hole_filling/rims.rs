@@ -8,7 +8,8 @@ use crate::mesh::vector::{area_vector, unit, Point};
 use crate::mesh::Mesh;
 use crate::Result;
 
-/// The faces with a vertex on one of `loops`, ascending, in one pass over the faces: the only one that filling makes.
+/// The faces with a vertex on one of `loops`, ascending, in one pass over the faces:
+/// the only one that filling makes.
 ///
 /// # Errors
 /// [`MeshError::Unfillable`] for a loop that names a vertex which does not exist.
@@ -21,7 +22,8 @@ pub fn faces_at(mesh: &Mesh, loops: &[Vec<u32>]) -> Result<Vec<u32>> {
             *is_rim.get_mut(vertex as usize).ok_or_else(unknown)? = true;
         }
     }
-    let at_rim = |face: &[u32; 3]| is_rim[face[0] as usize] | is_rim[face[1] as usize] | is_rim[face[2] as usize];
+    let at_rim =
+        |face: &[u32; 3]| is_rim[face[0] as usize] | is_rim[face[1] as usize] | is_rim[face[2] as usize];
     Ok((0..).zip(mesh.connectivity().faces()).filter(|(_, face)| at_rim(face)).map(|(f, _)| f).collect())
 }
 
@@ -73,7 +75,9 @@ impl Rims {
 
     /// Takes the edges of a patch between old vertices.
     pub(super) fn add(&mut self, patch: &Patch) {
-        for [a, b] in patch.faces.iter().flat_map(|face| [[face[0], face[1]], [face[1], face[2]], [face[2], face[0]]]) {
+        for [a, b] in
+            patch.faces.iter().flat_map(|face| [[face[0], face[1]], [face[1], face[2]], [face[2], face[0]]])
+        {
             if a.max(b) < self.n_vertices {
                 self.join(a, b);
             }
@@ -85,7 +89,8 @@ impl Rims {
         self.joined.get(&a).is_some_and(|others| others.contains(&b))
     }
 
-    /// The edges that exist among `vertices` and are not on the closed loop that these form, as places in it, ascending.
+    /// The edges that exist among `vertices` and are not on the closed loop that these form,
+    /// as places in it, ascending.
     pub(super) fn chords(&self, vertices: &[u32]) -> Vec<[u32; 2]> {
         let place: HashMap<u32, u32> = vertices.iter().copied().zip(0..).collect();
         let n = vertices.len() as u32;

@@ -7,22 +7,24 @@ use super::rims::Rims;
 use crate::mesh::vector::{area_vector, distance, dot, norm, scale, Point};
 use crate::Progress;
 
-/// Polygons of up to this many vertices are triangulated by the full table, whose time grows with the cube: some 0.5 s here.
-/// Longer ones go through [`super::long_loops`].
+/// Polygons of up to this many vertices are triangulated by the full table, whose time grows with the cube:
+/// some 0.5 s here. Longer ones go through [`super::long_loops`].
 pub(super) const TABLE_LIMIT: usize = 400;
 
-/// Folds are compared in steps of this part of `1 - cos(dihedral angle)`, 2.5 degrees where the surface is flat: finer would
-/// let rounding decide between triangulations of a flat polygon, and not the shape of their triangles.
+/// Folds are compared in steps of this part of `1 - cos(dihedral angle)`, 2.5 degrees where the surface is
+/// flat: finer would let rounding decide between triangulations of a flat polygon, and not the shape of their
+/// triangles.
 const FOLD_STEPS: f64 = 1024.0;
 
 /// The fold of a triangle without area: beyond that of any dihedral angle.
 const DEGENERATE: u32 = 1 << 16;
 
-/// A triangle counts as degenerate below this part of its longest edge squared, a height of 2e-7 of that edge.
+/// A triangle counts as degenerate below this part of its longest edge squared,
+/// a height of 2e-7 of that edge.
 const DEGENERATE_AREA: f64 = 1e-7;
 
-/// By how much the sum of squared edge lengths counts beside the area: little, so that it decides between triangulations
-/// of equal area, as all of a flat polygon are, for the compact triangles.
+/// By how much the sum of squared edge lengths counts beside the area: little, so that it decides between
+/// triangulations of equal area, as all of a flat polygon are, for the compact triangles.
 const COMPACTNESS: f64 = 0.01;
 
 /// The weight of a triangulation: first its worst fold, then its size.
@@ -52,11 +54,12 @@ thread_local! {
     pub(super) static TRIED: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
-/// The triangulation with the least weight, as places in the polygon, counterclockwise; nothing if every triangulation has
-/// an edge that is taken already, or after a cancellation.
+/// The triangulation with the least weight, as places in the polygon, counterclockwise; nothing if every
+/// triangulation has an edge that is taken already, or after a cancellation.
 ///
-/// The weight of a triangulation is its largest dihedral angle, those across the polygon's own edges included, then its area
-/// (Liepa 2003, section 3), with a small share of squared edge lengths. A degenerate triangle is worse than any fold.
+/// The weight of a triangulation is its largest dihedral angle, those across the polygon's own edges
+/// included, then its area (Liepa 2003, section 3), with a small share of squared edge lengths. A degenerate
+/// triangle is worse than any fold.
 pub(super) fn minimum_weight(polygon: &Polygon, rims: &Rims, progress: &Progress) -> Option<Vec<[u32; 3]>> {
     let n = polygon.len();
     #[cfg(test)]
@@ -64,7 +67,8 @@ pub(super) fn minimum_weight(polygon: &Polygon, rims: &Rims, progress: &Progress
     let empty = Cell { weight: IMPOSSIBLE, tip: 0, normal: [0.0; 3] };
     let mut table = vec![empty; n * n];
     for i in 0..n {
-        table[i * n + (i + 1) % n] = Cell { weight: Weight { fold: 0, size: 0.0 }, tip: 0, normal: polygon.outside[i] };
+        table[i * n + (i + 1) % n] =
+            Cell { weight: Weight { fold: 0, size: 0.0 }, tip: 0, normal: polygon.outside[i] };
     }
     for span in 2..n {
         if progress.is_cancelled() {

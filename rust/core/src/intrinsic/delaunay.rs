@@ -3,27 +3,31 @@
 use crate::mesh::triangle::{apex, area, is_degenerate, twice_dot};
 use crate::mesh::{Connectivity, Flip};
 
-/// An edge is flipped where its opposite angles exceed π by more than this, in radians: above rounding (some 1e-15 in
-/// good triangles, 1e-8 in the worst), so that four points on a circle do not flip forever.
+/// An edge is flipped where its opposite angles exceed π by more than this, in radians: above rounding (some
+/// 1e-15 in good triangles, 1e-8 in the worst), so that four points on a circle do not flip forever.
 const ANGLE_TOLERANCE: f64 = 1e-9;
 
-/// Flips are finite, but no useful bound is known; meshes of scans take less than one a face. This many a face only
-/// stop a cycle that rounding might cause among slivers.
+/// Flips are finite, but no useful bound is known; meshes of scans take less than one a face. This many a
+/// face only stop a cycle that rounding might cause among slivers.
 const FLIPS_PER_FACE: usize = 100;
 
-/// Flips edges until every interior edge is Delaunay (its two opposite angles sum to at most π), and returns the new
-/// connectivity, its edge lengths and the number of flips.
+/// Flips edges until every interior edge is Delaunay (its two opposite angles sum to at most π), and returns
+/// the new connectivity, its edge lengths and the number of flips.
 ///
-/// Edges without a twin stay. An edge stays too, Delaunay or not, if its flip would make a degenerate triangle
-/// ([`is_degenerate`]); mollified lengths make that rare. Faces may come out with a repeated vertex or glued to a
-/// neighbor along two edges; the connectivity carries its twins, so that is no harm.
+/// Edges without a twin stay. An edge stays too, Delaunay or not, if its flip would make a degenerate
+/// triangle ([`is_degenerate`]); mollified lengths make that rare. Faces may come out with a repeated vertex
+/// or glued to a neighbor along two edges; the connectivity carries its twins, so that is no harm.
 #[must_use]
-pub fn delaunay_flips(connectivity: &Connectivity, lengths: &[[f64; 3]]) -> (Connectivity, Vec<[f64; 3]>, usize) {
+pub fn delaunay_flips(
+    connectivity: &Connectivity,
+    lengths: &[[f64; 3]],
+) -> (Connectivity, Vec<[f64; 3]>, usize) {
     delaunay_flips_carrying(connectivity, lengths, &mut [])
 }
 
-/// [`delaunay_flips`], with values of the faces carried along: a flip gives both new faces the mean of the two old ones by
-/// area, so that the integral over the surface stays and faces that no flip touches keep their value.
+/// [`delaunay_flips`], with values of the faces carried along: a flip gives both new faces the mean of the
+/// two old ones by area, so that the integral over the surface stays and faces that no flip touches keep
+/// their value.
 ///
 /// `face_values` has an entry a face, or none at all.
 pub fn delaunay_flips_carrying(

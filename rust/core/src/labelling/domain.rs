@@ -32,12 +32,14 @@ impl<'a> Domain<'a> {
     pub fn new(connectivity: &'a Connectivity, positions: &'a [Point], sigma: f64) -> Self {
         let faces = connectivity.faces();
         let lengths = edge_lengths(faces, positions);
-        let areas: Vec<Point> = faces.iter().map(|face| area_vector(face.map(|v| positions[v as usize]))).collect();
+        let areas: Vec<Point> =
+            faces.iter().map(|face| area_vector(face.map(|v| positions[v as usize]))).collect();
         let mut around = vec![0.0; positions.len()];
         for (face, area) in faces.iter().zip(&areas) {
             face.iter().for_each(|&v| around[v as usize] += norm(*area));
         }
-        let (sum, count) = connectivity.edges().fold((0.0, 0_usize), |(s, n), h| (s + lengths[h / 3][h % 3], n + 1));
+        let (sum, count) =
+            connectivity.edges().fold((0.0, 0_usize), |(s, n), h| (s + lengths[h / 3][h % 3], n + 1));
         let faces_at = Buckets::new(positions.len(), |visit| {
             for (f, face) in (0_u32..).zip(faces) {
                 face.iter().for_each(|&v| visit(v as usize, f));
@@ -79,7 +81,8 @@ impl<'a> Domain<'a> {
         (3 * f..3 * f + 3).filter_map(|h| self.connectivity.mate(h).map(|mate| (h, mate / 3)))
     }
 
-    /// The vertices of some faces as samples: weights are the faces' shares of them, normals the faces' mean there.
+    /// The vertices of some faces as samples: weights are the faces' shares of them,
+    /// normals the faces' mean there.
     #[must_use]
     pub fn samples(&self, faces: &[u32]) -> Samples {
         let mut corners: Vec<(u32, u32)> =

@@ -1,14 +1,16 @@
 //! Which surface each face belongs to: one energy over labels `L` and surfaces `Θ`,
 //!
-//! `E(L, Θ) = Σ_v Σ_f∋v (A_f / A_v) ρ(d(v, Θ_L(f)) / σ) + Σ_border length / edge + κ Σ_surfaces parameters(Θ)`
+//! `E(L, Θ) = Σ_v Σ_f∋v (A_f / A_v) ρ(d(v, Θ_L(f)) / σ) + Σ_border length / edge`
+//! `+ κ Σ_surfaces parameters(Θ)`
 //!
-//! (PEARL: Isack and Boykov 2012; label costs: Delong et al. 2012). Every vertex is one observation of its surfaces, shared
-//! among them by the areas of its faces: so the correlation of neighboring faces, which have corners in common, is taken
-//! into account, and `E` is the negative logarithm of a likelihood. `ρ` is [`misfit`], `κ` half the logarithm of the number of
-//! observations (Schwarz 1978). A piece without a surface of a known kind is free: its vertices cost [`FREE_MISFIT`] each.
+//! (PEARL: Isack and Boykov 2012; label costs: Delong et al. 2012). Every vertex is one observation of its
+//! surfaces, shared among them by the areas of its faces: so the correlation of neighboring faces, which have
+//! corners in common, is taken into account, and `E` is the negative logarithm of a likelihood. `ρ` is
+//! [`misfit`], `κ` half the logarithm of the number of observations (Schwarz 1978). A piece without a surface
+//! of a known kind is free: its vertices cost [`FREE_MISFIT`] each.
 //!
-//! Moves: fit and exchange the kind ([`pieces`]), [`relabel`] faces at borders, [`merge`] neighbors; each is taken only if `E`
-//! falls.
+//! Moves: fit and exchange the kind ([`pieces`]), [`relabel`] faces at borders, [`merge`] neighbors; each is
+//! taken only if `E` falls.
 
 mod domain;
 mod merge;
@@ -25,9 +27,9 @@ use crate::Result;
 /// No label: the face takes no part.
 pub const NONE: u32 = u32::MAX;
 
-/// What a vertex of a free piece costs: as if it were 1.5 standard deviations off. A surface that is off by more than that, root
-/// mean square, is not sure: no noise is taken for a reason, and nothing is moved onto it. The same ratio at which segments count
-/// as plane ([`crate::tools::segment`]).
+/// What a vertex of a free piece costs: as if it were 1.5 standard deviations off. A surface that is off by
+/// more than that, root mean square, is not sure: no noise is taken for a reason, and nothing is moved onto
+/// it. The same ratio at which segments count as plane ([`crate::tools::segment`]).
 pub const FREE_MISFIT: f64 = 1.125;
 
 /// What a border costs for each mean edge of its length, beside the likelihoods of its two sides.
@@ -45,7 +47,8 @@ pub struct Labelling {
     pub pieces: Vec<Piece>,
 }
 
-/// The labels of the faces of a `domain` that begin as `start` (negative: takes no part) and follow the energy downhill.
+/// The labels of the faces of a `domain` that begin as `start` (negative: takes no part) and follow the
+/// energy downhill.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`].

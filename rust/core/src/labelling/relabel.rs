@@ -39,7 +39,8 @@ fn improve(domain: &Domain<'_>, state: &mut Labelling, f: usize) -> bool {
         return false;
     }
     let cost = |label: u32| {
-        let border: f64 = neighbors.iter().filter(|(other, _)| *other != label).map(|(_, length)| length).sum();
+        let border: f64 =
+            neighbors.iter().filter(|(other, _)| *other != label).map(|(_, length)| length).sum();
         domain.face_cost(f, state.pieces.get(label as usize)) + BORDER * border
     };
     let (mut best, mut least) = (own, cost(own) - 1e-9);

@@ -1,14 +1,15 @@
-//! Convex quadratics between bounds, `min ½ xᵀ A x − bᵀ x` with `least ≤ x ≤ most`, for an `A` known by its products: modified
-//! proportioning with reduced gradient projections (Dostál and Schöberl 2005).
+//! Convex quadratics between bounds, `min ½ xᵀ A x − bᵀ x` with `least ≤ x ≤ most`, for an `A` known by its
+//! products: modified proportioning with reduced gradient projections (Dostál and Schöberl 2005).
 //!
-//! Conjugate gradients on what is strictly between its bounds; where they would leave them, a step to the bound and one of
-//! projected gradients; and where bounds hold more than they should, a step away from them. One product a step.
+//! Conjugate gradients on what is strictly between its bounds; where they would leave them, a step to the
+//! bound and one of projected gradients; and where bounds hold more than they should, a step away from them.
+//! One product a step.
 
 use super::Columns;
 use crate::Result;
 
-/// Products to estimate the norm of `A`, by power iteration from the first gradient; the estimate is from below, so the fixed
-/// step is half of the longest that surely descends.
+/// Products to estimate the norm of `A`, by power iteration from the first gradient; the estimate is from
+/// below, so the fixed step is half of the longest that surely descends.
 const NORM_STEPS: usize = 10;
 
 /// When to stop.
@@ -45,8 +46,9 @@ struct Column {
 
 /// Minimizes every column between its own bounds `[least, most]`.
 ///
-/// `x` is the start and the result, `descent` is `b − A x` at the start, 0 in rows that are not to move; `multiply` replaces
-/// columns by `A` times them and is only given columns that are 0 in those rows. The objective never rises.
+/// `x` is the start and the result, `descent` is `b − A x` at the start, 0 in rows that are not to move;
+/// `multiply` replaces columns by `A` times them and is only given columns that are 0 in those rows. The
+/// objective never rises.
 ///
 /// # Errors
 /// Those of `multiply`.
@@ -99,7 +101,10 @@ fn norm(start: &Columns, multiply: &mut impl FnMut(&mut Columns) -> Result<()>) 
 impl Column {
     fn new(mut x: Vec<f64>, gradient: Vec<f64>, bounds: [f64; 2], fall: f64) -> Self {
         // Rows that do not move may lie where they like.
-        x.iter_mut().zip(&gradient).filter(|(_, g)| **g != 0.0).for_each(|(x, _)| *x = x.clamp(bounds[0], bounds[1]));
+        x.iter_mut()
+            .zip(&gradient)
+            .filter(|(_, g)| **g != 0.0)
+            .for_each(|(x, _)| *x = x.clamp(bounds[0], bounds[1]));
         let mut column = Self { vector: Vec::new(), x, gradient, bounds, step: Step::Done, enough: 0.0 };
         let [free, chopped] = column.split();
         column.enough = fall * fall * (dot(&free, &free) + dot(&chopped, &chopped));
@@ -161,7 +166,11 @@ impl Column {
             }
             Step::Conjugate | Step::Proportion => {
                 let curvature = dot(&self.vector, product);
-                let best = if curvature > 0.0 { dot(&self.gradient, &self.vector) / curvature } else { f64::INFINITY };
+                let best = if curvature > 0.0 {
+                    dot(&self.gradient, &self.vector) / curvature
+                } else {
+                    f64::INFINITY
+                };
                 let most = self.longest();
                 let length = best.min(most);
                 if !length.is_finite() {

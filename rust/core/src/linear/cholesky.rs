@@ -1,11 +1,12 @@
 //! Sparse Cholesky factorization: the one file that names the library that analyzes.
 //!
-//! Symbolic analysis once per pattern, numeric factorization as often as the values change, solves for several right
-//! sides at once. Results do not depend on the number of threads.
+//! Symbolic analysis once per pattern, numeric factorization as often as the values change, solves for
+//! several right sides at once. Results do not depend on the number of threads.
 
 use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::{
-    factorize_symbolic_cholesky, CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky, CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw,
+    SymmetricOrdering,
 };
 use faer::sparse::linalg::{SupernodalThreshold, SymbolicSupernodalParams};
 use faer::sparse::{FaerError, SymbolicSparseColMatRef};
@@ -19,8 +20,9 @@ use crate::linear::subtrees::Subtrees;
 use crate::linear::triangular::{Panels, Values, LANES};
 use crate::memory;
 
-/// Neighboring supernodes of at most so many columns are joined while less than this part of the result is zero. The
-/// library's own thresholds make one solve a tenth slower and the factorization no faster (measured on 10k and 58k rows).
+/// Neighboring supernodes of at most so many columns are joined while less than this part of the result is
+/// zero. The library's own thresholds make one solve a tenth slower and the factorization no faster (measured
+/// on 10k and 58k rows).
 const RELAXATION: &[(usize, f64)] = &[(8, 0.3), (16, 0.1)];
 
 /// A factorization whose pattern is analyzed once.
@@ -40,13 +42,16 @@ pub struct Cholesky {
 
 impl std::fmt::Debug for Cholesky {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Cholesky").field("n", &self.pattern.n).field("factor_len", &self.factor.len()).finish()
+        f.debug_struct("Cholesky")
+            .field("n", &self.pattern.n)
+            .field("factor_len", &self.factor.len())
+            .finish()
     }
 }
 
 impl Cholesky {
-    /// Orders (approximate minimum degree, below nested dissection for large ones) and analyzes the pattern, for a factor and
-    /// waiting updates of at most `memory_limit` bytes.
+    /// Orders (approximate minimum degree, below nested dissection for large ones) and analyzes the pattern,
+    /// for a factor and waiting updates of at most `memory_limit` bytes.
     ///
     /// # Errors
     /// [`SolveError::Memory`] when the factor is larger than that, or than what the system gives.
@@ -58,7 +63,8 @@ impl Cholesky {
             }
             other => SolveError::Factorization { reason: format!("{other:?}") },
         };
-        let view = SymbolicSparseColMatRef::new_checked(pattern.n, pattern.n, &pattern.starts, None, &pattern.rows);
+        let view =
+            SymbolicSparseColMatRef::new_checked(pattern.n, pattern.n, &pattern.starts, None, &pattern.rows);
         let parameters = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
             supernodal_params: SymbolicSupernodalParams { relax: Some(RELAXATION) },
@@ -70,7 +76,8 @@ impl Cholesky {
             backward[i] = k;
         }
         let ordering = SymmetricOrdering::Custom(PermRef::new_checked(&forward, &backward, pattern.n));
-        let symbolic = factorize_symbolic_cholesky(view, Side::Lower, ordering, parameters).map_err(failed)?;
+        let symbolic =
+            factorize_symbolic_cholesky(view, Side::Lower, ordering, parameters).map_err(failed)?;
         let mut order = memory::room(pattern.n)?;
         order.extend(symbolic.perm().into_iter().flat_map(|p| p.arrays().0).map(|&i| i as u32));
         let panels = panels(&symbolic)?;
@@ -127,18 +134,18 @@ impl Cholesky {
     /// [`SolveError::Factorization`] when the matrix is not positive definite.
     pub fn factorize(&mut self, values: &[f64]) -> Result<(), SolveError> {
         self.n_factorizations += 1;
-        multifrontal::factorize(&self.tree, &self.panels, values, &mut self.factor, &self.workspace).ok_or_else(
-            || {
-                let reason = "the matrix is not positive definite; fix more vertices or raise the fidelity".into();
+        multifrontal::factorize(&self.tree, &self.panels, values, &mut self.factor, &self.workspace)
+            .ok_or_else(|| {
+                let reason =
+                    "the matrix is not positive definite; fix more vertices or raise the fidelity".into();
                 SolveError::Factorization { reason }
-            },
-        )?;
+            })?;
         self.panels.reciprocals(&self.factor, &mut self.reciprocals);
         Ok(())
     }
 
-    /// Solves in place for `K` right sides, with the last factorization. Rows of the matrix behind the last of `right` are zero on
-    /// the right side, and what they are in the solution is left out.
+    /// Solves in place for `K` right sides, with the last factorization. Rows of the matrix behind the last
+    /// of `right` are zero on the right side, and what they are in the solution is left out.
     pub fn solve<const K: usize>(&mut self, right: &mut [[f64; K]]) {
         self.solve_columns::<K, K>(right);
     }
@@ -161,7 +168,8 @@ impl Cholesky {
     }
 }
 
-/// The supernodes of the factor; a factor without any, of a matrix that is nearly diagonal, has panels of one column.
+/// The supernodes of the factor; a factor without any, of a matrix that is nearly diagonal,
+/// has panels of one column.
 ///
 /// # Errors
 /// [`SolveError::Memory`].
@@ -199,8 +207,8 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    /// A diagonally dominant matrix with wide panels: `n` rows, entries up to `band` off the diagonal and in the last
-    /// rows.
+    /// A diagonally dominant matrix with wide panels: `n` rows,
+    /// entries up to `band` off the diagonal and in the last rows.
     fn matrix(n: usize, band: usize) -> (LowerPattern, Vec<f64>) {
         let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
         for j in 0..n {
@@ -232,7 +240,8 @@ mod tests {
 
     fn check_solves<const A: usize, const K: usize>(n: usize, band: usize) {
         let (pattern, values) = matrix(n, band);
-        let x: Vec<[f64; K]> = (0..n).map(|i| std::array::from_fn(|c| (i as f64 + 0.3 * c as f64).cos())).collect();
+        let x: Vec<[f64; K]> =
+            (0..n).map(|i| std::array::from_fn(|c| (i as f64 + 0.3 * c as f64).cos())).collect();
         let right = times(&pattern, &values, &x);
         let mut cholesky = Cholesky::analyze(pattern, None).unwrap();
         cholesky.factorize(&values).unwrap();
@@ -241,7 +250,10 @@ mod tests {
         for i in 0..n {
             for c in 0..K {
                 let expected = if c < A { x[i][c] } else { right[i][c] };
-                assert!((solution[i][c] - expected).abs() < 1e-12, "{n} rows, band {band}, row {i}, column {c} of {K}");
+                assert!(
+                    (solution[i][c] - expected).abs() < 1e-12,
+                    "{n} rows, band {band}, row {i}, column {c} of {K}"
+                );
             }
         }
     }

@@ -13,15 +13,22 @@ pub trait Quadratic<const K: usize> {
     /// The preconditioner times the residual, out of which what constraints hold may be taken.
     fn precondition(&mut self, residual: &mut [[f64; K]]) -> Vec<[f64; K]>;
 
-    /// Goes `far` along `direction`, whose product with `A` is given, and brings the residual up to date; `false` if that leads
-    /// up, and is taken back.
-    fn go(&mut self, far: f64, direction: &[[f64; K]], product: &[[f64; K]], residual: &mut [[f64; K]]) -> bool;
+    /// Goes `far` along `direction`, whose product with `A` is given, and brings the residual up to date;
+    /// `false` if that leads up, and is taken back.
+    fn go(
+        &mut self,
+        far: f64,
+        direction: &[[f64; K]],
+        product: &[[f64; K]],
+        residual: &mut [[f64; K]],
+    ) -> bool;
 }
 
 /// How a run ended.
 #[derive(Debug)]
 pub struct Descent {
-    /// The squared norm of the last residual in the metric of the preconditioner: twice what a step with it would gain.
+    /// The squared norm of the last residual in the metric of the preconditioner:
+    /// twice what a step with it would gain.
     pub length: f64,
     /// Iterations made.
     pub iterations: usize,
@@ -29,9 +36,9 @@ pub struct Descent {
     pub flat: Option<f64>,
 }
 
-/// Goes down on `quadratic`, where the residual is `residual`, until its squared norm in the metric of the preconditioner is no
-/// more than `enough` gives for its first, or for `most` iterations (Hestenes and Stiefel 1952). A preconditioner that keeps to
-/// a linear subspace keeps the run there.
+/// Goes down on `quadratic`, where the residual is `residual`, until its squared norm in the metric of the
+/// preconditioner is no more than `enough` gives for its first, or for `most` iterations (Hestenes and
+/// Stiefel 1952). A preconditioner that keeps to a linear subspace keeps the run there.
 ///
 /// # Errors
 /// Those of [`Quadratic::times`].
@@ -50,7 +57,8 @@ pub fn descend<const K: usize>(
         let curvature = dot(&direction, &product);
         let far = run.length / curvature;
         if curvature <= 0.0 || !far.is_finite() {
-            run.flat = Some(curvature / (dot(&direction, &direction).sqrt() * dot(&product, &product).sqrt()));
+            run.flat =
+                Some(curvature / (dot(&direction, &direction).sqrt() * dot(&product, &product).sqrt()));
             break;
         }
         run.iterations += 1;
@@ -75,8 +83,8 @@ pub struct Approximation<const K: usize> {
     pub iterations: usize,
 }
 
-/// Solves `matrix · x = right` from zero until the residual, in the norm of the preconditioner, is `goal` times what it was, or
-/// for `most` iterations: [`descend`] where nothing is to be looked after.
+/// Solves `matrix · x = right` from zero until the residual, in the norm of the preconditioner, is `goal`
+/// times what it was, or for `most` iterations: [`descend`] where nothing is to be looked after.
 pub fn conjugate_gradients<const K: usize>(
     matrix: impl FnMut(&[[f64; K]], &mut Vec<[f64; K]>),
     precondition: impl FnMut(&mut [[f64; K]]),
@@ -86,8 +94,8 @@ pub fn conjugate_gradients<const K: usize>(
 ) -> Approximation<K> {
     let mut system = System { matrix, precondition, solution: vec![[0.0; K]; right.len()] };
     // Its products do not fail.
-    let iterations =
-        descend(&mut system, right, |length| goal * goal * length, most).map_or(0, |descent| descent.iterations);
+    let iterations = descend(&mut system, right, |length| goal * goal * length, most)
+        .map_or(0, |descent| descent.iterations);
     Approximation { solution: system.solution, iterations }
 }
 
@@ -114,7 +122,13 @@ where
         step
     }
 
-    fn go(&mut self, far: f64, direction: &[[f64; K]], product: &[[f64; K]], residual: &mut [[f64; K]]) -> bool {
+    fn go(
+        &mut self,
+        far: f64,
+        direction: &[[f64; K]],
+        product: &[[f64; K]],
+        residual: &mut [[f64; K]],
+    ) -> bool {
         add(far, direction, &mut self.solution);
         add(-far, product, residual);
         true

@@ -1,7 +1,8 @@
-//! Matrices, and nothing of what they stand for: patterns, orderings, one sparse Cholesky factorization, iterations that need
-//! products only.
+//! Matrices, and nothing of what they stand for: patterns, orderings, one sparse Cholesky factorization,
+//! iterations that need products only.
 //!
-//! [`cholesky`] analyzes a [`pattern`] in an [`ordering`]; `multifrontal` factors; `triangular` and `subtrees` solve.
+//! [`cholesky`] analyzes a [`pattern`] in an [`ordering`]; `multifrontal` factors;
+//! `triangular` and `subtrees` solve.
 
 pub mod bounded;
 pub mod cholesky;

@@ -10,8 +10,8 @@ pub struct DenseCholesky {
 }
 
 impl DenseCholesky {
-    /// Factors the lower triangle of a `p × p` matrix stored column by column; `None` when it is not clearly positive
-    /// definite: a pivot under 1e-12 of its diagonal entry is lost to rounding.
+    /// Factors the lower triangle of a `p × p` matrix stored column by column; `None` when it is not clearly
+    /// positive definite: a pivot under 1e-12 of its diagonal entry is lost to rounding.
     #[must_use]
     pub fn new(matrix: &[f64], p: usize) -> Option<Self> {
         let matrix = MatRef::from_column_major_slice(matrix, p, p);
@@ -37,9 +37,11 @@ impl DenseCholesky {
 #[must_use]
 pub fn symmetric_eigen(mut a: Vec<Vec<f64>>) -> (Vec<f64>, Vec<Vec<f64>>) {
     let n = a.len();
-    let mut vectors: Vec<Vec<f64>> = (0..n).map(|j| (0..n).map(|i| f64::from(u8::from(i == j))).collect()).collect();
+    let mut vectors: Vec<Vec<f64>> =
+        (0..n).map(|j| (0..n).map(|i| f64::from(u8::from(i == j))).collect()).collect();
     diagonalize(&mut a, &mut vectors);
-    let mut pairs: Vec<(f64, Vec<f64>)> = vectors.into_iter().enumerate().map(|(j, v)| (a[j][j], v)).collect();
+    let mut pairs: Vec<(f64, Vec<f64>)> =
+        vectors.into_iter().enumerate().map(|(j, v)| (a[j][j], v)).collect();
     pairs.sort_by(|x, y| x.0.total_cmp(&y.0));
     pairs.into_iter().unzip()
 }
@@ -52,7 +54,8 @@ pub fn eigen3(mut a: [[f64; 3]; 3]) -> [(f64, [f64; 3]); 3] {
     [0, 1, 2].map(|j| (a[j][j], vectors[j]))
 }
 
-/// Jacobi's rotations, which give the same bits on any number of threads: `a` becomes diagonal, `vectors` one a row.
+/// Jacobi's rotations, which give the same bits on any number of threads: `a` becomes diagonal,
+/// `vectors` one a row.
 fn diagonalize<R: AsMut<[f64]> + AsRef<[f64]>>(a: &mut [R], vectors: &mut [R]) {
     let n = a.len();
     let turn = |c: f64, s: f64, x: &mut f64, y: &mut f64| (*x, *y) = (c * *x - s * *y, s * *x + c * *y);
@@ -104,8 +107,8 @@ impl Quadric {
         }
     }
 
-    /// The directions that the planes determine, with how far the best point is along each: what the pseudo-inverse keeps,
-    /// eigenvalues above `drop` times the largest.
+    /// The directions that the planes determine, with how far the best point is along each: what the
+    /// pseudo-inverse keeps, eigenvalues above `drop` times the largest.
     #[must_use]
     pub fn determined(&self, drop: f64) -> Vec<([f64; 3], f64)> {
         let pairs = eigen3(self.matrix);

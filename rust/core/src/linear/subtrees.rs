@@ -1,7 +1,8 @@
 //! Triangular solves on several threads: subtrees of the elimination tree know nothing of each other.
 //!
-//! Every subtree works on its own rows and on a copy of the later rows that it sees, which are added up in the order of the
-//! subtrees. They are cut by the pattern alone, so that results are the same on any number of threads.
+//! Every subtree works on its own rows and on a copy of the later rows that it sees, which are added up in
+//! the order of the subtrees. They are cut by the pattern alone, so that results are the same on any number
+//! of threads.
 
 use std::ops::Range;
 
@@ -11,8 +12,8 @@ use rayon::prelude::*;
 use crate::linear::multifrontal::Tree;
 use crate::linear::triangular::{Panel, Panels, Values, LANES};
 
-/// Subtrees with more than this part of all entries are cut at their root: eight or nine are left, and a quarter of all entries above
-/// them. Half of it leaves twice as many, and a third above.
+/// Subtrees with more than this part of all entries are cut at their root: eight or nine are left, and a
+/// quarter of all entries above them. Half of it leaves twice as many, and a third above.
 const CUT: f64 = 1.0 / 8.0;
 
 /// Subtrees with fewer entries than this are not worth a thread: they take a tenth of a millisecond.
@@ -25,7 +26,8 @@ pub(super) struct Subtrees {
     list: Vec<Range<usize>>,
     /// All other panels.
     rest: Vec<u32>,
-    /// As [`Panels::rows`], but in subtrees counted from their first row, with those behind the subtree in the order of its root.
+    /// As [`Panels::rows`], but in subtrees counted from their first row,
+    /// with those behind the subtree in the order of its root.
     rows: Vec<u32>,
 }
 
@@ -75,7 +77,11 @@ impl Subtrees {
             .map(|subtree| {
                 let mut local = x[rows_of(panels, subtree)].to_vec();
                 local.resize(local.len() + behind(panels, subtree).len(), [0.0; K]);
-                forward(self.panels_of(panels, values, subtree), &mut local, &mut space_for(panels, subtree, K));
+                forward(
+                    self.panels_of(panels, values, subtree),
+                    &mut local,
+                    &mut space_for(panels, subtree, K),
+                );
                 local
             })
             .collect();
@@ -156,12 +162,20 @@ fn local_rows(panels: &Panels, list: &[Range<usize>]) -> Vec<u32> {
 }
 
 /// `x ← L⁻¹x` by these panels.
-fn forward<'p, const K: usize>(panels: impl Iterator<Item = Panel<'p>>, x: &mut [[f64; K]], space: &mut [f64]) {
+fn forward<'p, const K: usize>(
+    panels: impl Iterator<Item = Panel<'p>>,
+    x: &mut [[f64; K]],
+    space: &mut [f64],
+) {
     Arch::new().dispatch(Sweep::<_, K, true> { panels, x, space });
 }
 
 /// `x ← L⁻ᵀx` by these panels, the last one first.
-fn backward<'p, const K: usize>(panels: impl Iterator<Item = Panel<'p>>, x: &mut [[f64; K]], space: &mut [f64]) {
+fn backward<'p, const K: usize>(
+    panels: impl Iterator<Item = Panel<'p>>,
+    x: &mut [[f64; K]],
+    space: &mut [f64],
+) {
     Arch::new().dispatch(Sweep::<_, K, false> { panels, x, space });
 }
 
@@ -172,7 +186,9 @@ struct Sweep<'b, I, const K: usize, const FORWARD: bool> {
     space: &'b mut [f64],
 }
 
-impl<'p, I: Iterator<Item = Panel<'p>>, const K: usize, const FORWARD: bool> WithSimd for Sweep<'_, I, K, FORWARD> {
+impl<'p, I: Iterator<Item = Panel<'p>>, const K: usize, const FORWARD: bool> WithSimd
+    for Sweep<'_, I, K, FORWARD>
+{
     type Output = ();
 
     #[inline(always)]

@@ -1,22 +1,25 @@
 //! Triangular solves with a supernodal Cholesky factor, for a few right sides at once.
 //!
-//! A general dense kernel spends most of its time on packing when a panel has a handful of columns and there are three
-//! right sides. Here four columns of a panel at a time are applied to one right side after the other, straight from the
-//! factor.
+//! A general dense kernel spends most of its time on packing when a panel has a handful of columns and there
+//! are three right sides. Here four columns of a panel at a time are applied to one right side after the
+//! other, straight from the factor.
 
 use pulp::Simd;
 
-/// Columns of a panel that are applied together: fewer passes over the right sides, few enough for the registers.
+/// Columns of a panel that are applied together: fewer passes over the right sides,
+/// few enough for the registers.
 const COLUMNS: usize = 4;
 
-/// Sums that are carried along together: one alone waits for itself, more than these do not fit the registers.
+/// Sums that are carried along together: one alone waits for itself,
+/// more than these do not fit the registers.
 const ACCUMULATORS: usize = 12;
 
-/// The most numbers in a vector register. Columns are read in whole registers, past their end: what stands there meets only
-/// padding.
+/// The most numbers in a vector register. Columns are read in whole registers, past their end: what stands
+/// there meets only padding.
 pub(super) const LANES: usize = 8;
 
-/// The structure of a factor `L` by supernodes: columns with the same pattern, stored as one dense panel each.
+/// The structure of a factor `L` by supernodes: columns with the same pattern,
+/// stored as one dense panel each.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Panels {
     /// The first column of each panel, and the number of columns at the end.

@@ -10,18 +10,21 @@ pub(super) fn left() -> Option<u64> {
 
 /// [`left`], for the text of `/proc/self/cgroup` and the place where the groups are mounted.
 ///
-/// A limit of a group counts for all groups in it. In a container the path names groups of the host that cannot be seen from
-/// inside; the container's own is the root there.
+/// A limit of a group counts for all groups in it. In a container the path names groups of the host that
+/// cannot be seen from inside; the container's own is the root there.
 fn left_in(memberships: &str, mount: &Path) -> Option<u64> {
     let mut least = None;
     for line in memberships.lines() {
         let mut fields = line.splitn(3, ':');
-        let (Some(_), Some(controllers), Some(path)) = (fields.next(), fields.next(), fields.next()) else { continue };
+        let (Some(_), Some(controllers), Some(path)) = (fields.next(), fields.next(), fields.next()) else {
+            continue;
+        };
         let (root, files) = match controllers {
             "" => (mount.to_path_buf(), ["memory.max", "memory.current", "inactive_file"]),
-            list if list.split(',').any(|name| name == "memory") => {
-                (mount.join("memory"), ["memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"])
-            }
+            list if list.split(',').any(|name| name == "memory") => (
+                mount.join("memory"),
+                ["memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"],
+            ),
             _ => continue,
         };
         let mut group: PathBuf = root.join(path.trim_start_matches('/'));

@@ -33,7 +33,8 @@ impl Demand {
         Self { n_columns, is_clarabel, ..self }
     }
 
-    /// Bytes that the call takes at its peak, about: within a quarter of the truth on meshes that are about as wide as long.
+    /// Bytes that the call takes at its peak, about: within a quarter of the truth on meshes that are about
+    /// as wide as long.
     #[must_use]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     pub fn estimate(&self) -> usize {
@@ -75,8 +76,8 @@ impl Demand {
         fits
     }
 
-    /// Refuses the call if it does not fit: into `limit` bytes, or without a limit into [`super::SHARE`] of what is free. Returns the
-    /// bytes that it may take.
+    /// Refuses the call if it does not fit: into `limit` bytes, or without a limit into [`super::SHARE`] of
+    /// what is free. Returns the bytes that it may take.
     ///
     /// # Errors
     /// [`Error::Memory`] with what is needed, what there is, and what would fit.
@@ -86,7 +87,13 @@ impl Demand {
         let most = limit.unwrap_or_else(|| share_of_free(needed));
         if needed > most {
             let fits = self.fitting(most);
-            return Err(Error::Memory { what: self.tool.name(), needed, limit: most, is_given: limit.is_some(), fits });
+            return Err(Error::Memory {
+                what: self.tool.name(),
+                needed,
+                limit: most,
+                is_given: limit.is_some(),
+                fits,
+            });
         }
         // The small pieces of a small call fit into the heaps that are there.
         let reserved = match reserved {
@@ -98,7 +105,13 @@ impl Demand {
         if (needed >= SMALL || reserved > 0) && !is_granted(asked) {
             let left = available().min(asked);
             let fits = self.fitting(share_of(left.saturating_sub(reserved)));
-            return Err(Error::Memory { what: self.tool.name(), needed: asked, limit: left, is_given: false, fits });
+            return Err(Error::Memory {
+                what: self.tool.name(),
+                needed: asked,
+                limit: left,
+                is_given: false,
+                fits,
+            });
         }
         Ok(most)
     }
@@ -122,7 +135,10 @@ mod tests {
         assert!(demand(Tool::Stylize, fits).estimate() <= 1_000_000_000);
         assert!(demand(Tool::Stylize, fits + 1).estimate() > 999_000_000);
         let text = error.to_string();
-        assert!(text.contains("more than the limit of 1.00 GB") && text.contains("raise memory_limit"), "{text}");
+        assert!(
+            text.contains("more than the limit of 1.00 GB") && text.contains("raise memory_limit"),
+            "{text}"
+        );
     }
 
     #[test]

@@ -2,9 +2,9 @@
 
 use super::cgroup;
 
-/// Bytes that this process may still take: what the machine has free (on Linux `MemAvailable`: with what caches would give
-/// back), and on Linux also what is left under the limits of its control groups and under `RLIMIT_AS` and `RLIMIT_DATA`
-/// (`ulimit -v`, `ulimit -d`). `usize::MAX` where the system tells nothing.
+/// Bytes that this process may still take: what the machine has free (on Linux `MemAvailable`: with what
+/// caches would give back), and on Linux also what is left under the limits of its control groups and under
+/// `RLIMIT_AS` and `RLIMIT_DATA` (`ulimit -v`, `ulimit -d`). `usize::MAX` where the system tells nothing.
 #[must_use]
 pub fn available() -> usize {
     let mut least = machine().unwrap_or(u64::MAX);

@@ -1,9 +1,10 @@
 //! How much memory a call needs, how much is free, and arrays that are refused instead of ending the process.
 //!
-//! A failed allocation of a Rust collection aborts, with everything that the process holds. So nothing large is taken before it
-//! is known to fit: [`Demand::admit`] compares a tool's [`Demand::estimate`] with the limit, by default [`SHARE`] of what is
-//! really free ([`available`]), and asks the system for as much, to give it back at once; and arrays whose size comes from
-//! arguments or meshes are made by [`filled`] and [`copied`], which return an error.
+//! A failed allocation of a Rust collection aborts, with everything that the process holds. So nothing large
+//! is taken before it is known to fit: [`Demand::admit`] compares a tool's [`Demand::estimate`] with the
+//! limit, by default [`SHARE`] of what is really free ([`available`]), and asks the system for as much, to
+//! give it back at once; and arrays whose size comes from arguments or meshes are made by [`filled`] and
+//! [`copied`], which return an error.
 
 mod cgroup;
 mod demand;
@@ -20,14 +21,16 @@ pub(crate) use threads::room_for_threads;
 use crate::error::SolveError;
 use crate::{Error, Result};
 
-/// The part of the free memory that a call takes at most by itself: estimates are within a quarter of the truth, so that one
-/// which is too low by that much still fits.
+/// The part of the free memory that a call takes at most by itself: estimates are within a quarter of the
+/// truth, so that one which is too low by that much still fits.
 pub const SHARE: f64 = 0.8;
 
-/// Calls that need less are not looked at one by one: the floor that every call asks for ([`floor`]) holds them.
+/// Calls that need less are not looked at one by one: the floor that every call asks for ([`floor`]) holds
+/// them.
 pub const SMALL: usize = 16 << 20;
 
-/// What must be free for any call: several calls that each are [`SMALL`], and what allocators keep for small pieces.
+/// What must be free for any call: several calls that each are [`SMALL`],
+/// and what allocators keep for small pieces.
 const FLOOR: usize = 64 << 20;
 
 /// What a thread of a pool takes besides its work: its stack, and what the system allocator keeps for it.

@@ -1,8 +1,10 @@
-//! What the tools take at their peak, as functions of the size of the mesh: fitted to measured resident memory.
+//! What the tools take at their peak, as functions of the size of the mesh:
+//! fitted to measured resident memory.
 //!
-//! Measured by `make bench-memory` on grids with noise of 10 thousand to a million vertices, each call in a process of its own;
-//! the table with what was measured and what is said here is in `docs/reliability.md`. A mesh of another shape has another
-//! factor: on a strip it is smaller than said, so that solvers ask again with the exact size once they have analyzed the matrix.
+//! Measured by `make bench-memory` on grids with noise of 10 thousand to a million vertices, each call in a
+//! process of its own; the table with what was measured and what is said here is in `docs/reliability.md`. A
+//! mesh of another shape has another factor: on a strip it is smaller than said, so that solvers ask again
+//! with the exact size once they have analyzed the matrix.
 
 /// A tool, or any other call that takes memory in proportion to the mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,8 +55,8 @@ pub enum Tool {
     Curves,
 }
 
-/// Bytes of one call: `face · m + factor · m log₂ m` for `m` faces, and so much for every further column that is
-/// computed with: rows are of 1, 2, 4, 8 or 16.
+/// Bytes of one call: `face · m + factor · m log₂ m` for `m` faces, and so much for every further column that
+/// is computed with: rows are of 1, 2, 4, 8 or 16.
 pub(super) struct Cost {
     pub face: f64,
     pub logarithmic: f64,
@@ -90,7 +92,8 @@ impl Tool {
         ("smooth_curves", Self::Curves),
     ];
 
-    /// Whether columns are kept as they are; otherwise they are computed with in rows of 1, 2, 4, 8 or 16, which fill vector registers.
+    /// Whether columns are kept as they are; otherwise they are computed with in rows of 1, 2, 4, 8 or 16,
+    /// which fill vector registers.
     pub(super) const fn has_single_columns(self) -> bool {
         matches!(self, Self::Modes | Self::QuadraticModes)
     }
@@ -135,12 +138,13 @@ impl Tool {
     }
 }
 
-/// Bytes that Clarabel takes for a face and for a column of values, with the factorization of its larger matrix.
+/// Bytes that Clarabel takes for a face and for a column of values,
+/// with the factorization of its larger matrix.
 pub(super) const CLARABEL: Cost = Cost { face: 4600.0, logarithmic: 100.0, column: 7200.0 };
 
 /// Parts are divided on so many faces or clusters of them at most, which take so many bytes each.
 pub(super) const DIVIDED: (f64, f64) = (4500.0, 1300.0);
 
-/// Bytes for a vertex without faces, in every array that has an entry for each vertex: where a linear system is solved, and
-/// elsewhere.
+/// Bytes for a vertex without faces, in every array that has an entry for each vertex: where a linear system
+/// is solved, and elsewhere.
 pub(super) const LOOSE: [f64; 2] = [400.0, 40.0];

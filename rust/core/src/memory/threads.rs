@@ -1,9 +1,10 @@
-//! What threads take before a limit on address space can be read: it would be missing in the middle of a call.
+//! What threads take before a limit on address space can be read:
+//! it would be missing in the middle of a call.
 //!
-//! The matrix product of faer keeps a buffer in every thread that has used it, twice as large as the largest cache: half a
-//! gigabyte a thread on a server. It is never full, but counts in full under `RLIMIT_AS`. So does what the system allocator
-//! reserves for the small pieces of every thread. So under such a limit there are only as many threads as have room; they take
-//! all this first; and then the limit is read.
+//! The matrix product of faer keeps a buffer in every thread that has used it, twice as large as the largest
+//! cache: half a gigabyte a thread on a server. It is never full, but counts in full under `RLIMIT_AS`. So
+//! does what the system allocator reserves for the small pieces of every thread. So under such a limit there
+//! are only as many threads as have room; they take all this first; and then the limit is read.
 
 use std::cell::Cell;
 
@@ -32,16 +33,17 @@ pub fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// How many threads a call may have where address space is limited, at least one: what they keep is half of what is left at
-/// most. `None` without a limit.
+/// How many threads a call may have where address space is limited, at least one: what they keep is half of
+/// what is left at most. `None` without a limit.
 pub(crate) fn room_for_threads() -> Option<usize> {
     let left = usize::try_from(super::free::resources()?).unwrap_or(usize::MAX);
     Some((left / 2 / (super::THREAD + HEAP + buffer())).max(1))
 }
 
-/// Has all threads of this pool and the caller take what they keep, while it can still be refused; the buffers of products only
-/// where `multiplies`. Does nothing where address space is not limited. Returns what the system allocator may still reserve beyond
-/// what is asked of it: a heap that is begun when another is full.
+/// Has all threads of this pool and the caller take what they keep, while it can still be refused; the
+/// buffers of products only where `multiplies`. Does nothing where address space is not limited. Returns what
+/// the system allocator may still reserve beyond what is asked of it: a heap that is begun when another is
+/// full.
 ///
 /// # Errors
 /// [`Error::Memory`].

@@ -17,26 +17,29 @@ pub struct Walks {
 
 /// The boundary loops, each a cycle of vertices without repeats.
 ///
-/// - A rim consists of edges with exactly one face ([`EdgeKind::Boundary`]). Edges with three or more faces have no twin
-///   either, but they are no holes: a walk that ends at one, as on the pages of an open book, is left out.
-/// - A loop runs as the faces' halfedges do: seen from outside, clockwise around a hole. Where two faces disagree on
-///   their orientation the walk goes on across their edge, against the halfedges from there on: a Möbius strip has one
-///   loop.
-/// - At a vertex that two fans of faces share, the walk goes on along the other side of the gap that it runs around: holes
-///   that touch at their corners are loops of their own. Loops that still visit a vertex twice are split there: two triangles
-///   that touch at a vertex have two loops.
+/// - A rim consists of edges with exactly one face ([`EdgeKind::Boundary`]). Edges with three or more faces
+///   have no twin either, but they are no holes: a walk that ends at one, as on the pages of an open book, is
+///   left out.
+/// - A loop runs as the faces' halfedges do: seen from outside, clockwise around a hole. Where two faces
+///   disagree on their orientation the walk goes on across their edge, against the halfedges from there on: a
+///   Möbius strip has one loop.
+/// - At a vertex that two fans of faces share, the walk goes on along the other side of the gap that it runs
+///   around: holes that touch at their corners are loops of their own. Loops that still visit a vertex twice
+///   are split there: two triangles that touch at a vertex have two loops.
 #[must_use]
 pub fn boundary_loops(connectivity: &Connectivity) -> Vec<Vec<u32>> {
     boundary_walks(connectivity, None).loops
 }
 
-/// All walks along the boundary: see [`boundary_loops`]. With `positions`, gaps between more than two fans at a vertex are told
-/// apart as well, by the order of the fans around it; without, the walk stays at its fan there.
+/// All walks along the boundary: see [`boundary_loops`]. With `positions`, gaps between more than two fans at
+/// a vertex are told apart as well, by the order of the fans around it; without, the walk stays at its fan
+/// there.
 #[must_use]
 pub fn boundary_walks(connectivity: &Connectivity, positions: Option<&[Point]>) -> Walks {
     let mut visited = vec![false; connectivity.n_halfedges()];
     let gaps = Gaps::new(connectivity, positions);
-    let step = |(h, forward): (usize, bool)| gaps.across(h, forward).or_else(|| own_fan(connectivity, h, forward));
+    let step =
+        |(h, forward): (usize, bool)| gaps.across(h, forward).or_else(|| own_fan(connectivity, h, forward));
     let mut splitter = Splitter { loops: Vec::new(), place: vec![0; connectivity.n_vertices()] };
     let mut chains = Vec::new();
     for start in connectivity.boundary() {
@@ -77,8 +80,9 @@ pub fn boundary_walks(connectivity: &Connectivity, positions: Option<&[Point]>) 
     Walks { loops: splitter.loops, chains }
 }
 
-/// The boundary halfedge after `h`, found by turning about the vertex where `h` (run backward unless `forward`) ends, and
-/// whether it is run forward; nothing if the fan of faces ends at an edge that is no boundary.
+/// The boundary halfedge after `h`, found by turning about the vertex where `h` (run backward unless
+/// `forward`) ends, and whether it is run forward; nothing if the fan of faces ends at an edge that is no
+/// boundary.
 fn own_fan(connectivity: &Connectivity, h: usize, forward: bool) -> Option<(usize, bool)> {
     let (mut edge, mut leaves) = if forward { (next(h), true) } else { (previous(h), false) };
     while let Some(mate) = connectivity.mate(edge) {
@@ -92,7 +96,8 @@ fn own_fan(connectivity: &Connectivity, h: usize, forward: bool) -> Option<(usiz
 /// The two sides of each gap at vertices that several fans share.
 #[derive(Default)]
 struct Gaps {
-    /// The halfedge that leaves the vertex on the other side of the gap, for those that end there, and the other way round.
+    /// The halfedge that leaves the vertex on the other side of the gap, for those that end there,
+    /// and the other way round.
     leaving: HashMap<usize, usize>,
     arriving: HashMap<usize, usize>,
 }
@@ -137,7 +142,8 @@ impl Gaps {
     }
 }
 
-/// Sorts the fans, each by the halfedges that arrive at the vertex and leave it, counterclockwise seen from outside.
+/// Sorts the fans, each by the halfedges that arrive at the vertex and leave it,
+/// counterclockwise seen from outside.
 fn order_around(connectivity: &Connectivity, positions: &[Point], vertex: u32, fans: &mut [[usize; 2]]) {
     let at = positions[vertex as usize];
     let middle = |&[arriving, leaving]: &[usize; 2]| {
@@ -167,7 +173,8 @@ fn order_around(connectivity: &Connectivity, positions: &[Point], vertex: u32, f
 /// Splits closed walks at the vertices that they visit twice.
 struct Splitter {
     loops: Vec<Vec<u32>>,
-    /// Where each vertex is in the walk so far, from 1 on; 0 if it is not. Memory of zeros costs nothing where it is not read.
+    /// Where each vertex is in the walk so far, from 1 on; 0 if it is not.
+    /// Memory of zeros costs nothing where it is not read.
     place: Vec<u32>,
 }
 
@@ -198,7 +205,8 @@ pub(crate) fn cycle(vertices: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
     vertices.iter().zip(vertices.iter().cycle().skip(1)).map(|(&a, &b)| [a, b])
 }
 
-/// Half the sum of the cross products of successive positions: the area vector of any surface that the loop bounds.
+/// Half the sum of the cross products of successive positions:
+/// the area vector of any surface that the loop bounds.
 pub(crate) fn loop_area_vector(vertices: &[u32], positions: &[Point]) -> Point {
     let Some(&first) = vertices.first() else { return [0.0; 3] };
     let at = |v: u32| sub(positions[v as usize], positions[first as usize]);

@@ -1,4 +1,5 @@
-//! Halfedge connectivity of a triangle list, for any input: what is not manifold gets no twin and is told apart.
+//! Halfedge connectivity of a triangle list, for any input:
+//! what is not manifold gets no twin and is told apart.
 
 use crate::buckets::Buckets;
 use crate::error::MeshError;
@@ -26,8 +27,9 @@ pub enum EdgeKind {
 
 /// The halfedges of a triangle list.
 ///
-/// Halfedge `h = 3 f + i` is opposite corner `i` of face `f` and runs from corner `i + 1` to corner `i + 2` (modulo 3).
-/// Twins are stored, not derived from vertex indices, so that intrinsic flips may glue two faces along several edges.
+/// Halfedge `h = 3 f + i` is opposite corner `i` of face `f` and runs from corner `i + 1` to corner `i + 2`
+/// (modulo 3). Twins are stored, not derived from vertex indices, so that intrinsic flips may glue two faces
+/// along several edges.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Connectivity {
     pub(crate) faces: Vec<[u32; 3]>,
@@ -61,8 +63,8 @@ impl Connectivity {
     /// The connectivity of `faces` (vertex triples), in linear time.
     ///
     /// # Errors
-    /// [`MeshError::VertexOutOfRange`] if a face names a vertex `>= n_vertices`, [`MeshError::TooManyFaces`] if the
-    /// halfedges cannot be counted in 32 bits.
+    /// [`MeshError::VertexOutOfRange`] if a face names a vertex `>= n_vertices`, [`MeshError::TooManyFaces`]
+    /// if the halfedges cannot be counted in 32 bits.
     pub fn new(faces: Vec<[u32; 3]>, n_vertices: usize) -> Result<Self, MeshError> {
         if faces.len() >= NONE as usize / 3 {
             return Err(MeshError::TooManyFaces { n_faces: faces.len() });
@@ -76,13 +78,18 @@ impl Connectivity {
             }
         }
         let n_halfedges = 3 * faces.len();
-        let mut connectivity =
-            Self { faces, n_vertices, mates: vec![NONE; n_halfedges], kinds: vec![EdgeKind::Degenerate; n_halfedges] };
+        let mut connectivity = Self {
+            faces,
+            n_vertices,
+            mates: vec![NONE; n_halfedges],
+            kinds: vec![EdgeKind::Degenerate; n_halfedges],
+        };
         connectivity.match_halfedges();
         Ok(connectivity)
     }
 
-    /// Finds the halfedges of every edge: bucketed by the edge's smaller vertex, then sorted by its larger one.
+    /// Finds the halfedges of every edge: bucketed by the edge's smaller vertex,
+    /// then sorted by its larger one.
     fn match_halfedges(&mut self) {
         let sound = |f: &[u32; 3]| f[0] != f[1] && f[1] != f[2] && f[2] != f[0];
         let mut at_smaller = Buckets::new(self.n_vertices, |visit| {
@@ -157,7 +164,8 @@ impl Connectivity {
         (self.kinds[h] == EdgeKind::Interior).then(|| self.mates[h] as usize)
     }
 
-    /// The halfedge of the other face where the edge has exactly two faces, whether or not their orientations agree.
+    /// The halfedge of the other face where the edge has exactly two faces,
+    /// whether or not their orientations agree.
     #[must_use]
     pub fn mate(&self, h: usize) -> Option<usize> {
         (self.mates[h] != NONE).then(|| self.mates[h] as usize)
@@ -183,8 +191,10 @@ impl Connectivity {
     /// The halfedges at edges of all kinds but the common one, ascending.
     fn not_interior(&self) -> impl Iterator<Item = usize> + '_ {
         // Without an early exit the compiler compares whole registers of kinds: ten times as fast.
-        let is_common = |kinds: &[EdgeKind]| kinds.iter().fold(true, |all, &kind| all & (kind == EdgeKind::Interior));
-        let chunks = self.kinds.chunks(SCAN).zip((0..).step_by(SCAN)).filter(move |(kinds, _)| !is_common(kinds));
+        let is_common =
+            |kinds: &[EdgeKind]| kinds.iter().fold(true, |all, &kind| all & (kind == EdgeKind::Interior));
+        let chunks =
+            self.kinds.chunks(SCAN).zip((0..).step_by(SCAN)).filter(move |(kinds, _)| !is_common(kinds));
         let halfedges = chunks.flat_map(|(kinds, first)| first..first + kinds.len());
         halfedges.filter(|&h| self.kinds[h] != EdgeKind::Interior)
     }

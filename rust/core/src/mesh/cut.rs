@@ -4,10 +4,11 @@ use crate::mesh::connectivity::{next, previous};
 use crate::mesh::partition::Partition;
 use crate::mesh::{Connectivity, EdgeTable};
 
-/// A mesh cut open along edges: a vertex has one copy for every sector of faces between the cut edges around it.
+/// A mesh cut open along edges: a vertex has one copy for every sector of faces between the cut edges around
+/// it.
 ///
-/// A vertex without a cut edge has one copy, whether or not its faces form one fan; so has the end of a cut inside the
-/// surface. The faces keep their order and corners, the copies the order of their first corner.
+/// A vertex without a cut edge has one copy, whether or not its faces form one fan; so has the end of a cut
+/// inside the surface. The faces keep their order and corners, the copies the order of their first corner.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CutMesh {
     /// The copies at the corners of every face.
@@ -17,11 +18,13 @@ pub struct CutMesh {
 }
 
 impl CutMesh {
-    /// Cuts along the edges of the halfedges for which `cut` holds, an entry a halfedge; one of an edge is enough.
+    /// Cuts along the edges of the halfedges for which `cut` holds, an entry a halfedge;
+    /// one of an edge is enough.
     #[must_use]
     pub fn new(connectivity: &Connectivity, table: &EdgeTable, cut: &[bool]) -> Self {
         let mut corners = Partition::new(connectivity.n_halfedges());
-        // The corner where a halfedge starts is the index of the next halfedge, that where it ends of the previous.
+        // The corner where a halfedge starts is the index of the next halfedge,
+        // that where it ends of the previous.
         let corner_at = |h: usize, vertex: u32| {
             let at = if connectivity.tail(h) == vertex { next(h) } else { previous(h) };
             at as u32

@@ -2,7 +2,8 @@
 
 use crate::mesh::{Connectivity, EdgeKind};
 
-/// The halfedges of every edge, however many faces it has; edges of faces that name a vertex twice are left out.
+/// The halfedges of every edge, however many faces it has;
+/// edges of faces that name a vertex twice are left out.
 #[derive(Debug, Clone)]
 pub struct EdgeTable {
     /// Smaller vertex, larger vertex, halfedge; sorted.

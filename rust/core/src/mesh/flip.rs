@@ -13,17 +13,21 @@ pub struct Flip {
 }
 
 impl Connectivity {
-    /// Flips the edge of `h` if it is interior and has two different faces; else does nothing and returns nothing.
+    /// Flips the edge of `h` if it is interior and has two different faces;
+    /// else does nothing and returns nothing.
     ///
-    /// The new edge may join two vertices that another edge joins already, or a vertex with itself: that is sound
-    /// intrinsically, since twins are stored. A caller who flips a surface in space must rule it out first.
+    /// The new edge may join two vertices that another edge joins already, or a vertex with itself: that is
+    /// sound intrinsically, since twins are stored. A caller who flips a surface in space must rule it out
+    /// first.
     pub fn flip(&mut self, h: usize) -> Option<Flip> {
         let twin = self.twin(h).filter(|twin| twin / 3 != h / 3)?;
         let (f, g) = (h / 3, twin / 3);
         let [tail, head, left, right] = [self.tail(h), self.head(h), self.opposite(h), self.opposite(twin)];
-        let outer = [(next(twin), 3 * f), (previous(h), 3 * f + 2), (next(h), 3 * g), (previous(twin), 3 * g + 2)];
-        let moved =
-            |old: u32| outer.iter().find(|(before, _)| *before == old as usize).map_or(old, |&(_, after)| after as u32);
+        let outer =
+            [(next(twin), 3 * f), (previous(h), 3 * f + 2), (next(h), 3 * g), (previous(twin), 3 * g + 2)];
+        let moved = |old: u32| {
+            outer.iter().find(|(before, _)| *before == old as usize).map_or(old, |&(_, after)| after as u32)
+        };
         let carried = outer.map(|(old, _)| (moved(self.mates[old]), self.kinds[old]));
         self.faces[f] = [left, tail, right];
         self.faces[g] = [right, head, left];

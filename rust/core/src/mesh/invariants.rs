@@ -4,8 +4,9 @@ use crate::mesh::{Connectivity, EdgeKind};
 
 /// The first broken invariant, as a sentence.
 ///
-/// Faces name existing vertices; mates are mutual, lie on different halfedges and join the same two vertices, in opposite
-/// directions if the edge is interior and in the same direction if it is inconsistent; other edges have no mate.
+/// Faces name existing vertices; mates are mutual, lie on different halfedges and join the same two vertices,
+/// in opposite directions if the edge is interior and in the same direction if it is inconsistent; other
+/// edges have no mate.
 ///
 /// # Errors
 /// The sentence.

@@ -8,8 +8,8 @@ use crate::unit::Unit;
 use crate::Result;
 
 impl Mesh {
-    /// The unit of length in which the mesh is computed with: for the coordinates of the vertices that have faces, or for the
-    /// edge lengths.
+    /// The unit of length in which the mesh is computed with: for the coordinates of the vertices that have
+    /// faces, or for the edge lengths.
     #[must_use]
     pub fn unit(&self) -> Unit {
         match self.positions() {
@@ -24,8 +24,8 @@ impl Mesh {
     /// The mesh measured in `unit`. Vertices without faces are at the origin where they would be no numbers.
     ///
     /// # Errors
-    /// [`crate::Error::Memory`] where a copy does not fit; in another unit than the mesh's own [`Mesh::unit`] those of a mesh whose
-    /// lengths are no numbers.
+    /// [`crate::Error::Memory`] where a copy does not fit; in another unit than the mesh's own [`Mesh::unit`]
+    /// those of a mesh whose lengths are no numbers.
     pub fn measured(&self, unit: Unit) -> Result<Cow<'_, Self>> {
         if unit.is_one() {
             return Ok(Cow::Borrowed(self));
@@ -36,7 +36,8 @@ impl Mesh {
             let lengths = self.edge_lengths().iter().map(measured).collect();
             return Ok(Cow::Owned(Self::from_connectivity(self.connectivity().clone(), lengths)?));
         };
-        let place = |p: &[f64; 3]| Some(measured(p)).filter(|p| p.iter().all(|x| x.is_finite())).unwrap_or_default();
+        let place =
+            |p: &[f64; 3]| Some(measured(p)).filter(|p| p.iter().all(|x| x.is_finite())).unwrap_or_default();
         let faces = self.connectivity().faces().to_vec();
         Ok(Cow::Owned(Self::new(positions.iter().map(place).collect(), faces)?))
     }

@@ -32,7 +32,8 @@ use crate::error::MeshError;
 use crate::memory::{Demand, Tool};
 use crate::unit::Unit;
 
-/// Two lengths of one edge may differ by this part of the longer one; lengths that were stored in single precision do.
+/// Two lengths of one edge may differ by this part of the longer one;
+/// lengths that were stored in single precision do.
 const LENGTH_TOLERANCE: f64 = 1e-6;
 
 /// A triangle mesh: connectivity and edge lengths, and vertex positions if it was made from them.
@@ -69,8 +70,8 @@ impl Mesh {
     /// Non-manifold edges, faces without area and unreferenced vertices are accepted.
     ///
     /// # Errors
-    /// [`MeshError::NonFiniteVertex`], [`MeshError::VertexOutOfRange`], [`MeshError::TooLarge`] and the errors of
-    /// [`Connectivity::new`].
+    /// [`MeshError::NonFiniteVertex`], [`MeshError::VertexOutOfRange`], [`MeshError::TooLarge`] and the
+    /// errors of [`Connectivity::new`].
     pub fn new(vertices: Vec<[f64; 3]>, faces: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         if let Some(vertex) = vertices.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
             return Err(MeshError::NonFiniteVertex { vertex });
@@ -87,8 +88,8 @@ impl Mesh {
     /// Without `n_vertices` the vertices are those up to the largest that a face names.
     ///
     /// # Errors
-    /// [`MeshError::LengthRows`] if there is not one row a face, and the errors of [`Mesh::from_connectivity`] and
-    /// [`Connectivity::new`].
+    /// [`MeshError::LengthRows`] if there is not one row a face, and the errors of
+    /// [`Mesh::from_connectivity`] and [`Connectivity::new`].
     pub fn from_edge_lengths(
         faces: Vec<[u32; 3]>,
         lengths: Vec<[f64; 3]>,
@@ -108,8 +109,9 @@ impl Mesh {
     /// [`crate::intrinsic::delaunay_flips`].
     ///
     /// # Errors
-    /// [`MeshError::LengthRows`], [`MeshError::BadEdgeLength`], [`MeshError::TriangleInequality`] (violated by more
-    /// than rounding), [`MeshError::UnequalEdgeLengths`] (the two faces of an edge differ by more than 1e-6 of it).
+    /// [`MeshError::LengthRows`], [`MeshError::BadEdgeLength`], [`MeshError::TriangleInequality`] (violated
+    /// by more than rounding), [`MeshError::UnequalEdgeLengths`] (the two faces of an edge differ by more
+    /// than 1e-6 of it).
     pub fn from_connectivity(connectivity: Connectivity, lengths: Vec<[f64; 3]>) -> Result<Self, MeshError> {
         if lengths.len() != connectivity.n_faces() {
             return Err(MeshError::LengthRows { rows: lengths.len(), n_faces: connectivity.n_faces() });

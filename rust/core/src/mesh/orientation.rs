@@ -4,11 +4,12 @@ use std::collections::VecDeque;
 
 use crate::mesh::{Connectivity, EdgeKind};
 
-/// For every face whether it is turned against the faces around it, so that turning these over makes neighbors agree.
+/// For every face whether it is turned against the faces around it,
+/// so that turning these over makes neighbors agree.
 ///
-/// Within each edge-connected component the smaller number of faces counts as turned, of two equal numbers those that do not
-/// agree with its first face. Across edges with three faces or more nothing is compared. On a surface with one side only, as a
-/// Möbius strip, some neighbors disagree after that as before.
+/// Within each edge-connected component the smaller number of faces counts as turned, of two equal numbers
+/// those that do not agree with its first face. Across edges with three faces or more nothing is compared. On
+/// a surface with one side only, as a Möbius strip, some neighbors disagree after that as before.
 #[must_use]
 pub fn flipped_faces(connectivity: &Connectivity) -> Vec<bool> {
     let mut flipped = vec![false; connectivity.n_faces()];
@@ -21,7 +22,8 @@ pub fn flipped_faces(connectivity: &Connectivity) -> Vec<bool> {
             continue;
         }
         let mut component = vec![seed];
-        // Across edges where faces disagree only when no other way is left: so few are turned on surfaces with one side.
+        // Across edges where faces disagree only when no other way is left:
+        // so few are turned on surfaces with one side.
         let mut disagreeing = VecDeque::new();
         let mut next = 0;
         loop {
@@ -50,11 +52,15 @@ pub fn flipped_faces(connectivity: &Connectivity) -> Vec<bool> {
     flipped
 }
 
-/// The faces with those turned over that [`flipped_faces`] names, their first corner kept, and which these are.
+/// The faces with those turned over that [`flipped_faces`] names, their first corner kept,
+/// and which these are.
 ///
 /// # Errors
 /// Those of [`Connectivity::new`].
-pub fn orient(faces: Vec<[u32; 3]>, n_vertices: usize) -> Result<(Vec<[u32; 3]>, Vec<bool>), crate::error::MeshError> {
+pub fn orient(
+    faces: Vec<[u32; 3]>,
+    n_vertices: usize,
+) -> Result<(Vec<[u32; 3]>, Vec<bool>), crate::error::MeshError> {
     let connectivity = Connectivity::new(faces, n_vertices)?;
     let flipped = flipped_faces(&connectivity);
     Ok((turned_over(connectivity.faces(), &flipped), flipped))
@@ -79,7 +85,8 @@ mod tests {
 
     #[test]
     fn faces_turned_at_random_are_found_one_by_one() {
-        for (shape, share) in [(shapes::cube(5), 0.1), (shapes::torus(9, 7, 2.0, 0.5), 0.4), (shapes::grid(8, 6), 0.3)]
+        for (shape, share) in
+            [(shapes::cube(5), 0.1), (shapes::torus(9, 7, 2.0, 0.5), 0.4), (shapes::grid(8, 6), 0.3)]
         {
             let (faces, flip) = turned(&shape.faces, share, 3);
             let (oriented, flipped) = orient(faces, shape.vertices.len()).unwrap();

@@ -1,6 +1,7 @@
 //! Sets that can be united.
 
-/// A partition of `0..n` into sets; the root of a set is its least element, unless [`Partition::attach`] chose another (Tarjan 1975, with path halving).
+/// A partition of `0..n` into sets; the root of a set is its least element, unless [`Partition::attach`]
+/// chose another (Tarjan 1975, with path halving).
 #[derive(Debug, Clone)]
 pub(crate) struct Partition(Vec<u32>);
 
@@ -20,7 +21,8 @@ impl Partition {
         x
     }
 
-    /// Puts the set with the root `gone` under the root `kept`, which stays one although it may not be the least element.
+    /// Puts the set with the root `gone` under the root `kept`,
+    /// which stays one although it may not be the least element.
     pub(crate) fn attach(&mut self, gone: u32, kept: u32) {
         self.0[gone as usize] = kept;
     }

@@ -12,12 +12,13 @@ pub struct MeshReport {
     pub n_components: usize,
     /// Number of [`boundary_loops`].
     pub n_boundary_loops: usize,
-    /// Edges with more than two faces, or with two that disagree on their orientation, as vertex pairs, smaller vertex
-    /// first. Such edges count as boundary for all operators.
+    /// Edges with more than two faces, or with two that disagree on their orientation, as vertex pairs,
+    /// smaller vertex first. Such edges count as boundary for all operators.
     pub nonmanifold_edges: Vec<[u32; 2]>,
     /// Those of the non-manifold edges that have two faces.
     pub inconsistent_edges: Vec<[u32; 2]>,
-    /// Faces turned against the faces around them ([`crate::mesh::flipped_faces`]); tools take them the other way around.
+    /// Faces turned against the faces around them ([`crate::mesh::flipped_faces`]);
+    /// tools take them the other way around.
     pub flipped_faces: Vec<u32>,
     /// Vertices whose faces form more than one fan.
     pub nonmanifold_vertices: Vec<u32>,
@@ -25,8 +26,8 @@ pub struct MeshReport {
     pub degenerate_faces: Vec<u32>,
     /// Faces with the three vertices of an earlier face, in any order.
     pub duplicate_faces: Vec<u32>,
-    /// Faces that lie on another one from a common edge on, where the edge has more than two: a second lid, whether or not it is cut
-    /// into triangles as the first is.
+    /// Faces that lie on another one from a common edge on, where the edge has more than two: a second lid,
+    /// whether or not it is cut into triangles as the first is.
     pub doubled_faces: Vec<u32>,
     /// Vertices in the middle of border edges of other faces, to which they are not joined ([`TJunctions`]).
     pub t_junctions: Vec<u32>,
@@ -43,15 +44,23 @@ pub fn report(mesh: &Mesh) -> MeshReport {
     MeshReport {
         n_components: n_components(connectivity, &referenced),
         n_boundary_loops: boundary_loops(connectivity).len(),
-        nonmanifold_edges: edges(connectivity, |kind| matches!(kind, EdgeKind::NonManifold | EdgeKind::Inconsistent)),
+        nonmanifold_edges: edges(connectivity, |kind| {
+            matches!(kind, EdgeKind::NonManifold | EdgeKind::Inconsistent)
+        }),
         inconsistent_edges: edges(connectivity, |kind| kind == EdgeKind::Inconsistent),
-        flipped_faces: (0..).zip(flipped_faces(connectivity)).filter_map(|(f, flip)| flip.then_some(f)).collect(),
+        flipped_faces: (0..)
+            .zip(flipped_faces(connectivity))
+            .filter_map(|(f, flip)| flip.then_some(f))
+            .collect(),
         nonmanifold_vertices: nonmanifold_vertices(connectivity),
         degenerate_faces: degenerate_faces(mesh),
         duplicate_faces: duplicate_faces(connectivity),
         doubled_faces: doubled_faces(mesh),
         t_junctions: t_junctions(mesh),
-        unreferenced_vertices: (0..).zip(&referenced).filter_map(|(v, &named)| (!named).then_some(v)).collect(),
+        unreferenced_vertices: (0..)
+            .zip(&referenced)
+            .filter_map(|(v, &named)| (!named).then_some(v))
+            .collect(),
     }
 }
 
@@ -82,7 +91,8 @@ fn nonmanifold_vertices(connectivity: &Connectivity) -> Vec<u32> {
     let mut corners = Partition::new(connectivity.n_halfedges());
     for h in connectivity.edges() {
         if let Some(mate) = connectivity.mate(h) {
-            // The corner where a halfedge starts is the index of the next halfedge, that where it ends of the previous.
+            // The corner where a halfedge starts is the index of the next halfedge,
+            // that where it ends of the previous.
             let (mut tail, mut head) = (next(mate) as u32, previous(mate) as u32);
             if connectivity.kind(h) == EdgeKind::Interior {
                 std::mem::swap(&mut tail, &mut head);
@@ -102,7 +112,8 @@ fn nonmanifold_vertices(connectivity: &Connectivity) -> Vec<u32> {
 
 fn degenerate_faces(mesh: &Mesh) -> Vec<u32> {
     let degenerate = |f: usize| {
-        mesh.connectivity().kind(3 * f) == EdgeKind::Degenerate || triangle::is_degenerate(mesh.edge_lengths()[f])
+        mesh.connectivity().kind(3 * f) == EdgeKind::Degenerate
+            || triangle::is_degenerate(mesh.edge_lengths()[f])
     };
     (0..mesh.connectivity().n_faces()).filter(|&f| degenerate(f)).map(|f| f as u32).collect()
 }
@@ -124,7 +135,8 @@ fn duplicate_faces(connectivity: &Connectivity) -> Vec<u32> {
     duplicates
 }
 
-/// Two faces lie on each other if they leave their common edge in the same direction, up to this sine of the angle between them.
+/// Two faces lie on each other if they leave their common edge in the same direction,
+/// up to this sine of the angle between them.
 const SAME_DIRECTION: f64 = 1e-4;
 
 /// The faces at edges with more than two that lie on another one there.
@@ -167,7 +179,10 @@ fn t_junctions(mesh: &Mesh) -> Vec<u32> {
         return TJunctions::find(connectivity, positions).map_or_else(Vec::new, |found| found.vertices());
     };
     // Faces that the seams' vertices make are those of the mesh, and so no error to be expected.
-    let Ok(welded) = Connectivity::new(weld.faces(connectivity.faces()), weld.first.len()) else { return Vec::new() };
+    let Ok(welded) = Connectivity::new(weld.faces(connectivity.faces()), weld.first.len()) else {
+        return Vec::new();
+    };
     let found = TJunctions::find(&welded, &weld.firsts(positions));
-    found.map_or_else(Vec::new, |found| found.vertices().into_iter().map(|v| weld.first[v as usize]).collect())
+    found
+        .map_or_else(Vec::new, |found| found.vertices().into_iter().map(|v| weld.first[v as usize]).collect())
 }

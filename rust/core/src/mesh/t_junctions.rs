@@ -18,9 +18,9 @@ pub struct TJunctions {
 }
 
 impl TJunctions {
-    /// Finds the border vertices that lie on border edges (those with one face), up to the rounding of coordinates, where the two sides
-    /// would share an edge if both were split there. Vertices in one place should be one ([`crate::mesh::Weld::of_seams`]). Nothing
-    /// where there are none.
+    /// Finds the border vertices that lie on border edges (those with one face), up to the rounding of
+    /// coordinates, where the two sides would share an edge if both were split there. Vertices in one place
+    /// should be one ([`crate::mesh::Weld::of_seams`]). Nothing where there are none.
     #[must_use]
     pub fn find(connectivity: &Connectivity, positions: &[Point]) -> Option<Self> {
         let border: Vec<usize> = connectivity.boundary().collect();
@@ -119,7 +119,8 @@ pub struct SplitFaces {
     pub mesh: Mesh,
     /// The face of the whole mesh that each is a part of, ascending.
     pub parent: Vec<u32>,
-    /// The halfedge of the whole mesh that each edge is a part of, column `i` opposite corner `i`; `None` for cuts through faces.
+    /// The halfedge of the whole mesh that each edge is a part of, column `i` opposite corner `i`;
+    /// `None` for cuts through faces.
     pub edge: Vec<[Option<u32>; 3]>,
 }
 
@@ -174,7 +175,8 @@ impl Grid {
         sub(p, self.origin).map(|x| (x / self.cell).floor() as i64)
     }
 
-    /// The vertices in the cells that the segment from `a` to `b` runs through, and not farther off than `off`, at least; ascending.
+    /// The vertices in the cells that the segment from `a` to `b` runs through, and not farther off than
+    /// `off`, at least; ascending.
     fn near(&self, a: Point, b: Point, off: f64) -> BTreeSet<u32> {
         let steps = (norm(sub(b, a)) / self.cell).ceil().max(1.0) as usize;
         let mut found = BTreeSet::new();
@@ -182,7 +184,8 @@ impl Grid {
             let [p, q] = [k, k + 1].map(|k| between(a, b, k as f64 / steps as f64));
             let low = self.key([0, 1, 2].map(|c| p[c].min(q[c]) - off));
             let high = self.key([0, 1, 2].map(|c| p[c].max(q[c]) + off));
-            // No more than a cell long: what takes more of them is rounding, so far from the origin that places are not told apart.
+            // No more than a cell long: what takes more of them is rounding, so far from the origin that
+            // places are not told apart.
             if [0, 1, 2].iter().any(|&c| high[c].saturating_sub(low[c]) > MOST_CELLS) {
                 continue;
             }

@@ -68,7 +68,8 @@ pub fn centroid([a, b, c]: [Point; 3]) -> Point {
     scale(add(add(a, b), c), 1.0 / 3.0)
 }
 
-/// The area vector of a triangle: along its normal (counterclockwise corners seen from its tip), as long as its area.
+/// The area vector of a triangle: along its normal (counterclockwise corners seen from its tip),
+/// as long as its area.
 #[must_use]
 pub fn area_vector([a, b, c]: [Point; 3]) -> Point {
     scale(cross(sub(b, a), sub(c, a)), 0.5)
@@ -85,7 +86,8 @@ pub fn cosine(a: Point, b: Point) -> f64 {
     }
 }
 
-/// The quality `4 √3 area / Σ length²` of a triangle: 1 if equilateral, 0 if degenerate (Bank and Smith 1997).
+/// The quality `4 √3 area / Σ length²` of a triangle: 1 if equilateral,
+/// 0 if degenerate (Bank and Smith 1997).
 #[must_use]
 pub fn quality(corners: [Point; 3]) -> f64 {
     let [a, b, c] = corners;

@@ -6,7 +6,8 @@ use crate::mesh::partition::Partition;
 use crate::mesh::vector::{distance, sub, Point};
 use crate::mesh::Connectivity;
 
-/// The sides of a seam differ by the rounding of its coordinates: files of six digits lose this part of the shape's size.
+/// The sides of a seam differ by the rounding of its coordinates:
+/// files of six digits lose this part of the shape's size.
 const SIX_DIGITS: f64 = 1e-5;
 
 /// Units in the last place by which coordinates of one place may differ: each was rounded once or twice.
@@ -25,18 +26,26 @@ pub struct Weld {
 }
 
 impl Weld {
-    /// Welds vertices on open borders (edges with one face) whose coordinates differ by no more than `tolerance` each. Without one
-    /// they may differ by the rounding of their coordinates: a hundred-thousandth of the shape's size, as files of six digits have
-    /// it, or four units in the last place (of single precision, where all coordinates have it), but a tenth of the
-    /// shortest border edge there at most. All others stay as they are. Nothing where none are welded.
+    /// Welds vertices on open borders (edges with one face) whose coordinates differ by no more than
+    /// `tolerance` each. Without one they may differ by the rounding of their coordinates: a
+    /// hundred-thousandth of the shape's size, as files of six digits have it, or four units in the last
+    /// place (of single precision, where all coordinates have it), but a tenth of the shortest border edge
+    /// there at most. All others stay as they are. Nothing where none are welded.
     #[must_use]
-    pub fn of_seams(connectivity: &Connectivity, positions: &[Point], tolerance: Option<f64>) -> Option<Self> {
+    pub fn of_seams(
+        connectivity: &Connectivity,
+        positions: &[Point],
+        tolerance: Option<f64>,
+    ) -> Option<Self> {
         let mut reach: HashMap<u32, f64> = HashMap::new();
         for h in connectivity.boundary() {
             let (tail, head) = (connectivity.tail(h), connectivity.head(h));
             let length = distance(positions[tail as usize], positions[head as usize]);
             for v in [tail, head] {
-                reach.entry(v).and_modify(|least| *least = least.min(OF_EDGE * length)).or_insert(OF_EDGE * length);
+                reach
+                    .entry(v)
+                    .and_modify(|least| *least = least.min(OF_EDGE * length))
+                    .or_insert(OF_EDGE * length);
             }
         }
         if reach.is_empty() {
@@ -49,7 +58,8 @@ impl Weld {
             }
             None => rounding(reach.keys().map(|&v| positions[v as usize])),
         };
-        let mut border: Vec<(u32, f64)> = reach.into_iter().map(|(v, least)| (v, least.min(tolerance))).collect();
+        let mut border: Vec<(u32, f64)> =
+            reach.into_iter().map(|(v, least)| (v, least.min(tolerance))).collect();
         border.sort_unstable_by_key(|&(v, _)| v);
         let mut partition = Partition::new(positions.len());
         if !unite_near(&border, positions, tolerance, &mut partition) {
@@ -82,8 +92,8 @@ impl Weld {
     }
 }
 
-/// How far apart roundings of one place may be, by the `points` that were rounded: those on borders, so that a closed surface of any
-/// size costs nothing.
+/// How far apart roundings of one place may be, by the `points` that were rounded: those on borders, so that
+/// a closed surface of any size costs nothing.
 pub(super) fn rounding(points: impl Iterator<Item = Point>) -> f64 {
     let (mut low, mut high, mut largest) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], 0.0_f64);
     let mut is_single = true;
@@ -102,12 +112,13 @@ pub(super) fn rounding(points: impl Iterator<Item = Point>) -> f64 {
     (SIX_DIGITS * size).max(UNITS * unit * largest)
 }
 
-/// Unites vertices, each with its own reach, that are no farther apart in any coordinate; returns whether there were any.
+/// Unites vertices, each with its own reach, that are no farther apart in any coordinate;
+/// returns whether there were any.
 fn unite_near(border: &[(u32, f64)], positions: &[Point], tolerance: f64, partition: &mut Partition) -> bool {
     let origin = positions[border[0].0 as usize];
     let width = tolerance.max(f64::MIN_POSITIVE);
-    // Cells as wide as the tolerance: what is near lies in the next one at most. Beyond 2^53 of them cells are not neighbors, but
-    // then coordinates are not told apart either.
+    // Cells as wide as the tolerance: what is near lies in the next one at most. Beyond 2^53 of them cells
+    // are not neighbors, but then coordinates are not told apart either.
     let cell = |v: u32| sub(positions[v as usize], origin).map(|x| (x / width).floor());
     let key = |cell: Point| cell.map(|x| (x + 0.0).to_bits());
     let mut cells: HashMap<[u64; 3], Vec<(u32, f64)>> = HashMap::with_capacity(border.len());
@@ -115,11 +126,15 @@ fn unite_near(border: &[(u32, f64)], positions: &[Point], tolerance: f64, partit
     for &(v, reach) in border {
         let at = cell(v);
         for step in 0..27 {
-            let near =
-                [at[0] + f64::from(step % 3 - 1), at[1] + f64::from(step / 3 % 3 - 1), at[2] + f64::from(step / 9 - 1)];
+            let near = [
+                at[0] + f64::from(step % 3 - 1),
+                at[1] + f64::from(step / 3 % 3 - 1),
+                at[2] + f64::from(step / 9 - 1),
+            ];
             for &(w, other) in cells.get(&key(near)).into_iter().flatten() {
-                let apart =
-                    sub(positions[v as usize], positions[w as usize]).into_iter().fold(0.0, |a: f64, x| a.max(x.abs()));
+                let apart = sub(positions[v as usize], positions[w as usize])
+                    .into_iter()
+                    .fold(0.0, |a: f64, x| a.max(x.abs()));
                 if apart <= reach.min(other) {
                     partition.unite(v, w);
                     any = true;
@@ -140,7 +155,8 @@ mod tests {
     /// Every triangle with vertices of its own, each coordinate off by up to `rounding`.
     fn soup(shape: &Shape, rounding: f64) -> Shape {
         let mut random = Random::new(5);
-        let vertices: Vec<Point> = shape.faces.iter().flatten().map(|&v| shape.vertices[v as usize]).collect();
+        let vertices: Vec<Point> =
+            shape.faces.iter().flatten().map(|&v| shape.vertices[v as usize]).collect();
         let faces = (0..shape.faces.len() as u32).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect();
         Shape { vertices, faces }.map(|p| p.map(|x| x + rounding * random.symmetric()))
     }

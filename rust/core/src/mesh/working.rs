@@ -1,5 +1,5 @@
-//! The mesh that tools compute on: neighboring faces agree on what is outside, the sides of seams are joined, and the origin is
-//! near. What comes out is given back for the mesh as it was.
+//! The mesh that tools compute on: neighboring faces agree on what is outside, the sides of seams are joined,
+//! and the origin is near. What comes out is given back for the mesh as it was.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -10,8 +10,8 @@ use crate::mesh::vector::{add, sub, Point};
 use crate::mesh::{flipped_faces, EdgeKind, Mesh, Weld};
 use crate::Result;
 
-/// A coordinate of all vertices that is so many times as large as the range that they take is measured from one of them: below,
-/// subtracting squares of it loses no more than the last digits.
+/// A coordinate of all vertices that is so many times as large as the range that they take is measured from
+/// one of them: below, subtracting squares of it loses no more than the last digits.
 const FAR: f64 = 16.0;
 
 /// A mesh made ready to be computed on. The faces are as many and in the order of the mesh's.
@@ -26,18 +26,20 @@ pub struct Working<'a> {
 }
 
 impl<'a> Working<'a> {
-    /// The mesh with its faces oriented ([`flipped_faces`]), its seams joined ([`Weld::of_seams`]) and its origin near; the mesh itself
-    /// where that changes nothing.
+    /// The mesh with its faces oriented ([`flipped_faces`]), its seams joined ([`Weld::of_seams`]) and its
+    /// origin near; the mesh itself where that changes nothing.
     ///
     /// # Errors
     /// [`crate::Error::Memory`] where a copy does not fit.
     pub fn new(mesh: &'a Mesh) -> Result<Self> {
         mesh.demand(Tool::Mesh).admit(None)?;
-        let weld = mesh.positions().and_then(|positions| Weld::of_seams(mesh.connectivity(), positions, None));
+        let weld =
+            mesh.positions().and_then(|positions| Weld::of_seams(mesh.connectivity(), positions, None));
         Self::of(mesh, weld)
     }
 
-    /// The same with the vertices as they are, for functions on them, which may differ between the sides of a seam.
+    /// The same with the vertices as they are, for functions on them,
+    /// which may differ between the sides of a seam.
     ///
     /// # Errors
     /// [`crate::Error::Memory`] where a copy does not fit.
@@ -53,7 +55,9 @@ impl<'a> Working<'a> {
             let near = |p: &Point| sub(*p, origin);
             let faces = mesh.connectivity().faces();
             let (positions, faces): (Vec<Point>, _) = match &working.weld {
-                Some(weld) => (weld.first.iter().map(|&v| near(&positions[v as usize])).collect(), weld.faces(faces)),
+                Some(weld) => {
+                    (weld.first.iter().map(|&v| near(&positions[v as usize])).collect(), weld.faces(faces))
+                }
                 None => (positions.iter().map(near).collect(), faces.to_vec()),
             };
             working.mesh = Cow::Owned(Mesh::new(positions, faces)?);
@@ -164,7 +168,8 @@ impl<'a> Working<'a> {
         (0..).zip(before).map(position).collect()
     }
 
-    /// The vertices of the mesh at the border edges here whose vertices are several of the mesh: by tail and head here.
+    /// The vertices of the mesh at the border edges here whose vertices are several of the mesh:
+    /// by tail and head here.
     #[must_use]
     pub fn seam_edges(&self) -> HashMap<[u32; 2], [u32; 2]> {
         let (connectivity, faces) = (self.mesh.connectivity(), self.original.connectivity().faces());
@@ -182,8 +187,8 @@ impl<'a> Working<'a> {
     }
 }
 
-/// The origin that brings vertices near: for each coordinate 0, or that of the first vertex where all are far away beside the
-/// range that they take. Such a coordinate is subtracted, and added again, without rounding.
+/// The origin that brings vertices near: for each coordinate 0, or that of the first vertex where all are far
+/// away beside the range that they take. Such a coordinate is subtracted, and added again, without rounding.
 fn far_origin(positions: &[Point]) -> Point {
     let Some(&first) = positions.first() else { return [0.0; 3] };
     let is_far = |c: usize| {
@@ -221,7 +226,9 @@ mod tests {
 
     #[test]
     fn a_plain_mesh_is_computed_on_as_it_is() {
-        for shape in [shapes::cube(3), shapes::grid(4, 4), shapes::torus(6, 5, 2.0, 0.5).map(|p| add(p, [9.0; 3]))] {
+        for shape in
+            [shapes::cube(3), shapes::grid(4, 4), shapes::torus(6, 5, 2.0, 0.5).map(|p| add(p, [9.0; 3]))]
+        {
             assert!(Working::new(&shape.mesh().unwrap()).unwrap().is_plain());
         }
     }

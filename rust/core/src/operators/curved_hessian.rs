@@ -1,21 +1,25 @@
-//! The curved Hessian energy (Stein et al. 2020a): intrinsic, with natural boundary conditions, `∫ ‖∇du‖² + κ |du|²`.
+//! The curved Hessian energy (Stein et al. 2020a): intrinsic,
+//! with natural boundary conditions, `∫ ‖∇du‖² + κ |du|²`.
 //!
-//! The gradient becomes a Crouzeix-Raviart field `V`: a vector `V_e` at the midpoint of every edge, the mean of the gradients on
-//! its two faces by area, unfolded about the edge. Seen from face `f` that is the face's own gradient plus a correction,
-//! `V_e = ∇u_f + c_e`, `c_e = A_g / (A_f + A_g) · jump_e · n_e`, with the [`Hinge::jump`] across the edge; so everything is
-//! computed face by face, in its frame, without a frame for edges.
+//! The gradient becomes a Crouzeix-Raviart field `V`: a vector `V_e` at the midpoint of every edge, the mean
+//! of the gradients on its two faces by area, unfolded about the edge. Seen from face `f` that is the face's
+//! own gradient plus a correction, `V_e = ∇u_f + c_e`, `c_e = A_g / (A_f + A_g) · jump_e · n_e`, with the
+//! [`Hinge::jump`] across the edge; so everything is computed face by face, in its frame, without a frame for
+//! edges.
 
 use crate::block_rows::{BlockRows, BLOCK};
 use crate::mesh::{triangle, Mesh};
 use crate::operators::hinge::{directions, usable_areas, Hinge};
 use crate::operators::vertex_weights::is_boundary;
 
-/// A linear function of the values at the face's corners 0, 1, 2 and the vertices opposite its halfedges 0, 1, 2.
+/// A linear function of the values at the face's corners 0, 1,
+/// 2 and the vertices opposite its halfedges 0, 1, 2.
 type Row = [f64; 6];
 
-/// Rows and signed weights with `∫ ‖∇du‖² + κ |du|² = Σ_b weight_b ‖(rows u)_b‖²` (Stein et al. 2020a, eq. (1), twice its energy):
-/// five blocks a face. The weights of the last three are the parts of the corners' angle defects that belong to the face,
-/// negative where the surface is saddle-shaped; defects at the boundary count as zero.
+/// Rows and signed weights with `∫ ‖∇du‖² + κ |du|² = Σ_b weight_b ‖(rows u)_b‖²` (Stein et al. 2020a, eq.
+/// (1), twice its energy): five blocks a face. The weights of the last three are the parts of the corners'
+/// angle defects that belong to the face, negative where the surface is saddle-shaped; defects at the
+/// boundary count as zero.
 ///
 /// The face weights, 1 where none are given, scale all blocks of their face.
 #[must_use]
@@ -32,7 +36,9 @@ pub fn curved_hessian_squares(mesh: &Mesh, face_weights: Option<&[f64]>) -> (Blo
         // Of each component, the rows of the three edges.
         let mut corrections: [[Row; 3]; 2] = [[[0.0; 6]; 3]; 2];
         for (i, direction) in directions(lengths[f], areas[f]).into_iter().enumerate() {
-            let Some(twin) = connectivity.twin(3 * f + i).filter(|twin| areas[twin / 3] > 0.0) else { continue };
+            let Some(twin) = connectivity.twin(3 * f + i).filter(|twin| areas[twin / 3] > 0.0) else {
+                continue;
+            };
             vertices[3 + i] = connectivity.opposite(twin);
             let share = areas[twin / 3] / (areas[f] + areas[twin / 3]);
             let normal = [-direction[1], direction[0]];
@@ -47,7 +53,8 @@ pub fn curved_hessian_squares(mesh: &Mesh, face_weights: Option<&[f64]>) -> (Blo
             rows.push_block((0..6).map(|place| (vertices[place], block.map(|row| row[place]))));
             weights.push(face_weights.map_or(1.0, |w| w[f]) * weight);
         };
-        // The shape functions are 1 − 2λ_e, so that ∇V = −2 Σ_e c_e ⊗ ∇λ_e; the face's own gradient drops out.
+        // The shape functions are 1 − 2λ_e, so that ∇V = −2 Σ_e c_e ⊗ ∇λ_e;
+        // the face's own gradient drops out.
         for component in &corrections {
             let along = |k: usize| sum([0, 1, 2].map(|e| (-2.0 * hats[e][k], component[e])));
             push([along(0), along(1), [0.0; 6]], areas[f]);

@@ -3,8 +3,8 @@
 use crate::operators::hinge::Hinge;
 use crate::operators::Dual;
 
-/// Two circumcenters coincide when the cotangents of the angles opposite their edge cancel to this part of their size;
-/// rounding leaves some 1e-15 on squares split along the diagonal, more on slivers.
+/// Two circumcenters coincide when the cotangents of the angles opposite their edge cancel to this part of
+/// their size; rounding leaves some 1e-15 on squares split along the diagonal, more on slivers.
 const COINCIDENT_CIRCUMCENTERS: f64 = 1e-10;
 
 /// A dual edge in the frame of its [`Hinge`]: x along the halfedge, y into the face.
@@ -41,7 +41,8 @@ impl DualEdge {
     }
 
     /// What a unit jump of the gradient along the halfedge's normal adds to the face's Hessian times `area`:
-    /// `(1/l*) (n · t) t ⊗ t` (Rowe et al. 2024, eqs. (16) and (17), and supplement A) as `xx, yy, √2·xy` in the face's frame.
+    /// `(1/l*) (n · t) t ⊗ t` (Rowe et al. 2024, eqs. (16) and (17), and supplement A) as `xx, yy, √2·xy` in
+    /// the face's frame.
     pub(crate) fn tensor(self, direction: [f64; 2], area: f64) -> [f64; 3] {
         let Self([along, across]) = self;
         let [x, y] = self.turned(direction);

@@ -6,7 +6,8 @@ use crate::operators::hessian::assembled;
 use crate::operators::hinge::usable_areas;
 use crate::operators::vertex_weights::of_vertices;
 use crate::operators::{
-    curved_hessian_squares, edge_laplacian_rows, laplacian_squares, mixed_hessian_rows, mixed_hessian_squares, Dual,
+    curved_hessian_squares, edge_laplacian_rows, laplacian_squares, mixed_hessian_rows,
+    mixed_hessian_squares, Dual,
 };
 use crate::unit::Unit;
 use crate::{Error, Result};
@@ -17,7 +18,8 @@ pub enum Energy {
     /// `E_H = Σ_f A_f ‖H_f u‖` (Rowe et al. 2024, eq. (18)): sharp ridges, intrinsic.
     #[default]
     L1Hessian,
-    /// `½ ∫ ‖H_u‖²` with natural boundary conditions, on the coordinates of space (Stein et al. 2018b): smooth.
+    /// `½ ∫ ‖H_u‖²` with natural boundary conditions, on the coordinates of space (Stein et al. 2018b):
+    /// smooth.
     L2Hessian,
     /// `½ ∫ ‖∇du‖² + κ |du|²` with natural boundary conditions, intrinsic (Stein et al. 2020a): smooth.
     L2CurvedHessian,
@@ -83,16 +85,19 @@ pub struct EnergyForm {
 impl EnergyForm {
     /// The rows and weights of `energy` on `mesh`.
     ///
-    /// `face_weights` scale the energy of each face; a block that belongs to an edge or a vertex takes the mean of its faces'
-    /// weights, by area at a vertex. `dual` is that of [`Energy::L1Hessian`]; the others have no dual edges.
+    /// `face_weights` scale the energy of each face; a block that belongs to an edge or a vertex takes the
+    /// mean of its faces' weights, by area at a vertex. `dual` is that of [`Energy::L1Hessian`]; the others
+    /// have no dual edges.
     ///
     /// # Errors
-    /// [`Error::Argument`] for another dual than the default where there is none, or face weights of the wrong length;
-    /// [`crate::error::MeshError`] for a zero circumcentric dual edge, missing positions, or a mesh without any block.
+    /// [`Error::Argument`] for another dual than the default where there is none, or face weights of the
+    /// wrong length; [`crate::error::MeshError`] for a zero circumcentric dual edge, missing positions, or a
+    /// mesh without any block.
     pub fn new(energy: Energy, mesh: &Mesh, face_weights: Option<&[f64]>, dual: Dual) -> Result<Self> {
         let (connectivity, lengths) = (mesh.connectivity(), mesh.edge_lengths());
         if energy != Energy::L1Hessian && dual != Dual::default() {
-            let problem = format!("the energy {} has no dual edges; leave dual at its default", energy.name());
+            let problem =
+                format!("the energy {} has no dual edges; leave dual at its default", energy.name());
             return Err(Error::argument("dual", problem));
         }
         if let Some(found) = face_weights.map(<[f64]>::len).filter(|found| *found != connectivity.n_faces()) {
@@ -108,7 +113,8 @@ impl EnergyForm {
             }
             Energy::L2Laplacian => (laplacian_squares(connectivity, lengths), at_vertices()),
             Energy::L2Hessian | Energy::L1HessianStein2018 => {
-                let make = if energy == Energy::L2Hessian { mixed_hessian_squares } else { mixed_hessian_rows };
+                let make =
+                    if energy == Energy::L2Hessian { mixed_hessian_squares } else { mixed_hessian_rows };
                 let (rows, vertices) = make(mesh)?;
                 let weights = at_vertices().map(|w| vertices.iter().map(|&v| w[v as usize]).collect());
                 (rows, weights)
@@ -123,8 +129,8 @@ impl EnergyForm {
         Ok(Self { operator, weights, energy })
     }
 
-    /// The energy of `values` (column-major, a row a vertex): one norm a block over all columns, or the sum of the columns'
-    /// energies where it is quadratic. For [`Energy::L1Hessian`]: Rowe et al. 2024, eq. (18).
+    /// The energy of `values` (column-major, a row a vertex): one norm a block over all columns, or the sum
+    /// of the columns' energies where it is quadratic. For [`Energy::L1Hessian`]: Rowe et al. 2024, eq. (18).
     ///
     /// # Errors
     /// [`Error::Argument`] if `values` are not whole columns.
@@ -139,11 +145,18 @@ impl EnergyForm {
     }
 }
 
-/// The energy of `values` on `mesh`, both of any size: [`EnergyForm::new`] and [`EnergyForm::evaluate`] in their own units.
+/// The energy of `values` on `mesh`, both of any size:
+/// [`EnergyForm::new`] and [`EnergyForm::evaluate`] in their own units.
 ///
 /// # Errors
 /// Those of both, and [`crate::error::SolveError::NoNumber`].
-pub fn energy(kind: Energy, mesh: &Mesh, values: &[f64], face_weights: Option<&[f64]>, dual: Dual) -> Result<f64> {
+pub fn energy(
+    kind: Energy,
+    mesh: &Mesh,
+    values: &[f64],
+    face_weights: Option<&[f64]>,
+    dual: Dual,
+) -> Result<f64> {
     let (length, value) = (mesh.unit(), Unit::of(values.iter().copied()));
     let form = EnergyForm::new(kind, mesh.measured(length)?.as_ref(), face_weights, dual)?;
     kind.unit(length, value).restore_finite("the energy", form.evaluate(&value.measure_all(values))?)

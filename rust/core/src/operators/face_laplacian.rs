@@ -2,15 +2,15 @@
 
 use crate::mesh::{triangle, Connectivity};
 
-/// Distances between centroids below this part of their edge's length count as that much: two faces folded onto each other would
-/// be coupled infinitely strongly.
+/// Distances between centroids below this part of their edge's length count as that much: two faces folded
+/// onto each other would be coupled infinitely strongly.
 const LEAST_DISTANCE: f64 = 1e-3;
 
-/// The weight of every halfedge, one row a face, column `i` opposite corner `i`: the edge's length over the distance of its faces'
-/// `centroids` in space; 0 where there is no twin or a face without area.
+/// The weight of every halfedge, one row a face, column `i` opposite corner `i`: the edge's length over the
+/// distance of its faces' `centroids` in space; 0 where there is no twin or a face without area.
 ///
-/// With them the Dirichlet energy of a function `v` on the faces is `Σ weight (v_f − v_g)²` over the interior edges: the
-/// face Laplacian `L` of Rowe et al. 2024, supplement E (Desbrun et al. 2005).
+/// With them the Dirichlet energy of a function `v` on the faces is `Σ weight (v_f − v_g)²` over the interior
+/// edges: the face Laplacian `L` of Rowe et al. 2024, supplement E (Desbrun et al. 2005).
 #[must_use]
 pub fn face_laplacian_weights(
     connectivity: &Connectivity,

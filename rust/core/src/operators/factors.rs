@@ -1,5 +1,5 @@
-//! The four matrices whose product is the Hessian (Rowe et al. 2024, supplement A), one by one, to look at and to check
-//! the assembled [`super::hessian`] against.
+//! The four matrices whose product is the Hessian (Rowe et al. 2024, supplement A), one by one, to look at
+//! and to check the assembled [`super::hessian`] against.
 
 use sprs::{CsMat, TriMat};
 
@@ -9,8 +9,8 @@ use crate::operators::dual::DualEdge;
 use crate::operators::hinge::{directions, usable_areas, Hinge};
 use crate::operators::Dual;
 
-/// The gradient `G` (Rowe et al. 2024, eqs. (19) and (28)): `2m × n`, rows `x, y` of every face's gradient in the frame of
-/// [`triangle::layout`]. Degenerate faces have zero rows.
+/// The gradient `G` (Rowe et al. 2024, eqs. (19) and (28)): `2m × n`, rows `x, y` of every face's gradient in
+/// the frame of [`triangle::layout`]. Degenerate faces have zero rows.
 #[must_use]
 pub fn gradient(mesh: &Mesh) -> CsMat<f64> {
     let connectivity = mesh.connectivity();
@@ -28,8 +28,9 @@ pub fn gradient(mesh: &Mesh) -> CsMat<f64> {
     entries.to_csr()
 }
 
-/// The hinge map `C` (Rowe et al. 2024, eqs. (15), (20) and (29)): `6m × 2m`, rows `2h, 2h + 1` the difference across halfedge `h` of the
-/// neighbor's gradient, turned into the frame of the face, and the face's own. Edges without a usable twin have zero rows.
+/// The hinge map `C` (Rowe et al. 2024, eqs. (15), (20) and (29)): `6m × 2m`, rows `2h, 2h + 1` the
+/// difference across halfedge `h` of the neighbor's gradient, turned into the frame of the face, and the
+/// face's own. Edges without a usable twin have zero rows.
 #[must_use]
 pub fn hinge_map(mesh: &Mesh) -> CsMat<f64> {
     let m = mesh.connectivity().n_faces();

@@ -1,13 +1,15 @@
 //! The surface Hessian `H = M_F T C G` (Rowe et al. 2024, eq. (30)) in one pass over the faces.
 //!
-//! Across an edge of length `l` the gradient of a continuous function jumps only along the edge's normal. With `n` the
-//! unit normal into face `f`, `(s_f, h_f)` the foot and height of the opposite corner and `(s_g, h_g)` those of the
-//! neighbor unfolded into the plane of `f` ([`triangle::apex`]), that jump is a number times `n`,
+//! Across an edge of length `l` the gradient of a continuous function jumps only along the edge's normal.
+//! With `n` the unit normal into face `f`, `(s_f, h_f)` the foot and height of the opposite corner and
+//! `(s_g, h_g)` those of the neighbor unfolded into the plane of `f` ([`triangle::apex`]), that jump is a
+//! number times `n`,
 //!
-//! `δ = n [((1 − s_f/l)/h_f + (1 − s_g/l)/h_g) u_tail + (s_f/(l h_f) + s_g/(l h_g)) u_head − u_f/h_f − u_g/h_g]`,
+//! `δ = n [((1 − s_f/l)/h_f + (1 − s_g/l)/h_g) u_tail + (s_f/(l h_f) + s_g/(l h_g)) u_head`
+//! `− u_f/h_f − u_g/h_g]`,
 //!
-//! so the composition of the gradient (28), the hinge map (29) and the tensor product needs neither a basis for the
-//! neighbor nor a rotation. The matrices one by one are in [`super::factors`].
+//! so the composition of the gradient (28), the hinge map (29) and the tensor product needs neither a basis
+//! for the neighbor nor a rotation. The matrices one by one are in [`super::factors`].
 
 use crate::block_rows::{BlockRows, BLOCK};
 use crate::error::{Error, MeshError};
@@ -73,7 +75,8 @@ impl HessianPattern {
     /// The matrix for the given edge lengths: rows `xx, yy, √2·xy` of every face's Hessian in the frame of
     /// [`triangle::layout`], times its area.
     ///
-    /// Faces that are degenerate ([`triangle::is_degenerate`]) have zero rows and count as missing for their neighbors.
+    /// Faces that are degenerate ([`triangle::is_degenerate`]) have zero rows and count as missing for their
+    /// neighbors.
     ///
     /// # Errors
     /// [`MeshError::ZeroDualEdge`] with circumcentric duals where two circumcenters coincide;
@@ -140,7 +143,8 @@ fn face_block(
     for (i, direction) in directions(lengths[f], areas[f]).into_iter().enumerate() {
         let Some(twin) = connectivity.twin(3 * f + i).filter(|twin| areas[twin / 3] > 0.0) else { continue };
         let hinge = Hinge::new(lengths, areas, 3 * f + i, twin);
-        let edge = DualEdge::new(dual, &hinge).ok_or(MeshError::ZeroDualEdge { face: f, neighbor: twin / 3 })?;
+        let edge =
+            DualEdge::new(dual, &hinge).ok_or(MeshError::ZeroDualEdge { face: f, neighbor: twin / 3 })?;
         let tensor = edge.tensor(direction, areas[f]);
         for (place, coefficient) in [(i + 1) % 3, (i + 2) % 3, i, i + 3].into_iter().zip(hinge.jump()) {
             for (value, t) in stencil[place].iter_mut().zip(tensor) {
@@ -151,8 +155,8 @@ fn face_block(
     Ok(stencil)
 }
 
-/// The matrix `H` of Rowe et al. 2024, eq. (30): `4m × n`, rows `xx, xy, yx, yy` of every face's Hessian times its area,
-/// in the frame of eq. (28).
+/// The matrix `H` of Rowe et al. 2024, eq. (30): `4m × n`, rows `xx, xy, yx, yy` of every face's Hessian
+/// times its area, in the frame of eq. (28).
 ///
 /// # Errors
 /// [`MeshError::ZeroDualEdge`] with circumcentric duals where two circumcenters coincide.
@@ -182,18 +186,19 @@ pub(super) fn assembled(mesh: &Mesh, dual: Dual) -> Result<BlockRows, MeshError>
     pattern.assemble(mesh.connectivity(), mesh.edge_lengths(), dual)
 }
 
-/// The Frobenius norm `‖H_f(u)‖` of every face's Hessian, not times its area, of `values` (column-major, `n` rows): one
-/// number a face, jointly over the columns. Degenerate faces have 0.
+/// The Frobenius norm `‖H_f(u)‖` of every face's Hessian, not times its area, of `values` (column-major, `n`
+/// rows): one number a face, jointly over the columns. Degenerate faces have 0.
 ///
 /// # Errors
-/// [`Error::Argument`] if `values` are not whole columns, [`crate::error::SolveError::NoNumber`], and the errors of
-/// [`hessian`].
+/// [`Error::Argument`] if `values` are not whole columns, [`crate::error::SolveError::NoNumber`],
+/// and the errors of [`hessian`].
 pub fn hessian_norm(mesh: &Mesh, values: &[f64], dual: Dual) -> Result<Vec<f64>, Error> {
     let (length, value) = (mesh.unit(), Unit::of(values.iter().copied()));
     let unit = value.times(length.power(-2));
     let mesh = mesh.measured(length)?;
     let rows = assembled(&mesh, dual)?;
-    let mut norms: Vec<f64> = rows.block_squares(&value.measure_all(values))?.into_iter().map(f64::sqrt).collect();
+    let mut norms: Vec<f64> =
+        rows.block_squares(&value.measure_all(values))?.into_iter().map(f64::sqrt).collect();
     for (norm, &l) in norms.iter_mut().zip(mesh.edge_lengths()) {
         if *norm > 0.0 {
             *norm = unit.restore_finite("the Hessian", *norm / triangle::area(l))?;

@@ -13,8 +13,8 @@ pub(crate) fn directions(l: [f64; 3], area: f64) -> [[f64; 2]; 3] {
     [[(s - l[2]) / l[0], h / l[0]], [-s / l[1], -h / l[1]], [1.0, 0.0]]
 }
 
-/// Two faces unfolded into one plane about their shared edge. Origin at the start of the halfedge of `f`, x along it,
-/// y into `f`.
+/// Two faces unfolded into one plane about their shared edge. Origin at the start of the halfedge of `f`,
+/// x along it, y into `f`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Hinge {
     /// Length of the shared edge.
@@ -35,8 +35,8 @@ impl Hinge {
         Self { length, face: triangle::apex(lengths[f], h % 3, areas[f]), neighbor: [length - foot, height] }
     }
 
-    /// The jump of the gradient, neighbor less face, along the normal into `f`: the coefficients of the values at the
-    /// halfedge's tail and head, at the opposite corner of `f` and at that of the neighbor.
+    /// The jump of the gradient, neighbor less face, along the normal into `f`: the coefficients of the
+    /// values at the halfedge's tail and head, at the opposite corner of `f` and at that of the neighbor.
     pub(crate) fn jump(&self) -> [f64; 4] {
         let ([s_f, h_f], [s_g, h_g]) = (self.face, self.neighbor);
         let (face, neighbor) = (1.0 / h_f, 1.0 / h_g);

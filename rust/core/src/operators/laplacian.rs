@@ -5,8 +5,9 @@ use crate::buckets::Buckets;
 use crate::mesh::{triangle, Connectivity};
 use crate::operators::voronoi_mass;
 
-/// The cotangent Laplacian (Pinkall and Polthier 1993), `n × n`, symmetric and positive semidefinite: `uᵀ L u = ∫ |∇u|²` for
-/// the piecewise linear `u`. Off the diagonal it has `−(cot α + cot β) / 2`; its rows sum to 0.
+/// The cotangent Laplacian (Pinkall and Polthier 1993), `n × n`, symmetric and positive semidefinite:
+/// `uᵀ L u = ∫ |∇u|²` for the piecewise linear `u`. Off the diagonal it has `−(cot α + cot β) / 2`; its rows
+/// sum to 0.
 ///
 /// Degenerate faces ([`triangle::is_degenerate`]) contribute nothing.
 #[must_use]
@@ -35,11 +36,13 @@ pub fn cotangent_laplacian(connectivity: &Connectivity, lengths: &[[f64; 3]]) ->
         let row = neighbors.of_mut(v);
         // Stable, so that both rows of an edge add its weights in the same order: symmetric to the last bit.
         row.sort_by_key(|&(column, _)| column);
-        let diagonal: f64 = row.iter().filter(|&&(column, _)| column as usize != v).map(|(_, weight)| weight).sum();
+        let diagonal: f64 =
+            row.iter().filter(|&&(column, _)| column as usize != v).map(|(_, weight)| weight).sum();
         let place = row.partition_point(|&(column, _)| (column as usize) < v);
         let before = row[..place].chunk_by(|a, b| a.0 == b.0);
         let after = row[place..].chunk_by(|a, b| a.0 == b.0).filter(|edge| edge[0].0 as usize != v);
-        let weights = |edge: &[(u32, f64)]| (edge[0].0 as usize, -edge.iter().map(|(_, weight)| weight).sum::<f64>());
+        let weights =
+            |edge: &[(u32, f64)]| (edge[0].0 as usize, -edge.iter().map(|(_, weight)| weight).sum::<f64>());
         for (column, value) in before.map(weights).chain([(v, diagonal)]).chain(after.map(weights)) {
             indices.push(column);
             data.push(value);
@@ -49,11 +52,12 @@ pub fn cotangent_laplacian(connectivity: &Connectivity, lengths: &[[f64; 3]]) ->
     sprs::CsMat::new((n, n), indptr, indices, data)
 }
 
-/// Rows whose squares sum to `∫ |Δu|² = uᵀ L M⁻¹ L u` (Rowe et al. 2024, eq. (1), left, twice): a block a vertex, its only
-/// nonzero row `(L u)_v / √M_v`, with the [`cotangent_laplacian`] `L` and the [`voronoi_mass`] `M`.
+/// Rows whose squares sum to `∫ |Δu|² = uᵀ L M⁻¹ L u` (Rowe et al. 2024, eq. (1), left, twice): a block a
+/// vertex, its only nonzero row `(L u)_v / √M_v`, with the [`cotangent_laplacian`] `L` and the
+/// [`voronoi_mass`] `M`.
 ///
-/// At the boundary `L` itself sets the normal derivative to zero (zero Neumann conditions). Vertices without mass have an
-/// empty block.
+/// At the boundary `L` itself sets the normal derivative to zero (zero Neumann conditions). Vertices without
+/// mass have an empty block.
 #[must_use]
 pub fn laplacian_squares(connectivity: &Connectivity, lengths: &[[f64; 3]]) -> BlockRows {
     let laplacian = cotangent_laplacian(connectivity, lengths);

@@ -5,8 +5,8 @@ use crate::Result;
 
 /// The mixed Voronoi area of every vertex (Meyer et al. 2003), `n` values that sum to the total area.
 ///
-/// A triangle without an obtuse angle is split by its Voronoi cells; an obtuse one gives half its area to the obtuse
-/// corner and a quarter to each of the others. Unreferenced vertices get 0.
+/// A triangle without an obtuse angle is split by its Voronoi cells; an obtuse one gives half its area to the
+/// obtuse corner and a quarter to each of the others. Unreferenced vertices get 0.
 #[must_use]
 pub fn voronoi_mass(connectivity: &Connectivity, lengths: &[[f64; 3]]) -> Vec<f64> {
     let mut mass = vec![0.0; connectivity.n_vertices()];

@@ -1,7 +1,8 @@
-//! The Hessian by mixed finite elements on the coordinates of space (Stein et al. 2018b): at inner vertices, not intrinsic.
+//! The Hessian by mixed finite elements on the coordinates of space (Stein et al. 2018b):
+//! at inner vertices, not intrinsic.
 //!
-//! Its entry `ij` at vertex `v` is `−∫ ∂_i φ_v ∂_j u / M_v`, with the hat function `φ_v` and gradients in space. Leaving the
-//! vertices of the boundary out is what makes the natural boundary conditions.
+//! Its entry `ij` at vertex `v` is `−∫ ∂_i φ_v ∂_j u / M_v`, with the hat function `φ_v` and gradients in
+//! space. Leaving the vertices of the boundary out is what makes the natural boundary conditions.
 
 use crate::block_rows::{BlockRows, BLOCK};
 use crate::buckets::Buckets;
@@ -14,9 +15,10 @@ use crate::operators::voronoi_mass;
 /// Per vertex of a one-ring, the 3 × 3 matrix `∫ ∇φ_v ⊗ ∇φ_w`.
 type Ring = Vec<(u32, [[f64; 3]; 3])>;
 
-/// The nine entries `∫ ∂_i φ_v ∂_j u` of the Hessian of Stein et al. 2018b times the mass, at every inner vertex, each a block
-/// of its own with one row, since the L1 energy of Stein et al. 2018b, appendix C, sums their absolute values; and the
-/// vertex of each block. Entries that are zero for every `u`, as those across a plane of coordinates, have no block.
+/// The nine entries `∫ ∂_i φ_v ∂_j u` of the Hessian of Stein et al. 2018b times the mass, at every inner
+/// vertex, each a block of its own with one row, since the L1 energy of Stein et al. 2018b, appendix C, sums
+/// their absolute values; and the vertex of each block. Entries that are zero for every `u`, as those across
+/// a plane of coordinates, have no block.
 ///
 /// # Errors
 /// [`MeshError::NoPositions`] for a mesh that is known by its edge lengths only.
@@ -34,8 +36,9 @@ pub fn mixed_hessian_rows(mesh: &Mesh) -> Result<(BlockRows, Vec<u32>), MeshErro
     Ok((rows, vertices))
 }
 
-/// Rows whose squares sum to `∫ ‖H_u‖²` (Rowe et al. 2024, eq. (1), right, twice), discretized as in Stein et al. 2018b: three
-/// blocks of three at every inner vertex, divided by the root of its [`voronoi_mass`]; and the vertex of each block.
+/// Rows whose squares sum to `∫ ‖H_u‖²` (Rowe et al. 2024, eq. (1), right, twice), discretized as in Stein et
+/// al. 2018b: three blocks of three at every inner vertex, divided by the root of its [`voronoi_mass`]; and
+/// the vertex of each block.
 ///
 /// # Errors
 /// [`MeshError::NoPositions`] for a mesh that is known by its edge lengths only.
@@ -69,7 +72,13 @@ fn rings(mesh: &Mesh) -> Result<Vec<(u32, Ring)>, MeshError> {
         .iter()
         .zip(&areas)
         .map(
-            |(face, area)| if *area > 0.0 { hat_gradients(face.map(|v| positions[v as usize])) } else { [[0.0; 3]; 3] },
+            |(face, area)| {
+                if *area > 0.0 {
+                    hat_gradients(face.map(|v| positions[v as usize]))
+                } else {
+                    [[0.0; 3]; 3]
+                }
+            },
         )
         .collect();
     let mut place = vec![u32::MAX; connectivity.n_vertices()];

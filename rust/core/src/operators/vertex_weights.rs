@@ -14,7 +14,8 @@ pub(crate) fn of_vertices(connectivity: &Connectivity, areas: &[f64], weights: &
     sums.into_iter().map(|[sum, area]| if area > 0.0 { sum / area } else { 1.0 }).collect()
 }
 
-/// Which vertices touch an edge that has not exactly two faces with an area, alike oriented: where a surface ends.
+/// Which vertices touch an edge that has not exactly two faces with an area, alike oriented:
+/// where a surface ends.
 pub(crate) fn is_boundary(connectivity: &Connectivity, areas: &[f64]) -> Vec<bool> {
     let mut boundary = vec![false; connectivity.n_vertices()];
     for h in (0..connectivity.n_halfedges()).filter(|h| areas[h / 3] > 0.0) {

@@ -5,7 +5,8 @@ use crate::mesh::vector::{add, area_vector, between, centroid, cross, dot, norm,
 /// Triangles a leaf holds: fewer make a deeper tree, more make more distances; 4 was fastest by a little.
 const LEAF: usize = 4;
 
-/// How far outside a triangle a ray still meets it, in parts of its edges: so that none slips through between two.
+/// How far outside a triangle a ray still meets it, in parts of its edges:
+/// so that none slips through between two.
 const EDGE: f64 = 1e-9;
 
 /// A point on one of the triangles.
@@ -62,8 +63,11 @@ impl ClosestPoint {
             return;
         }
         let extent = sub(high, low);
-        let axis =
-            if extent[0] >= extent[1] && extent[0] >= extent[2] { 0 } else { 1 + usize::from(extent[2] > extent[1]) };
+        let axis = if extent[0] >= extent[1] && extent[0] >= extent[2] {
+            0
+        } else {
+            1 + usize::from(extent[2] > extent[1])
+        };
         let middle = (end - start) / 2;
         self.order[start..end].select_nth_unstable_by(middle, |&a, &b| {
             centers[a as usize][axis].total_cmp(&centers[b as usize][axis]).then(a.cmp(&b))
@@ -74,8 +78,8 @@ impl ClosestPoint {
         self.build(start + middle, end, centers);
     }
 
-    /// The point closest to `p` among the triangles that `accept` takes; `guess` is one that may be close. Of equally close
-    /// ones the first found is taken, always the same.
+    /// The point closest to `p` among the triangles that `accept` takes; `guess` is one that may be close. Of
+    /// equally close ones the first found is taken, always the same.
     #[must_use]
     pub fn closest(&self, p: Point, guess: Option<u32>, accept: impl Fn(u32) -> bool) -> Option<Closest> {
         let candidate = |triangle: u32| {
@@ -103,7 +107,8 @@ impl ClosestPoint {
                     }
                 }
             } else {
-                let mut children = [n + 1, node.start as usize].map(|c| (self.nodes[c].squared_distance(p), c));
+                let mut children =
+                    [n + 1, node.start as usize].map(|c| (self.nodes[c].squared_distance(p), c));
                 if children[0].0 < children[1].0 {
                     children.swap(0, 1);
                 }
@@ -113,8 +118,8 @@ impl ClosestPoint {
         best
     }
 
-    /// The first triangle that the ray from `from` along `direction` meets farther than `start` away, and how far, in lengths of
-    /// `direction`.
+    /// The first triangle that the ray from `from` along `direction` meets farther than `start` away, and how
+    /// far, in lengths of `direction`.
     #[must_use]
     pub fn first_hit(&self, from: Point, direction: Point, start: f64) -> Option<(f64, u32)> {
         let mut best: Option<(f64, u32)> = None;
@@ -156,7 +161,9 @@ impl ClosestPoint {
                 stack.extend([node.start as usize, n + 1]);
                 continue;
             }
-            self.order[node.start as usize..(node.start + node.count) as usize].iter().for_each(|&t| visit(t));
+            self.order[node.start as usize..(node.start + node.count) as usize]
+                .iter()
+                .for_each(|&t| visit(t));
         }
     }
 

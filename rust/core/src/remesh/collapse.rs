@@ -10,8 +10,8 @@ const SHORT: f64 = 4.0 / 5.0;
 /// A collapse can make another one possible; after this many rounds hardly any is left.
 const ROUNDS: usize = 3;
 
-/// Collapses edges shorter than 4/5 of their target, shortest first, where that folds nothing and makes no edge that would be
-/// split again.
+/// Collapses edges shorter than 4/5 of their target, shortest first, where that folds nothing and makes no
+/// edge that would be split again.
 pub(crate) fn collapse_short_edges(remesher: &mut Remesher, progress: &Progress) {
     for _ in 0..ROUNDS {
         let is_short = |remesher: &Remesher, a: u32, b: u32| {

@@ -49,12 +49,14 @@ pub(crate) struct Keep<'a> {
 impl Curves {
     /// The curves of `mesh` and the role of every vertex.
     ///
-    /// Border and feature edges are curves; those between two fixed vertices, non-manifold edges, and the edges of
-    /// faces that stay are locked. A vertex is on a curve where exactly two curve edges meet without a corner; other vertices
-    /// of curve or locked edges are fixed.
+    /// Border and feature edges are curves; those between two fixed vertices, non-manifold edges, and the
+    /// edges of faces that stay are locked. A vertex is on a curve where exactly two curve edges meet without
+    /// a corner; other vertices of curve or locked edges are fixed.
     pub(crate) fn new(mesh: &EditableMesh, keep: &Keep) -> (Self, Vec<Role>) {
-        let (mut lines, mut locked, mut ends) = (Vec::new(), HashSet::new(), vec![Vec::new(); mesh.n_vertices()]);
-        let mut roles: Vec<Role> = keep.fixed.iter().map(|&f| if f { Role::Fixed } else { Role::Free }).collect();
+        let (mut lines, mut locked, mut ends) =
+            (Vec::new(), HashSet::new(), vec![Vec::new(); mesh.n_vertices()]);
+        let mut roles: Vec<Role> =
+            keep.fixed.iter().map(|&f| if f { Role::Fixed } else { Role::Free }).collect();
         let is_fixed = |v: u32| keep.fixed[v as usize];
         for [a, b] in mesh.edges() {
             let is_line = match mesh.edge(a, b) {
@@ -92,7 +94,8 @@ impl Curves {
             }
         }
         let (edges, count) = number_curves(&lines, &ends, &mut roles);
-        // A tree for each: in one tree for all, the closest of one curve is searched for among those of all others.
+        // A tree for each: in one tree for all, the closest of one curve is searched for among those of all
+        // others.
         let mut segments: Vec<Vec<[Point; 3]>> = vec![Vec::new(); count as usize];
         for line @ &[a, b] in &lines {
             if let Some(&curve) = edges.get(line) {
@@ -136,15 +139,16 @@ fn is_smooth(mesh: &EditableMesh, v: u32, ends: &[u32]) -> bool {
     match *ends {
         [] => true,
         [a, b] => {
-            let (before, after) = (sub(mesh.position(v), mesh.position(a)), sub(mesh.position(b), mesh.position(v)));
+            let (before, after) =
+                (sub(mesh.position(v), mesh.position(a)), sub(mesh.position(b), mesh.position(v)));
             dot(before, after) > CORNER_COSINE * norm(before) * norm(after)
         }
         _ => false,
     }
 }
 
-/// Numbers the curves: lines that meet at a vertex that is free to move along them are one. Gives those vertices their role.
-/// Returns the curve of every line, and how many there are.
+/// Numbers the curves: lines that meet at a vertex that is free to move along them are one. Gives those
+/// vertices their role. Returns the curve of every line, and how many there are.
 fn number_curves(lines: &[[u32; 2]], ends: &[Vec<u32>], roles: &mut [Role]) -> (HashMap<[u32; 2], u32>, u32) {
     let mut number: HashMap<[u32; 2], u32> = HashMap::with_capacity(lines.len());
     let mut count = 0;

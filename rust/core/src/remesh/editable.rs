@@ -7,31 +7,34 @@ use crate::mesh::vector::{area_vector, Point};
 pub use crate::remesh::edge::{key, Edge, Wings};
 
 /// The corners of a face that was removed.
-const GONE: [u32; 3] = [u32::MAX; 3];
+pub(super) const GONE: [u32; 3] = [u32::MAX; 3];
 
-/// More faces than this make a vertex a hub ([`EditableMesh::is_hub`]). Around one of 16,000 faces, an edge that collapses into
-/// it takes a thousandth of the time that it took when the vertex moved, and meshes without such vertices keep their bits.
+/// More faces than this make a vertex a hub ([`EditableMesh::is_hub`]). Around one of 16,000 faces, an edge
+/// that collapses into it takes a thousandth of the time that it took when the vertex moved, and meshes
+/// without such vertices keep their bits.
 const HUB: usize = 256;
 
 /// A triangle mesh under edit: positions, faces, and the faces of every vertex.
 ///
-/// Vertices and faces keep their numbers through every operation. A face that a collapse removes leaves its number empty,
-/// and so does a vertex; [`EditableMesh::into_parts`] closes the gaps. An edge is named by its two vertices, in any order.
+/// Vertices and faces keep their numbers through every operation. A face that a collapse removes leaves its
+/// number empty, and so does a vertex; [`EditableMesh::into_parts`] closes the gaps. An edge is named by its
+/// two vertices, in any order.
 ///
-/// The operations look after the connectivity alone: none ever makes an edge with three faces, a face that names a vertex
-/// twice, or two faces on the same three vertices, and each does nothing where it would. Whether the surface folds over is
-/// the business of [`super::guard`].
+/// The operations look after the connectivity alone: none ever makes an edge with three faces, a face that
+/// names a vertex twice, or two faces on the same three vertices, and each does nothing where it would.
+/// Whether the surface folds over is the business of [`super::guard`].
 #[derive(Debug, Clone)]
 pub struct EditableMesh {
-    positions: Vec<Point>,
-    faces: Vec<[u32; 3]>,
-    faces_of: Vec<Vec<u32>>,
+    pub(super) positions: Vec<Point>,
+    pub(super) faces: Vec<[u32; 3]>,
+    pub(super) faces_of: Vec<Vec<u32>>,
     forbidden: HashSet<[u32; 2]>,
     beyond: HashMap<[u32; 2], Point>,
 }
 
 impl EditableMesh {
-    /// A mesh from positions and vertex triples. Face numbers are kept; a face that names a vertex twice becomes empty.
+    /// A mesh from positions and vertex triples. Face numbers are kept;
+    /// a face that names a vertex twice becomes empty.
     ///
     /// # Errors
     /// [`MeshError::VertexOutOfRange`].
@@ -58,18 +61,20 @@ impl EditableMesh {
         Ok(mesh)
     }
 
-    /// Forbids an edge: no operation will make it. For edges that exist in a larger mesh of which this is a part.
+    /// Forbids an edge: no operation will make it. For edges that exist in a larger mesh of which this is a
+    /// part.
     pub fn forbid_edge(&mut self, a: u32, b: u32) {
         self.forbidden.insert(key(a, b));
     }
 
-    /// Says along which normal (of any length) a face lies beyond a border edge, in a larger mesh of which this is a part.
+    /// Says along which normal (of any length) a face lies beyond a border edge,
+    /// in a larger mesh of which this is a part.
     pub fn set_beyond(&mut self, a: u32, b: u32, normal: Point) {
         self.beyond.insert(key(a, b), normal);
     }
 
-    /// The area vector, or any other normal, of the face across the edge `a b` of a face in which `b` follows `a`; nothing
-    /// if there is none or it is not known.
+    /// The area vector, or any other normal, of the face across the edge `a b` of a face in which `b` follows
+    /// `a`; nothing if there is none or it is not known.
     #[must_use]
     pub fn normal_across(&self, a: u32, b: u32) -> Option<Point> {
         match self.edge(a, b) {
@@ -125,8 +130,9 @@ impl EditableMesh {
         &self.faces_of[v as usize]
     }
 
-    /// Whether `v` has so many faces that it stays where it is when edges collapse into it: each would turn all of them, so
-    /// that looking at them takes the square of their number. Poles of spheres have up to some hundred.
+    /// Whether `v` has so many faces that it stays where it is when edges collapse into it: each would turn
+    /// all of them, so that looking at them takes the square of their number. Poles of spheres have up to
+    /// some hundred.
     #[must_use]
     pub fn is_hub(&self, v: u32) -> bool {
         self.faces_of(v).len() > HUB
@@ -254,7 +260,8 @@ impl EditableMesh {
                             return count == faces.len();
                         }
                         count += 1;
-                        let Some(next) = self.faces[f as usize].into_iter().find(|&x| x != v && x != across) else {
+                        let Some(next) = self.faces[f as usize].into_iter().find(|&x| x != v && x != across)
+                        else {
                             return false;
                         };
                         across = next;
@@ -265,105 +272,8 @@ impl EditableMesh {
         count == faces.len()
     }
 
-    /// The two faces that [`EditableMesh::flip`] would make, in the place of `wings.faces`; nothing if it would refuse.
-    #[must_use]
-    pub fn flipped(&self, a: u32, b: u32) -> Option<[[u32; 3]; 2]> {
-        let Wings { tips: [left, right], .. } = self.wings(a, b)?;
-        (left != right && !self.is_taken(left, right)).then_some([[left, a, right], [right, b, left]])
-    }
-
-    /// Flips the edge `a b` into the other diagonal of its two faces, and returns its ends; does nothing and returns nothing
-    /// if the edge is not interior or the new one exists already or is forbidden. The two face numbers stay.
-    pub fn flip(&mut self, a: u32, b: u32) -> Option<[u32; 2]> {
-        let new = self.flipped(a, b)?;
-        let Wings { faces: [f, g], tips: [left, right] } = self.wings(a, b)?;
-        // `f` was a, b, left and loses b; `g` was b, a, right and loses a.
-        self.detach(b, f);
-        self.detach(a, g);
-        self.faces_of[right as usize].push(f);
-        self.faces_of[left as usize].push(g);
-        (self.faces[f as usize], self.faces[g as usize]) = (new[0], new[1]);
-        Some([left, right])
-    }
-
-    /// Splits the edge `a b` and its one or two faces at a new vertex at `position`, and returns that vertex; does nothing
-    /// and returns nothing if there is no such edge or it is not manifold.
-    ///
-    /// The old face numbers stay at `a`; the new faces at `b` are the last ones, that of `wings.faces[0]` first.
-    pub fn split(&mut self, a: u32, b: u32, position: Point) -> Option<u32> {
-        let faces: &[u32] = match &self.edge(a, b) {
-            Edge::Border(f, _) => &[*f],
-            Edge::Interior(wings) => &wings.faces.clone(),
-            Edge::None | Edge::NonManifold => return None,
-        };
-        let new = self.add_vertex(position);
-        for &f in faces {
-            let old = self.faces[f as usize];
-            self.detach(b, f);
-            self.faces_of[new as usize].push(f);
-            self.faces[f as usize] = old.map(|v| if v == b { new } else { v });
-            self.add_face(old.map(|v| if v == a { new } else { v }));
-        }
-        Some(new)
-    }
-
-    /// Splits face `f` into three at a new vertex at `position`, and returns that vertex; nothing if `f` was removed.
-    ///
-    /// The part at the face's first edge keeps the number, the two others are the last faces.
-    pub fn split_face(&mut self, f: u32, position: Point) -> Option<u32> {
-        let [a, b, c] = self.face(f)?;
-        let new = self.add_vertex(position);
-        self.detach(c, f);
-        self.faces_of[new as usize].push(f);
-        self.faces[f as usize] = [a, b, new];
-        self.add_face([b, c, new]);
-        self.add_face([c, a, new]);
-        Some(new)
-    }
-
-    /// Whether [`EditableMesh::collapse`] keeps the surface as it is but for its size: the link condition (Dey et al. 1999),
-    /// and no vertex is left with less than a fan.
-    #[must_use]
-    pub fn can_collapse(&self, from: u32, to: u32) -> bool {
-        let (tips, interior) = match self.edge(from, to) {
-            Edge::Border(_, tip) => ([tip, tip], false),
-            Edge::Interior(wings) => (wings.tips, true),
-            Edge::None | Edge::NonManifold => return false,
-        };
-        if interior && self.is_border(from) && self.is_border(to) {
-            return false;
-        }
-        // A tip loses a face: one with three faces all around it would be left with two, back to back.
-        let thin = |&tip: &u32| {
-            let count = self.faces_of(tip).len();
-            count <= 1 || count <= 3 && !self.is_border(tip)
-        };
-        !tips.iter().any(thin)
-            && self.neighbors(from).into_iter().all(|w| w == to || tips.contains(&w) || !self.is_taken(to, w))
-    }
-
-    /// Collapses the edge into its end `to`, which moves to `position`; `from` is gone. Does nothing and returns false unless
-    /// [`EditableMesh::can_collapse`]. Both must be manifold vertices ([`EditableMesh::is_manifold`]).
-    pub fn collapse(&mut self, from: u32, to: u32, position: Point) -> bool {
-        if !self.can_collapse(from, to) {
-            return false;
-        }
-        for f in std::mem::take(&mut self.faces_of[from as usize]) {
-            let old = self.faces[f as usize];
-            if old.contains(&to) {
-                old.into_iter().filter(|&v| v != from).for_each(|v| self.detach(v, f));
-                self.faces[f as usize] = GONE;
-            } else {
-                self.faces[f as usize] = old.map(|v| if v == from { to } else { v });
-                self.faces_of[to as usize].push(f);
-            }
-        }
-        self.set_position(to, position);
-        true
-    }
-
-    /// The positions and faces without gaps, and for every vertex kept its number before. `keep(v)` says which vertices
-    /// without faces to keep; order is kept.
+    /// The positions and faces without gaps, and for every vertex kept its number before. `keep(v)` says
+    /// which vertices without faces to keep; order is kept.
     #[must_use]
     pub fn into_parts(self, keep: impl Fn(u32) -> bool) -> (Vec<Point>, Vec<[u32; 3]>, Vec<u32>) {
         let kept: Vec<u32> =
@@ -372,25 +282,5 @@ impl EditableMesh {
         kept.iter().zip(0..).for_each(|(&v, new)| number[v as usize] = new);
         let faces = self.faces().map(|(_, face)| face.map(|v| number[v as usize])).collect();
         (kept.iter().map(|&v| self.position(v)).collect(), faces, kept)
-    }
-
-    fn add_vertex(&mut self, position: Point) -> u32 {
-        self.positions.push(position);
-        self.faces_of.push(Vec::with_capacity(6));
-        self.positions.len() as u32 - 1
-    }
-
-    fn add_face(&mut self, face: [u32; 3]) {
-        face.iter().for_each(|&v| self.faces_of[v as usize].push(self.faces.len() as u32));
-        self.faces.push(face);
-    }
-
-    /// Takes face `f` from the list of `v`.
-    fn detach(&mut self, v: u32, f: u32) {
-        // Found and closed up in blocks, which for ten thousand faces takes no longer than for ten.
-        let faces = &mut self.faces_of[v as usize];
-        if let Some(place) = faces.iter().position(|&g| g == f) {
-            faces.remove(place);
-        }
     }
 }

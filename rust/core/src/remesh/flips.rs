@@ -14,11 +14,13 @@ use crate::Progress;
 /// Edges whose faces turn by more than this (40 degrees) carry shape and are not flipped for better valences.
 const CARRIES_SHAPE: f64 = 0.766;
 
-/// By how much the worse of two faces must gain in quality for a flip that leaves the valences as good as they were.
+/// By how much the worse of two faces must gain in quality for a flip that leaves the valences as good as
+/// they were.
 const WORTH: f64 = 1.1;
 
-/// Flips edges where that brings the valences of the four vertices closer to regular: 6 inside, on a border one more than
-/// the number of 60-degree triangles that fit there (4 on a straight one). Of two equal choices the better triangles.
+/// Flips edges where that brings the valences of the four vertices closer to regular: 6 inside, on a border
+/// one more than the number of 60-degree triangles that fit there (4 on a straight one). Of two equal choices
+/// the better triangles.
 pub(crate) fn equalize_valences(remesher: &mut Remesher, progress: &Progress) {
     let borders = borders(remesher);
     let targets = target_valences(remesher, &borders);
@@ -47,7 +49,8 @@ pub(crate) fn equalize_valences(remesher: &mut Remesher, progress: &Progress) {
 /// The worse quality of the two faces after a flip over that before; 0 if the edge cannot be flipped.
 pub(crate) fn gain(mesh: &EditableMesh, a: u32, b: u32) -> f64 {
     let (Some(new), Some(wings)) = (mesh.flipped(a, b), mesh.wings(a, b)) else { return 0.0 };
-    let worst = |faces: [[u32; 3]; 2]| faces.map(|face| quality(mesh.corners(face))).into_iter().fold(1.0, f64::min);
+    let worst =
+        |faces: [[u32; 3]; 2]| faces.map(|face| quality(mesh.corners(face))).into_iter().fold(1.0, f64::min);
     let old = wings.faces.map(|f| mesh.face(f).unwrap_or_default());
     worst(new) / worst(old).max(f64::MIN_POSITIVE)
 }
@@ -61,7 +64,8 @@ fn keeps_shape(mesh: &EditableMesh, a: u32, b: u32) -> bool {
     })
 }
 
-/// Whether each vertex is on the border, where it has an edge more than faces. Flips change nothing about that.
+/// Whether each vertex is on the border, where it has an edge more than faces.
+/// Flips change nothing about that.
 fn borders(remesher: &Remesher) -> Vec<bool> {
     let is_border = |v: u32| remesher.roles[v as usize] != Role::Free && remesher.mesh.is_border(v);
     (0..remesher.mesh.n_vertices() as u32).map(is_border).collect()

@@ -4,22 +4,25 @@ use crate::mesh::vector::{add, area_vector, cosine, norm, quality, Point};
 use crate::remesh::{Edge, EditableMesh};
 use crate::shape_guard::{is_thinned, is_turned};
 
-/// Faces that remeshing makes bend by no more than a right angle, or than what was there: it follows a surface, and ridges of it
-/// are curves. With the limit of moves, the ridge of a cylinder's rim came back 8 % farther off (holes of the benchmark), and
-/// the thinnest face at a cube's corner had a quality of 0.64 instead of 0.68.
+/// Faces that remeshing makes bend by no more than a right angle, or than what was there: it follows a
+/// surface, and ridges of it are curves. With the limit of moves, the ridge of a cylinder's rim came back 8 %
+/// farther off (holes of the benchmark), and the thinnest face at a cube's corner had a quality of 0.64
+/// instead of 0.68.
 const BENT: f64 = 0.0;
 
-/// An edit that turns no face by more than this (11 degrees) bends nothing, and need not be looked at for bends.
+/// An edit that turns no face by more than this (11 degrees) bends nothing,
+/// and need not be looked at for bends.
 const HARDLY_TURNED: f64 = 0.98;
 
-/// Whether faces in shape `new` may replace what had the normal `normal` (of any length) and the least quality `worst`.
+/// Whether faces in shape `new` may replace what had the normal `normal` (of any length) and the least
+/// quality `worst`.
 fn replaces(new: [Point; 3], normal: Point, worst: f64) -> bool {
     !is_turned(new, normal) && !is_thinned(quality(new), worst)
 }
 
-/// Whether flipping the edge `a b` is possible ([`EditableMesh::flip`]) and folds nothing: both new faces look the way that
-/// the two old ones do on average ([`is_turned`]), no edge around them bends by more than a right angle that did not bend
-/// so before, and no sliver is made where there was none.
+/// Whether flipping the edge `a b` is possible ([`EditableMesh::flip`]) and folds nothing: both new faces
+/// look the way that the two old ones do on average ([`is_turned`]), no edge around them bends by more than a
+/// right angle that did not bend so before, and no sliver is made where there was none.
 #[must_use]
 pub fn may_flip(mesh: &EditableMesh, a: u32, b: u32) -> bool {
     let (Some(new), Some(wings)) = (mesh.flipped(a, b), mesh.wings(a, b)) else { return false };
@@ -42,16 +45,16 @@ pub fn may_flip(mesh: &EditableMesh, a: u32, b: u32) -> bool {
     bend >= before.min(BENT)
 }
 
-/// Whether `v` may move to `position`: no face around it turns away ([`is_turned`]), none becomes a sliver that
-/// was none, and none comes to lie at more than a right angle to a neighbor if none did before.
+/// Whether `v` may move to `position`: no face around it turns away ([`is_turned`]), none becomes a sliver
+/// that was none, and none comes to lie at more than a right angle to a neighbor if none did before.
 #[must_use]
 pub fn may_move(mesh: &EditableMesh, v: u32, position: Point) -> bool {
     keeps_shape(mesh, &[v], &[v], position)
 }
 
 /// Whether the edge may collapse into its end `to` at `position`: the connectivity allows it
-/// ([`EditableMesh::can_collapse`]), and the faces that stay are in order as for [`may_move`]. Into a hub, edges collapse to
-/// where it is, so that its other faces need not be looked at.
+/// ([`EditableMesh::can_collapse`]), and the faces that stay are in order as for [`may_move`]. Into a hub,
+/// edges collapse to where it is, so that its other faces need not be looked at.
 #[must_use]
 pub fn may_collapse(mesh: &EditableMesh, from: u32, to: u32, position: Point) -> bool {
     let is_kept = mesh.is_hub(to) && position == mesh.position(to);
@@ -59,10 +62,11 @@ pub fn may_collapse(mesh: &EditableMesh, from: u32, to: u32, position: Point) ->
     keeps_shape(mesh, &ends[..2 - usize::from(is_kept)], &ends, position) && mesh.can_collapse(from, to)
 }
 
-/// Whether the faces around the `moved` of `vertices` are in order once these are all at `position`; faces with two of them are
-/// gone then.
+/// Whether the faces around the `moved` of `vertices` are in order once these are all at `position`; faces
+/// with two of them are gone then.
 fn keeps_shape(mesh: &EditableMesh, moved: &[u32], vertices: &[u32], position: Point) -> bool {
-    let faces = || moved.iter().flat_map(|&v| mesh.faces_of(v)).filter_map(|&f| mesh.face(f).map(|face| (f, face)));
+    let faces =
+        || moved.iter().flat_map(|&v| mesh.faces_of(v)).filter_map(|&f| mesh.face(f).map(|face| (f, face)));
     let worst = faces().map(|(_, face)| quality(mesh.corners(face))).fold(1.0, f64::min);
     let mut least = 1.0_f64;
     for (f, face) in faces() {
@@ -123,7 +127,8 @@ fn bend_after(mesh: &EditableMesh, moved: &[u32], vertices: &[u32], position: Po
             (face, face.map(merged), area_vector(corners))
         })
         .collect();
-    // Where a face between two of the vertices goes, what lay beyond its border is next to the face that comes to that border.
+    // Where a face between two of the vertices goes, what lay beyond its border is next to the face that
+    // comes to that border.
     let beyond = |tail: u32, head: u32| {
         let names = |v: u32| if vertices.contains(&v) { vertices.to_vec() } else { vec![v] };
         let borders = names(tail).into_iter().flat_map(|t| names(head).into_iter().map(move |h| (t, h)));
@@ -146,8 +151,10 @@ fn bend_after(mesh: &EditableMesh, moved: &[u32], vertices: &[u32], position: Po
         })
     };
     // Found by their directed edges, also around a hub with ten thousand faces.
-    let mut by_edge: Vec<([u32; 2], u32)> =
-        (0..).zip(&stay).flat_map(|(s, (_, then, _))| (0..3).map(move |k| ([then[k], then[(k + 1) % 3]], s))).collect();
+    let mut by_edge: Vec<([u32; 2], u32)> = (0..)
+        .zip(&stay)
+        .flat_map(|(s, (_, then, _))| (0..3).map(move |k| ([then[k], then[(k + 1) % 3]], s)))
+        .collect();
     by_edge.sort_unstable();
     let area_at = |edge: [u32; 2]| {
         let first = by_edge.partition_point(|&(other, _)| other < edge);
@@ -157,8 +164,9 @@ fn bend_after(mesh: &EditableMesh, moved: &[u32], vertices: &[u32], position: Po
     for (face, then, area) in &stay {
         for i in 0..3 {
             let (tail, head) = (then[i], then[(i + 1) % 3]);
-            let across =
-                area_at([head, tail]).or_else(|| unmoved(tail, head)).or_else(|| beyond(face[i], face[(i + 1) % 3]));
+            let across = area_at([head, tail])
+                .or_else(|| unmoved(tail, head))
+                .or_else(|| beyond(face[i], face[(i + 1) % 3]));
             if let Some(across) = across {
                 least = least.min(cosine(across, *area));
             }

@@ -24,16 +24,22 @@ pub struct RemeshOptions {
     pub edge_length: Option<f64>,
     /// Rounds of all passes.
     pub iterations: usize,
-    /// Vertices that stay, bit by bit, and with them the border and feature edges between two of them and the faces
-    /// with three.
+    /// Vertices that stay, bit by bit, and with them the border and feature edges between two of them and the
+    /// faces with three.
     pub fixed: Option<Vec<bool>>,
-    /// Edges whose faces turn by more than this, in radians, are kept as lines on which vertices may slide; without it, none.
+    /// Edges whose faces turn by more than this, in radians,
+    /// are kept as lines on which vertices may slide; without it, none.
     pub feature_angle: Option<f64>,
 }
 
 impl Default for RemeshOptions {
     fn default() -> Self {
-        Self { edge_length: None, iterations: 10, fixed: None, feature_angle: Some(std::f64::consts::FRAC_PI_4) }
+        Self {
+            edge_length: None,
+            iterations: 10,
+            fixed: None,
+            feature_angle: Some(std::f64::consts::FRAC_PI_4),
+        }
     }
 }
 
@@ -44,7 +50,8 @@ pub struct Remeshed {
     pub vertices: Vec<Point>,
     /// Vertex triples.
     pub faces: Vec<[u32; 3]>,
-    /// For every vertex, which vertex of the input it is if it has not moved: fixed vertices, corners, non-manifold ones.
+    /// For every vertex, which vertex of the input it is if it has not moved: fixed vertices,
+    /// corners, non-manifold ones.
     pub origin: Vec<Option<u32>>,
     /// Rounds done.
     pub iterations: usize,
@@ -52,24 +59,29 @@ pub struct Remeshed {
     pub edge_length: f64,
 }
 
-/// Remeshes a surface with edges of about the same length and triangles close to equilateral, without moving it.
+/// Remeshes a surface with edges of about the same length and triangles close to equilateral,
+/// without moving it.
 ///
-/// Each round splits edges longer than 4/3 of the target, collapses those shorter than 4/5, flips edges toward valence 6,
-/// moves vertices tangentially to the center of their neighbors and projects them back onto the input. Borders and feature
-/// lines keep their course and their corners; non-manifold edges stay. No edit is made that folds the surface or
-/// makes a sliver; slivers that are left are removed at the end where possible. A face that names a vertex twice is dropped,
-/// and so are vertices without faces unless they are fixed.
+/// Each round splits edges longer than 4/3 of the target, collapses those shorter than 4/5, flips edges
+/// toward valence 6, moves vertices tangentially to the center of their neighbors and projects them back onto
+/// the input. Borders and feature lines keep their course and their corners; non-manifold edges stay. No edit
+/// is made that folds the surface or makes a sliver; slivers that are left are removed at the end where
+/// possible. A face that names a vertex twice is dropped, and so are vertices without faces unless they are
+/// fixed.
 ///
 /// # Errors
-/// [`MeshError::NoPositions`], [`MeshError::NoFaces`]; [`Error::Argument`] for a target length that is not finite and
-/// positive or asks for more than 50 million faces, for a mask of the wrong length and an angle outside of 0 to π;
-/// [`Error::Cancelled`].
+/// [`MeshError::NoPositions`], [`MeshError::NoFaces`]; [`Error::Argument`] for a target length that is not
+/// finite and positive or asks for more than 50 million faces, for a mask of the wrong length and an angle
+/// outside of 0 to π; [`Error::Cancelled`].
 pub fn remesh(mesh: &Mesh, options: &RemeshOptions, progress: &Progress) -> Result<Remeshed> {
     let original = mesh.positions().ok_or(MeshError::NoPositions)?;
     let unit = mesh.unit();
     let edge_length = options.edge_length.map(|length| unit.measure(length));
-    let mut found =
-        in_its_unit(mesh.measured(unit)?.as_ref(), &RemeshOptions { edge_length, ..options.clone() }, progress)?;
+    let mut found = in_its_unit(
+        mesh.measured(unit)?.as_ref(),
+        &RemeshOptions { edge_length, ..options.clone() },
+        progress,
+    )?;
     for (vertex, origin) in found.vertices.iter_mut().zip(&found.origin) {
         *vertex = origin.map_or_else(|| vertex.map(|x| unit.restore(x)), |v| original[v as usize]);
     }
@@ -82,7 +94,8 @@ fn in_its_unit(mesh: &Mesh, options: &RemeshOptions, progress: &Progress) -> Res
     let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
     let fixed = options.fixed.clone().unwrap_or_else(|| vec![false; positions.len()]);
     if fixed.len() != positions.len() {
-        let problem = format!("expected one entry for each of {} vertices, got {}", positions.len(), fixed.len());
+        let problem =
+            format!("expected one entry for each of {} vertices, got {}", positions.len(), fixed.len());
         return Err(Error::argument("fixed", problem));
     }
     mesh.demand(Tool::Remesh).admit(None)?;
@@ -97,16 +110,20 @@ fn in_its_unit(mesh: &Mesh, options: &RemeshOptions, progress: &Progress) -> Res
     let feature_cosine = match options.feature_angle {
         None => -2.0,
         Some(angle) if (0.0..=std::f64::consts::PI).contains(&angle) => angle.cos(),
-        Some(angle) => return Err(Error::argument("feature_angle", format!("got {angle}; pass 0 to 180 degrees"))),
+        Some(angle) => {
+            return Err(Error::argument("feature_angle", format!("got {angle}; pass 0 to 180 degrees")))
+        }
     };
     let keep = Keep { fixed: &fixed, fixed_faces: true, feature_cosine, features: None };
     let surface = Surface::of(&editable);
-    let mut remesher =
-        Remesher::new(editable, &surface, &keep, |mesh, curves| Sizing::uniform(edge_length, 0.0, mesh, curves));
+    let mut remesher = Remesher::new(editable, &surface, &keep, |mesh, curves| {
+        Sizing::uniform(edge_length, 0.0, mesh, curves)
+    });
     let iterations = run(&mut remesher, options.iterations, usize::MAX, progress)?;
     let moved = |v: u32| remesher.is_movable(v);
     let movable: Vec<bool> = (0..remesher.mesh.n_vertices() as u32).map(moved).collect();
-    let (vertices, faces, kept) = remesher.mesh.into_parts(|v| fixed.get(v as usize).copied().unwrap_or(false));
+    let (vertices, faces, kept) =
+        remesher.mesh.into_parts(|v| fixed.get(v as usize).copied().unwrap_or(false));
     let origin = kept.into_iter().map(|v| (!movable[v as usize]).then_some(v)).collect();
     Ok(Remeshed { vertices, faces, origin, iterations, edge_length })
 }
@@ -122,9 +139,15 @@ fn admit(mesh: &Mesh, area: f64, edge_length: f64) -> Result<()> {
     Ok(())
 }
 
-/// The passes, `iterations` times, then the removal of slivers. Returns the number of whole rounds done; every pass leaves a
-/// mesh at every moment, and stops in the middle when the caller wishes to. The mesh is to have about `most` faces at most.
-pub(crate) fn run(remesher: &mut Remesher, iterations: usize, most: usize, progress: &Progress) -> Result<usize> {
+/// The passes, `iterations` times, then the removal of slivers. Returns the number of whole rounds done;
+/// every pass leaves a mesh at every moment, and stops in the middle when the caller wishes to. The mesh is
+/// to have about `most` faces at most.
+pub(crate) fn run(
+    remesher: &mut Remesher,
+    iterations: usize,
+    most: usize,
+    progress: &Progress,
+) -> Result<usize> {
     progress.check()?;
     for iteration in 0..iterations {
         if progress.is_finishing() {
@@ -155,6 +178,7 @@ pub(crate) fn run(remesher: &mut Remesher, iterations: usize, most: usize, progr
 
 fn mean_edge_length(mesh: &EditableMesh) -> f64 {
     let edges = mesh.edges();
-    let sum: f64 = edges.iter().map(|&[a, b]| crate::mesh::vector::distance(mesh.position(a), mesh.position(b))).sum();
+    let sum: f64 =
+        edges.iter().map(|&[a, b]| crate::mesh::vector::distance(mesh.position(a), mesh.position(b))).sum();
     sum / edges.len().max(1) as f64
 }

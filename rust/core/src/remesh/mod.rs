@@ -1,7 +1,7 @@
 //! Changing the triangles of a surface but not its shape.
 //!
-//! [`EditableMesh`] is the mesh under edit, [`guard`] says which edits keep it unfolded; [`remesh`] is isotropic remeshing
-//! [Botsch and Kobbelt 2004], with a file for each of its passes.
+//! [`EditableMesh`] is the mesh under edit, [`guard`] says which edits keep it unfolded; [`remesh`] is
+//! isotropic remeshing [Botsch and Kobbelt 2004], with a file for each of its passes.
 
 pub(crate) mod budget;
 pub mod closest;
@@ -12,6 +12,7 @@ pub mod editable;
 mod flips;
 pub mod guard;
 pub(crate) mod isotropic;
+mod operations;
 mod relax;
 pub(crate) mod remesher;
 mod repair;

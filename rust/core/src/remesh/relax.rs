@@ -9,15 +9,17 @@ use crate::remesh::remesher::Remesher;
 use crate::shape_guard::farthest;
 use crate::Progress;
 
-/// Moves every free vertex in its tangent plane to the center of its neighbors, weighted by the area around them over that
-/// wanted (Botsch and Kobbelt 2004, with their weights for a graded mesh), then to the closest point of the surface; a vertex
-/// on a curve to the middle between its neighbors on it, and to the closest point of the curve.
+/// Moves every free vertex in its tangent plane to the center of its neighbors, weighted by the area around
+/// them over that wanted (Botsch and Kobbelt 2004, with their weights for a graded mesh), then to the closest
+/// point of the surface; a vertex on a curve to the middle between its neighbors on it, and to the closest
+/// point of the curve.
 pub(crate) fn relax_and_project(remesher: &mut Remesher, progress: &Progress) {
     let n = remesher.mesh.n_vertices() as u32;
     let weights: Vec<f64> = (0..n)
         .into_par_iter()
         .map(|v| {
-            let area: f64 = remesher.mesh.faces_of(v).iter().map(|&f| norm(remesher.mesh.area_vector(f))).sum();
+            let area: f64 =
+                remesher.mesh.faces_of(v).iter().map(|&f| norm(remesher.mesh.area_vector(f))).sum();
             area / remesher.sizing.at(v).powi(2)
         })
         .collect();
@@ -54,7 +56,8 @@ fn target(remesher: &Remesher, weights: &[f64], v: u32) -> Option<(Point, u32)> 
             Some((remesher.curves.project(curve, between(mesh.position(a), mesh.position(b), 0.5)), near))
         }
         Role::Free => {
-            let normal = unit(mesh.faces_of(v).iter().fold([0.0; 3], |sum, &f| add(sum, mesh.area_vector(f))));
+            let normal =
+                unit(mesh.faces_of(v).iter().fold([0.0; 3], |sum, &f| add(sum, mesh.area_vector(f))));
             let (mut sum, mut total) = ([0.0; 3], 0.0);
             for w in mesh.neighbors(v) {
                 let weight = weights[w as usize];

@@ -23,12 +23,14 @@ impl Surface {
         Self { tree: ClosestPoint::new(triangles), normals }
     }
 
-    /// The closest point and its triangle; on the side that looks along `normal` if there is one, so that the two sides of a
-    /// thin sheet are not mistaken for each other.
+    /// The closest point and its triangle; on the side that looks along `normal` if there is one, so that the
+    /// two sides of a thin sheet are not mistaken for each other.
     pub(crate) fn project(&self, p: Point, normal: Point, guess: u32) -> (Point, u32) {
         let same_side = |t: u32| dot(self.normals[t as usize], normal) > 0.0;
-        let found =
-            self.tree.closest(p, Some(guess), same_side).or_else(|| self.tree.closest(p, Some(guess), |_| true));
+        let found = self
+            .tree
+            .closest(p, Some(guess), same_side)
+            .or_else(|| self.tree.closest(p, Some(guess), |_| true));
         found.map_or((p, guess), |c| (c.point, c.triangle))
     }
 }
@@ -119,12 +121,13 @@ impl<'a> Remesher<'a> {
         }
     }
 
-    /// Collapses the edge if nothing speaks against it: the roles of its ends, the guard, or an edge longer than `longest`
-    /// times its target length. Returns whether it did.
+    /// Collapses the edge if nothing speaks against it: the roles of its ends, the guard, or an edge longer
+    /// than `longest` times its target length. Returns whether it did.
     pub(crate) fn collapse(&mut self, a: u32, b: u32, longest: f64) -> bool {
         let Some((from, to, position)) = self.collapse_plan(a, b) else { return false };
         let around = self.mesh.neighbors(from);
-        let too_long = |w: u32| distance(position, self.mesh.position(w)) > longest * self.sizing.target(to, w);
+        let too_long =
+            |w: u32| distance(position, self.mesh.position(w)) > longest * self.sizing.target(to, w);
         // The edges of a hub stay as long as they are.
         let around_to = if self.mesh.is_hub(to) { Vec::new() } else { self.mesh.neighbors(to) };
         if around.iter().chain(&around_to).any(|&w| w != from && w != to && too_long(w)) {
@@ -133,7 +136,11 @@ impl<'a> Remesher<'a> {
         let carried: Vec<(u32, u32)> = if self.roles[from as usize] == Role::Free {
             Vec::new()
         } else {
-            around.iter().filter(|&&w| w != to).filter_map(|&w| self.curves.curve(from, w).map(|c| (w, c))).collect()
+            around
+                .iter()
+                .filter(|&&w| w != to)
+                .filter_map(|&w| self.curves.curve(from, w).map(|c| (w, c)))
+                .collect()
         };
         if carried.iter().any(|&(w, _)| self.curves.curve(to, w).is_some() || self.curves.is_locked(to, w)) {
             return false;

@@ -14,8 +14,9 @@ const ROUNDS: usize = 5;
 /// How much longer than its target an edge may get where that removes a sliver.
 const LONGEST: f64 = 2.0;
 
-/// Removes faces thinner than [`SLIVER`], the thinnest first: by flipping an edge if that makes better faces, else by
-/// collapsing the shortest edge; what is left after that is moved again. Next to fixed vertices some may have to stay.
+/// Removes faces thinner than [`SLIVER`], the thinnest first: by flipping an edge if that makes better faces,
+/// else by collapsing the shortest edge; what is left after that is moved again. Next to fixed vertices some
+/// may have to stay.
 pub(crate) fn remove_slivers(remesher: &mut Remesher, progress: &Progress) {
     for _ in 0..ROUNDS {
         let mut slivers: Vec<(f64, u32)> = remesher
@@ -47,7 +48,8 @@ fn remove(remesher: &mut Remesher, f: u32) {
     let mut edges = [[a, b], [b, c], [c, a]];
     edges.sort_by(|x, y| remesher.length(y[0], y[1]).total_cmp(&remesher.length(x[0], x[1])));
     for [a, b] in edges {
-        if remesher.is_free(a, b) && gain(&remesher.mesh, a, b) > 1.0 && guard::may_flip(&remesher.mesh, a, b) {
+        if remesher.is_free(a, b) && gain(&remesher.mesh, a, b) > 1.0 && guard::may_flip(&remesher.mesh, a, b)
+        {
             remesher.mesh.flip(a, b);
             return;
         }

@@ -11,14 +11,15 @@ use crate::remesh::EditableMesh;
 /// Sweeps that spread the sizes of the rim over the patch, in every update: they start from the last ones.
 const SWEEPS: usize = 20;
 
-/// Edges grow by at most this for every unit of distance from the rim: faster, and the triangles lose their shape.
+/// Edges grow by at most this for every unit of distance from the rim: faster,
+/// and the triangles lose their shape.
 const STEEPEST_GROWTH: f64 = 0.5;
 
 /// The area of an equilateral triangle of edge length 1.
 pub(crate) const EQUILATERAL: f64 = 0.433;
 
-/// How much edges must grow for every unit of distance from a rim of this length, with edges of length `edge`, so that a patch
-/// of this area has about `max_faces` faces at most; 0 if it has no more anyway.
+/// How much edges must grow for every unit of distance from a rim of this length, with edges of length
+/// `edge`, so that a patch of this area has about `max_faces` faces at most; 0 if it has no more anyway.
 ///
 /// With growth g and a rim of length P some `P / (0.433 g edge)` faces are made, however large the hole.
 pub(crate) fn growth(area: f64, rim: f64, edge: f64, max_faces: usize) -> f64 {
@@ -43,8 +44,8 @@ pub(crate) struct Sizing {
 }
 
 impl Sizing {
-    /// The same length everywhere, but where a locked edge is longer: next to it, edges shorter than half of it could only
-    /// make slivers. `growth` is added for every unit of distance from the locked edges.
+    /// The same length everywhere, but where a locked edge is longer: next to it, edges shorter than half of
+    /// it could only make slivers. `growth` is added for every unit of distance from the locked edges.
     pub(crate) fn uniform(length: f64, growth: f64, mesh: &EditableMesh, curves: &Curves) -> Self {
         let mut anchors = vec![None; mesh.n_vertices()];
         for [a, b] in curves.locked_edges() {
@@ -58,8 +59,8 @@ impl Sizing {
         Self { sizes, anchors, uniform: Some(length), growth }
     }
 
-    /// The lengths of the locked edges, their mean at each vertex, spread smoothly, and `growth` for every unit of distance
-    /// from them. `sizes` are the first targets; those at locked edges are not used.
+    /// The lengths of the locked edges, their mean at each vertex, spread smoothly, and `growth` for every
+    /// unit of distance from them. `sizes` are the first targets; those at locked edges are not used.
     pub(crate) fn graded(sizes: Vec<f64>, growth: f64, mesh: &EditableMesh, curves: &Curves) -> Self {
         let mut sums = vec![(0.0, 0.0); mesh.n_vertices()];
         for [a, b] in curves.locked_edges() {
@@ -108,7 +109,8 @@ impl Sizing {
         let mut base: Vec<f64> = match self.uniform {
             Some(length) => vec![length; far.len()],
             None => {
-                // Without their growth sizes are means of the anchors'; distances along edges can be too long for that.
+                // Without their growth sizes are means of the anchors';
+                // distances along edges can be too long for that.
                 let [least, most] = self.range_of_anchors();
                 let base = |(size, d): (&f64, &f64)| {
                     let base = size - self.growth * d;
@@ -140,7 +142,8 @@ impl Sizing {
     fn spread(&self, sizes: &mut [f64], neighbors: &[Vec<u32>]) {
         for _ in 0..SWEEPS {
             for v in (0..sizes.len()).filter(|&v| self.anchors[v].is_none() && !neighbors[v].is_empty()) {
-                sizes[v] = neighbors[v].iter().map(|&w| sizes[w as usize]).sum::<f64>() / neighbors[v].len() as f64;
+                sizes[v] =
+                    neighbors[v].iter().map(|&w| sizes[w as usize]).sum::<f64>() / neighbors[v].len() as f64;
             }
         }
     }

@@ -1,7 +1,8 @@
 //! Lower bounds on the optimum, from dual points: what makes a gap computed and not estimated.
 //!
-//! For `q` with `‖q_b‖ ≤ w_b` and multipliers `y` of `A u = b`, with `g = Hᵀq + Aᵀy`, every feasible `u` has an
-//! objective of at least `⟨q, c⟩ − ⟨y, b⟩ + ⟨g, t⟩ − Σ |g_i|² / 4a_i`, provided that `g_i = 0` wherever `a_i = 0`.
+//! For `q` with `‖q_b‖ ≤ w_b` and multipliers `y` of `A u = b`, with `g = Hᵀq + Aᵀy`, every feasible `u` has
+//! an objective of at least `⟨q, c⟩ − ⟨y, b⟩ + ⟨g, t⟩ − Σ |g_i|² / 4a_i`, provided that `g_i = 0` wherever
+//! `a_i = 0`.
 
 use crate::solve::cones::{inner, norm, Block};
 use crate::solve::reduced::Reduced;
@@ -58,14 +59,19 @@ impl DualPoint {
     /// The point of these blocks and `others`.
     #[must_use]
     pub fn and(self, others: Self) -> Self {
-        Self { along_constant: self.along_constant + others.along_constant, longest: self.longest.max(others.longest) }
+        Self {
+            along_constant: self.along_constant + others.along_constant,
+            longest: self.longest.max(others.longest),
+        }
     }
 }
 
-/// The best lower bound along the ray `s·(q, y)`, `0 ≤ s ≤ 1 / max ‖q_b‖/w_b`, which is feasible for every `q`.
+/// The best lower bound along the ray `s·(q, y)`, `0 ≤ s ≤ 1 / max ‖q_b‖/w_b`,
+/// which is feasible for every `q`.
 ///
-/// `g` must be `Hᵀq + Aᵀy`, computed from `q` and `y`. Where there is no fidelity, `g_i` is zero up to rounding; its product
-/// with the point `u` stands for its product with the minimizer, less an allowance for the distance of the two.
+/// `g` must be `Hᵀq + Aᵀy`, computed from `q` and `y`. Where there is no fidelity, `g_i` is zero up to
+/// rounding; its product with the point `u` stands for its product with the minimizer, less an allowance for
+/// the distance of the two.
 #[must_use]
 pub fn bound_along_ray<const K: usize>(
     reduced: &Reduced<'_, K>,
@@ -75,7 +81,8 @@ pub fn bound_along_ray<const K: usize>(
     u: &[[f64; K]],
 ) -> f64 {
     let (mut linear, longest) = (q.along_constant, q.longest);
-    // What rounding may have made of the sums, and a minimizer elsewhere of gradients that are not quite zero.
+    // What rounding may have made of the sums, and a minimizer elsewhere of gradients that are not quite
+    // zero.
     let mut terms = linear.abs();
     let mut allowance = 0.0;
     if let Some(constraints) = &reduced.constraints {

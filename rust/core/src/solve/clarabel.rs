@@ -1,6 +1,8 @@
-//! The problem as a second-order cone program for Clarabel, an interior-point method: slow, exact, and independent.
+//! The problem as a second-order cone program for Clarabel, an interior-point method: slow, exact,
+//! and independent.
 //!
-//! Variables `(u, s)`, a cone `s_b ≥ ‖(H u + c)_b‖` of `1 + BLOCK·k` entries per block, `2a` in the quadratic term.
+//! Variables `(u, s)`, a cone `s_b ≥ ‖(H u + c)_b‖` of `1 + BLOCK·k` entries per block,
+//! `2a` in the quadratic term.
 
 use std::panic::resume_unwind;
 use std::sync::mpsc::{channel, RecvTimeoutError};
@@ -26,15 +28,15 @@ use crate::{Error, Result};
 /// Below this many rows `qdldl` is faster, above it `faer` (measured, see the benchmarks).
 pub const QDLDL_BELOW: usize = 20_000;
 
-/// Clarabel's tolerance as a part of the gap asked for. The certificate is made of exactly feasible points and comes out up
-/// to 20 times larger than Clarabel's own gap (measured on a dozen problems).
+/// Clarabel's tolerance as a part of the gap asked for. The certificate is made of exactly feasible points
+/// and comes out up to 20 times larger than Clarabel's own gap (measured on a dozen problems).
 const MARGIN: f64 = 0.01;
 
 /// How long Clarabel is left alone between two looks at what the caller wishes.
 const LISTENING: Duration = Duration::from_millis(50);
 
-/// Solves the reduced problem, Rowe et al. 2024, eq. (21) as the cones of eq. (40), with Clarabel and the factorization called
-/// `method`.
+/// Solves the reduced problem, Rowe et al. 2024, eq. (21) as the cones of eq. (40), with Clarabel and the
+/// factorization called `method`.
 ///
 /// # Errors
 /// [`SolveError`] when Clarabel cannot make anything of the problem; [`Error::Cancelled`].
@@ -57,7 +59,8 @@ pub fn minimize<const K: usize>(
         max_threads: 1,
         ..DefaultSettings::default()
     };
-    let Some((program, found)) = solve_apart(program, options, reduced.constraints.is_none(), progress)? else {
+    let Some((program, found)) = solve_apart(program, options, reduced.constraints.is_none(), progress)?
+    else {
         // Nothing was reached yet: the point to start from, and what is certain of it.
         let q = vec![[[0.0; K]; BLOCK]; reduced.n_blocks()];
         return Ok(certified(reduced, reduced.target.clone(), &q, &[], 0, Status::Stopped));
@@ -73,18 +76,21 @@ pub fn minimize<const K: usize>(
         _ => Status::Inaccurate,
     };
     let n = reduced.n();
-    let u: Vec<[f64; K]> =
-        (0..n).map(|i| std::array::from_fn(|c| if c < n_columns { found.x[c * n + i] } else { 0.0 })).collect();
+    let u: Vec<[f64; K]> = (0..n)
+        .map(|i| std::array::from_fn(|c| if c < n_columns { found.x[c * n + i] } else { 0.0 }))
+        .collect();
     let (mut q, y) = program.multipliers(&found.z);
     for (q, w) in q.iter_mut().zip(reduced.weights.iter()) {
         if *w == 0.0 {
-            // The interior point only comes near zero here; any q that is longer than its weight proves nothing.
+            // The interior point only comes near zero here;
+            // any q that is longer than its weight proves nothing.
             *q = [[0.0; K]; BLOCK];
         }
     }
     let mut outcome = certified(reduced, u, &q, &y, found.iterations as usize, status);
     if let (Some(tolerance), true) = (settings.tolerance, status != Status::Stopped) {
-        // What counts is the gap of the point that is returned, not Clarabel's own, which allows for infeasibility.
+        // What counts is the gap of the point that is returned, not Clarabel's own,
+        // which allows for infeasibility.
         let scale = Problem::gap_scale(outcome.primal, outcome.floor);
         let reached = outcome.primal - outcome.dual <= tolerance * scale;
         outcome.status = if reached { Status::Solved } else { Status::Inaccurate };
@@ -92,10 +98,12 @@ pub fn minimize<const K: usize>(
     Ok(outcome)
 }
 
-/// Runs Clarabel on a thread of its own: it hears wishes between iterations only, one of which takes seconds on large problems.
-/// When the caller wishes to stop, this one is done; the thread ends with the iteration that it is in.
+/// Runs Clarabel on a thread of its own: it hears wishes between iterations only, one of which takes seconds
+/// on large problems. When the caller wishes to stop, this one is done; the thread ends with the iteration
+/// that it is in.
 ///
-/// `None` where the caller wishes to finish and there is nothing yet; with `may_leave` that is not waited for.
+/// `None` where the caller wishes to finish and there is nothing yet;
+/// with `may_leave` that is not waited for.
 fn solve_apart<const K: usize>(
     program: Program<K>,
     options: DefaultSettings<f64>,
@@ -113,7 +121,8 @@ fn solve_apart<const K: usize>(
             solver.solution
         });
         // Nobody listens any more after a wish to stop.
-        let _ = send.send(found.map(|found| (program, found)).map_err(|e| format!("Clarabel refused it: {e:?}")));
+        let _ =
+            send.send(found.map(|found| (program, found)).map_err(|e| format!("Clarabel refused it: {e:?}")));
     };
     let thread = Builder::new().name("clarabel".into()).spawn(work);
     let thread = thread.map_err(|e| Error::Threads(ThreadsError { reason: e.to_string() }))?;
@@ -201,7 +210,8 @@ impl<const K: usize> Program<K> {
         let (at, values): (Vec<usize>, Vec<f64>) = diagonal.into_iter().unzip();
         let quadratic = CscMatrix::new_from_triplets(n_variables, n_variables, at.clone(), at, values);
 
-        // Clarabel's rows are `A x + s = b, s in cones`: equalities first, then (s_b, H u + c) of every block.
+        // Clarabel's rows are `A x + s = b, s in cones`: equalities first,
+        // then (s_b, H u + c) of every block.
         let (mut row, mut column, mut value, mut right) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let mut cones = Vec::new();
         let mut n_equalities = 0;
@@ -246,10 +256,15 @@ impl<const K: usize> Program<K> {
     fn multipliers(&self, z: &[f64]) -> (Vec<Block<K>>, Vec<[f64; K]>) {
         let k = self.n_columns;
         let entry = |row: &[f64], c: usize| if c < k { row[c] } else { 0.0 };
-        let y = z[..self.n_equalities].chunks_exact(k).map(|row| std::array::from_fn(|c| entry(row, c))).collect();
+        let y = z[..self.n_equalities]
+            .chunks_exact(k)
+            .map(|row| std::array::from_fn(|c| entry(row, c)))
+            .collect();
         let q = z[self.n_equalities..]
             .chunks_exact(1 + BLOCK * k)
-            .map(|cone| std::array::from_fn(|r| std::array::from_fn(|c| -entry(&cone[1 + r * k..1 + (r + 1) * k], c))))
+            .map(|cone| {
+                std::array::from_fn(|r| std::array::from_fn(|c| -entry(&cone[1 + r * k..1 + (r + 1) * k], c)))
+            })
             .collect();
         (q, y)
     }

@@ -37,7 +37,8 @@ impl<const K: usize> LinearConstraints<K> {
         let mut rows = Vec::new();
         let mut rights = Vec::new();
         for (p, row) in matrix.outer_iterator().enumerate() {
-            let mut rest: [f64; K] = std::array::from_fn(|c| columns.get(c).map_or(0.0, |&k| right.column(k)[p]));
+            let mut rest: [f64; K] =
+                std::array::from_fn(|c| columns.get(c).map_or(0.0, |&k| right.column(k)[p]));
             let size = rest.iter().fold(1.0f64, |a, x| a.max(x.abs()));
             let mut kept = Vec::new();
             for (i, &value) in row.iter() {
@@ -100,7 +101,8 @@ impl<const K: usize> LinearConstraints<K> {
         }
     }
 
-    /// Forms and factors the Schur complement of the matrix that `cholesky` holds, of which `n` rows are of `u`.
+    /// Forms and factors the Schur complement of the matrix that `cholesky` holds,
+    /// of which `n` rows are of `u`.
     ///
     /// # Errors
     /// [`SolveError::Infeasible`] when the rows of `A` depend on each other.

@@ -12,11 +12,12 @@ use crate::{Error, Result};
 /// Vectors that one triangular solve takes: a vector register's worth.
 const AT_ONCE: usize = 4;
 
-/// Vectors in the subspace beyond those asked for: as many again and some; modes of a surface then converge by 4 to 10 a round.
+/// Vectors in the subspace beyond those asked for: as many again and some;
+/// modes of a surface then converge by 4 to 10 a round.
 const SPARE: usize = 8;
 
-/// On meshes with slivers rounding in the factor ends the convergence before that; below this residual it is taken for the
-/// end when it has not halved for so many rounds.
+/// On meshes with slivers rounding in the factor ends the convergence before that; below this residual it is
+/// taken for the end when it has not halved for so many rounds.
 const ACCURACY_OF_ROUNDING: f64 = 1e-4;
 const ROUNDS_AT_REST: usize = 5;
 
@@ -56,13 +57,14 @@ pub struct Pencil<'a> {
 }
 
 impl Pencil<'_> {
-    /// The `count` smallest eigenvalues of `Q u = λ M u` and their vectors, Rowe et al. 2024, eq. (38) without its L1 norm; `count`
-    /// must not exceed the rows with mass.
+    /// The `count` smallest eigenvalues of `Q u = λ M u` and their vectors, Rowe et al. 2024, eq. (38)
+    /// without its L1 norm; `count` must not exceed the rows with mass.
     ///
     /// The first rows of the start are a fixed sequence, so that the same input gives the same bits.
     ///
     /// # Errors
-    /// [`SolveError`] when the matrix cannot be factored or the iteration does not settle; [`Error::Cancelled`].
+    /// [`SolveError`] when the matrix cannot be factored or the iteration does not settle;
+    /// [`Error::Cancelled`].
     pub fn smallest(&self, count: usize, progress: &Progress) -> Result<Eigenpairs> {
         let n = self.mass.len();
         let massive = self.mass.iter().filter(|m| **m > 0.0).count();
@@ -71,7 +73,9 @@ impl Pencil<'_> {
         let mut block: Vec<Vec<f64>> = (0..size)
             .map(|j| {
                 let step = (j as f64 + 2.5).sqrt();
-                (0..n).map(|i| if self.mass[i] > 0.0 { ((i + 1) as f64 * step).fract() - 0.5 } else { 0.0 }).collect()
+                (0..n)
+                    .map(|i| if self.mass[i] > 0.0 { ((i + 1) as f64 * step).fract() - 0.5 } else { 0.0 })
+                    .collect()
             })
             .collect();
         block[0].iter_mut().zip(self.mass).for_each(|(x, m)| *x = if *m > 0.0 { 1.0 } else { 0.0 });
@@ -81,17 +85,20 @@ impl Pencil<'_> {
             progress.check()?;
             let mut next = block.clone();
             for group in next.chunks_mut(AT_ONCE) {
-                let row = |i: usize| std::array::from_fn(|c| group.get(c).map_or(0.0, |x| self.mass[i] * x[i]));
+                let row =
+                    |i: usize| std::array::from_fn(|c| group.get(c).map_or(0.0, |x| self.mass[i] * x[i]));
                 let mut right: Vec<[f64; AT_ONCE]> = (0..n).map(row).collect();
                 cholesky.solve(&mut right);
                 for (c, x) in group.iter_mut().enumerate() {
                     x.iter_mut().zip(&right).for_each(|(x, row)| *x = row[c]);
                 }
             }
-            let residual = block[..count].iter().zip(&next).map(|(x, y)| self.residual(x, y)).fold(0.0, f64::max);
+            let residual =
+                block[..count].iter().zip(&next).map(|(x, y)| self.residual(x, y)).fold(0.0, f64::max);
             at_rest = if residual < 0.5 * best { 0 } else { at_rest + 1 };
             best = if at_rest == 0 { residual } else { best };
-            let settled = residual <= self.accuracy || best <= ACCURACY_OF_ROUNDING && at_rest >= ROUNDS_AT_REST;
+            let settled =
+                residual <= self.accuracy || best <= ACCURACY_OF_ROUNDING && at_rest >= ROUNDS_AT_REST;
             if round > 0 && settled {
                 values.truncate(count);
                 let vectors = Columns { n_rows: n, n_columns: count, data: block[..count].concat() };
@@ -105,7 +112,8 @@ impl Pencil<'_> {
             block = combined(&next, &rotation);
         }
         let reason = format!(
-            "{count} modes did not settle in {MOST_ROUNDS} rounds; flip slivers away (delaunay), merge close vertices, or \
+            "{count} modes did not settle in {MOST_ROUNDS} rounds; flip slivers away (delaunay), merge close \
+            vertices, or \
              ask for fewer"
         );
         Err(Error::Solve(SolveError::Factorization { reason }))

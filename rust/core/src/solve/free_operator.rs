@@ -44,9 +44,10 @@ impl FreeOperator {
         let n_entries = operator.columns.iter().filter(|&&column| place[column as usize].is_some()).count();
         (kept.columns, kept.values) = (memory::room(n_entries)?, memory::room(n_entries)?);
         let mut blocks = memory::room(operator.n_blocks())?;
-        kept.starts
-            .try_reserve_exact(operator.n_blocks())
-            .map_err(|_| SolveError::Memory { needed: size_of::<usize>() * operator.n_blocks(), limit: None })?;
+        kept.starts.try_reserve_exact(operator.n_blocks()).map_err(|_| SolveError::Memory {
+            needed: size_of::<usize>() * operator.n_blocks(),
+            limit: None,
+        })?;
         for b in 0..operator.n_blocks() {
             let (columns, values) = operator.block(b);
             for (&column, value) in columns.iter().zip(values) {

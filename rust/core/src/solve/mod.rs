@@ -1,8 +1,8 @@
 //! The conic program (21) and its solvers: matrices only, never meshes.
 //!
-//! [`Problem`] says what is asked. [`Session`] answers it by alternating directions with a reused factorization,
-//! [`solve`] with any solver by name. Every [`Solution`] carries a relative duality gap that was computed from the point
-//! that is returned.
+//! [`Problem`] says what is asked. [`Session`] answers it by alternating directions with a reused
+//! factorization, [`solve`] with any solver by name. Every [`Solution`] carries a relative duality gap that
+//! was computed from the point that is returned.
 
 pub mod certificate;
 pub mod clarabel;
@@ -33,13 +33,22 @@ use session::Method;
 ///
 /// # Errors
 /// See [`Session::solve`].
-pub fn solve(problem: &Problem<'_>, solver: Solver, settings: &Settings, progress: &Progress) -> Result<Solution> {
+pub fn solve(
+    problem: &Problem<'_>,
+    solver: Solver,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Solution> {
     let method = match solver {
         Solver::Auto | Solver::Fast => Method::Fast,
         Solver::ClarabelQdldl | Solver::ClarabelFaer => Method::Clarabel(solver),
-        Solver::Clarabel if problem.n_rows() < clarabel::QDLDL_BELOW => Method::Clarabel(Solver::ClarabelQdldl),
+        Solver::Clarabel if problem.n_rows() < clarabel::QDLDL_BELOW => {
+            Method::Clarabel(Solver::ClarabelQdldl)
+        }
         Solver::Clarabel => Method::Clarabel(Solver::ClarabelFaer),
-        Solver::Cholesky => return Err(Error::argument("solver", "Cholesky solves quadratic energies only; use auto")),
+        Solver::Cholesky => {
+            return Err(Error::argument("solver", "Cholesky solves quadratic energies only; use auto"))
+        }
     };
     Session::new().run(problem, method, settings, progress)
 }

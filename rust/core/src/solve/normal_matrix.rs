@@ -8,8 +8,9 @@ use crate::solve::normal_pattern::pattern_of;
 use crate::solve::primal_dual::Stiffness;
 use crate::solve::stretching::Stretching;
 
-/// What is added to the stiffness of a block that is cut, as a part of its scale: where a cone is as good as straight, rounding would
-/// leave nothing that holds the new unknowns. A direction of Newton's method is not exact to so many digits.
+/// What is added to the stiffness of a block that is cut, as a part of its scale: where a cone is as good as
+/// straight, rounding would leave nothing that holds the new unknowns. A direction of Newton's method is not
+/// exact to so many digits.
 const LEAST_STIFFNESS: f64 = 1e-10;
 
 /// Where each product of two entries of a block lands in the lower triangle of `HᵀRH`.
@@ -30,9 +31,9 @@ impl NormalMatrix {
         Self::of(operator, None)
     }
 
-    /// The same where no block has a negative weight: blocks with many columns are cut into pieces, and the matrix has further rows
-    /// for the unknowns between them, behind those of the operator. With zeros there on the right side its solutions are those of
-    /// the matrix that is not cut.
+    /// The same where no block has a negative weight: blocks with many columns are cut into pieces, and the
+    /// matrix has further rows for the unknowns between them, behind those of the operator. With zeros there
+    /// on the right side its solutions are those of the matrix that is not cut.
     ///
     /// # Errors
     /// [`SolveError::Memory`] when the system does not give what it takes.
@@ -158,7 +159,13 @@ mod tests {
             n_columns: 4,
             starts: vec![0, 3, 3, 5],
             columns: vec![0, 1, 3, 1, 2],
-            values: vec![[1.0, 2.0, 0.0], [0.0, 1.0, -1.0], [3.0, 0.5, 1.0], [2.0, 0.0, 1.0], [-1.0, 1.0, 4.0]],
+            values: vec![
+                [1.0, 2.0, 0.0],
+                [0.0, 1.0, -1.0],
+                [3.0, 0.5, 1.0],
+                [2.0, 0.0, 1.0],
+                [-1.0, 1.0, 4.0],
+            ],
         }
     }
 

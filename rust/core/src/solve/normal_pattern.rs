@@ -6,11 +6,15 @@ use crate::error::SolveError;
 use crate::linear::pattern::LowerPattern;
 use crate::memory;
 
-/// The lower triangle of `HᵀH` where only the blocks count that `is_taken` takes; every diagonal entry is there.
+/// The lower triangle of `HᵀH` where only the blocks count that `is_taken` takes;
+/// every diagonal entry is there.
 ///
 /// # Errors
 /// [`SolveError::Memory`] when the system does not give what it takes.
-pub(super) fn pattern_of(operator: &BlockRows, is_taken: impl Fn(usize) -> bool) -> Result<LowerPattern, SolveError> {
+pub(super) fn pattern_of(
+    operator: &BlockRows,
+    is_taken: impl Fn(usize) -> bool,
+) -> Result<LowerPattern, SolveError> {
     let n = operator.n_columns;
     let mut gathered = Buckets::try_new(n, |visit| {
         (0..n).for_each(|j| visit(j, j as u32));

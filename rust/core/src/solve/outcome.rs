@@ -3,7 +3,8 @@
 use crate::solve::cones::Block;
 use crate::solve::problem::Status;
 
-/// What a finished run leaves to the next, similar problem, in units that survive new weights and a new operator.
+/// What a finished run leaves to the next, similar problem,
+/// in units that survive new weights and a new operator.
 #[derive(Debug, Clone)]
 pub struct Warm<const K: usize> {
     /// The split variable.

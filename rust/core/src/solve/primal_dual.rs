@@ -1,11 +1,11 @@
-//! Primal-dual interior-point steps: a few factorizations from a rough solution to a certified one, however many iterations
-//! of alternating directions it would take.
+//! Primal-dual interior-point steps: a few factorizations from a rough solution to a certified one, however
+//! many iterations of alternating directions it would take.
 //!
-//! With the logarithmic barrier of the cones `‖(H u + c)_b‖ ≤ t_b` and its parameter `μ`, the best `t_b` are known,
-//! `t_b = m_b + q_b`, `m_b = μ / w_b`, `q_b = √(m_b² + ‖(H u + c)_b‖²)`, and the points of the central path solve
-//! `t_b z_b = w_b (H u + c)_b`, `Hᵀz + 2a (u − t) = 0`. A step is one of Newton's method on these equations in `u` and `z`
-//! together (Andersen, Christiansen, Conn and Overton 2000; Chan, Golub and Mulet 1999): its matrix has the pattern of
-//! `HᵀH`, and its dual point solves the dual equations exactly.
+//! With the logarithmic barrier of the cones `‖(H u + c)_b‖ ≤ t_b` and its parameter `μ`, the best `t_b` are
+//! known, `t_b = m_b + q_b`, `m_b = μ / w_b`, `q_b = √(m_b² + ‖(H u + c)_b‖²)`, and the points of the central
+//! path solve `t_b z_b = w_b (H u + c)_b`, `Hᵀz + 2a (u − t) = 0`. A step is one of Newton's method on these
+//! equations in `u` and `z` together (Andersen, Christiansen, Conn and Overton 2000; Chan, Golub and Mulet
+//! 1999): its matrix has the pattern of `HᵀH`, and its dual point solves the dual equations exactly.
 
 use crate::block_rows::BLOCK;
 use crate::solve::certificate::DualPoint;
@@ -109,8 +109,9 @@ impl<const K: usize> Model<K> {
         }
     }
 
-    /// The farthest of the points all the way, halfway, a quarter of the way, … along a `step` from `u` at which the barrier
-    /// function is not larger than before, and the objective there; `change` is `H` times the step.
+    /// The farthest of the points all the way, halfway, a quarter of the way, … along a `step` from `u` at
+    /// which the barrier function is not larger than before, and the objective there; `change` is `H` times
+    /// the step.
     #[must_use]
     pub(super) fn descend(
         &self,
@@ -124,7 +125,8 @@ impl<const K: usize> Model<K> {
         for _ in 0..=HALVINGS {
             let there = |(u, step): (&[f64; K], &[f64; K])| std::array::from_fn(|c| u[c] + part * step[c]);
             let u: Vec<[f64; K]> = u.iter().zip(step).map(there).collect();
-            let h: Vec<Block<K>> = self.h.iter().zip(change).map(|(h, by)| combine(1.0, h, part, by)).collect();
+            let h: Vec<Block<K>> =
+                self.h.iter().zip(change).map(|(h, by)| combine(1.0, h, part, by)).collect();
             if self.value(reduced, &u, &h) <= before {
                 let primal = reduced.objective(&u, &h);
                 return Some((u, primal));
@@ -189,7 +191,8 @@ mod tests {
     use crate::solve::fast::system::System;
     use crate::solve::{Coupling, FreeOperator, Problem};
 
-    /// Blocks over three neighbors on a line, weights from nothing to two, fidelity on every other row, two ends known.
+    /// Blocks over three neighbors on a line, weights from nothing to two, fidelity on every other row,
+    /// two ends known.
     fn problem(operator: &BlockRows) -> Problem<'_> {
         let n = operator.n_columns;
         let data = (0..n).map(|i| (0.7 * i as f64).sin() + 0.1 * i as f64).collect();
@@ -232,7 +235,11 @@ mod tests {
     }
 
     /// Newton's method at one fixed parameter; the point, the dual point, and how far the last step went.
-    fn center(reduced: &mut Reduced<'_, 1>, barrier: f64, n_steps: usize) -> (Vec<[f64; 1]>, Vec<Block<1>>, f64) {
+    fn center(
+        reduced: &mut Reduced<'_, 1>,
+        barrier: f64,
+        n_steps: usize,
+    ) -> (Vec<[f64; 1]>, Vec<Block<1>>, f64) {
         let mut system = System::new(reduced.free, None).unwrap();
         let mut u = reduced.target.clone();
         let mut z = vec![[[0.0; 1]; BLOCK]; reduced.n_blocks()];
@@ -258,10 +265,13 @@ mod tests {
         with_reduced(|reduced| {
             let none = vec![[[0.0; 1]; BLOCK]; reduced.n_blocks()];
             // On the path z is the slope; there, and only there, the matrix is the derivative.
-            let model = |u: &[[f64; 1]]| Model::new(&reduced, u, Model::new(&reduced, u, &none, 0.1).slope(), 0.1);
+            let model =
+                |u: &[[f64; 1]]| Model::new(&reduced, u, Model::new(&reduced, u, &none, 0.1).slope(), 0.1);
             let u = &reduced.target;
             let step: Vec<[f64; 1]> = (0..u.len()).map(|i| [(1.3 * i as f64).cos()]).collect();
-            let moved = |far: f64| -> Vec<[f64; 1]> { u.iter().zip(&step).map(|(u, s)| [u[0] + far * s[0]]).collect() };
+            let moved = |far: f64| -> Vec<[f64; 1]> {
+                u.iter().zip(&step).map(|(u, s)| [u[0] + far * s[0]]).collect()
+            };
             let (ahead, behind) = (model(&moved(1e-5)), model(&moved(-1e-5)));
             let mut change = Vec::new();
             reduced.apply_change(&step, &mut change);

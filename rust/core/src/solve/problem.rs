@@ -77,7 +77,8 @@ impl Status {
 
 /// `min_u Σ_b w_b ‖(H u)_b‖ + Σ_i a_i ‖u_i − t_i‖²` subject to fixed rows of `u` and `A u = b`.
 ///
-/// Rowe et al. 2024, eq. (21), in matrices eq. (39), with `a = α·mass`, weights per block, and one or several columns.
+/// Rowe et al. 2024, eq. (21), in matrices eq. (39), with `a = α·mass`, weights per block,
+/// and one or several columns.
 #[derive(Debug, Clone)]
 pub struct Problem<'a> {
     /// The operator `H`, a block a cone.
@@ -124,11 +125,13 @@ pub struct Solution {
     pub objective: f64,
     /// A lower bound on the objective of every feasible point.
     pub dual_objective: f64,
-    /// What counts as an objective of zero: a millionth of the objective at the target, or what rounding alone makes of it.
+    /// What counts as an objective of zero: a millionth of the objective at the target,
+    /// or what rounding alone makes of it.
     pub floor: f64,
-    /// `(objective − dual_objective) / scale`, computed from the point that is returned; `scale` is the objective, or
-    /// where that is larger, `floor`, so that the gap has no unit and an affine solution does not divide by zero. Not
-    /// below 0: where rounding lifts the bound above the objective, the two are equal as far as can be told.
+    /// `(objective − dual_objective) / scale`, computed from the point that is returned; `scale` is the
+    /// objective, or where that is larger, `floor`, so that the gap has no unit and an affine solution does
+    /// not divide by zero. Not below 0: where rounding lifts the bound above the objective, the two are equal
+    /// as far as can be told.
     pub gap: f64,
     /// Iterations, summed over separate columns.
     pub iterations: usize,
@@ -160,7 +163,10 @@ impl Problem<'_> {
     pub(super) fn check_shapes(&self) -> Result<()> {
         let (n, m) = (self.n_rows(), self.operator.n_blocks());
         if self.weights.len() != m {
-            return Err(Error::argument("face_weights", format!("has {} entries, expected {m}", self.weights.len())));
+            return Err(Error::argument(
+                "face_weights",
+                format!("has {} entries, expected {m}", self.weights.len()),
+            ));
         }
         self.target.check("values", n)?;
         check_nonnegative("fidelity", &self.fidelity, n)?;
@@ -178,7 +184,10 @@ impl Problem<'_> {
             if right.n_columns != self.target.n_columns {
                 return Err(Error::argument(
                     "linear_constraints",
-                    format!("the right side has {} columns, expected {}", right.n_columns, self.target.n_columns),
+                    format!(
+                        "the right side has {} columns, expected {}",
+                        right.n_columns, self.target.n_columns
+                    ),
                 ));
             }
         }
@@ -191,8 +200,8 @@ impl Problem<'_> {
         objective.abs().max(floor).max(f64::MIN_POSITIVE)
     }
 
-    /// The objective at `values`, from the whole operator: what a solution claims, computed from what it hands out. The energy
-    /// is ½ Σ w ‖(H u)_b‖² where `quadratic`.
+    /// The objective at `values`, from the whole operator: what a solution claims, computed from what it
+    /// hands out. The energy is ½ Σ w ‖(H u)_b‖² where `quadratic`.
     #[must_use]
     pub fn objective(&self, values: &Columns, quadratic: bool) -> f64 {
         let block = |(b, weight): (usize, &f64)| {
@@ -221,7 +230,10 @@ fn check_nonnegative(name: &'static str, values: &[f64], n: usize) -> Result<()>
         return Err(Error::argument(name, format!("has {} entries, expected {n}", values.len())));
     }
     match values.iter().position(|x| !(x.is_finite() && *x >= 0.0)) {
-        Some(i) => Err(Error::argument(name, format!("entry {i} is {}; it must be finite and at least 0", values[i]))),
+        Some(i) => Err(Error::argument(
+            name,
+            format!("entry {i} is {}; it must be finite and at least 0", values[i]),
+        )),
         None => Ok(()),
     }
 }

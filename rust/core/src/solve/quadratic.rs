@@ -1,8 +1,9 @@
-//! Quadratic energies: `min ½ Σ_b w_b ‖(H u)_b‖² + Σ_i a_i ‖u_i − t_i‖²` with fixed rows and `A u = b`, by one factorization.
+//! Quadratic energies: `min ½ Σ_b w_b ‖(H u)_b‖² + Σ_i a_i ‖u_i − t_i‖²` with fixed rows and `A u = b`,
+//! by one factorization.
 //!
-//! The factored matrix carries a shift where the energy alone may not determine `u`; conjugate gradients with that factor as
-//! preconditioner (projected on `A u = 0`, Gould, Hribar and Nocedal 2001) take its effect out again. Where there is
-//! no shift the first step is exact and the second one is iterative refinement.
+//! The factored matrix carries a shift where the energy alone may not determine `u`; conjugate gradients with
+//! that factor as preconditioner (projected on `A u = 0`, Gould, Hribar and Nocedal 2001) take its effect out
+//! again. Where there is no shift the first step is exact and the second one is iterative refinement.
 
 use crate::block_rows::BlockRows;
 use crate::error::SolveError;
@@ -15,12 +16,12 @@ use crate::solve::normal_matrix::NormalMatrix;
 use crate::solve::problem::{Problem, Settings, Solution, Solver, Status};
 use crate::{Error, Result};
 
-/// The shift as a part of the diagonal: above rounding in the factorization, below the smallest eigenvalue of well posed
-/// problems up to some 100k vertices.
+/// The shift as a part of the diagonal: above rounding in the factorization, below the smallest eigenvalue of
+/// well posed problems up to some 100k vertices.
 const SHIFT: f64 = 1e-13;
 
-/// The same with linear constraints that may have to hold the kernel of the energy: small dense pivots of the constraints
-/// are told from dependent ones down to 1e-12.
+/// The same with linear constraints that may have to hold the kernel of the energy: small dense pivots of the
+/// constraints are told from dependent ones down to 1e-12.
 const SHIFT_UNDER_CONSTRAINTS: f64 = 1e-9;
 
 /// How much larger a shift is tried when the factorization fails, and how large it gets.
@@ -43,13 +44,14 @@ const MOST_STEPS: usize = 299;
 ///
 /// The problem of Rowe et al. 2024, eq. (21) with squared norms.
 ///
-/// The gap of the solution is the decrease of the objective that one more step with the factored matrix would bring, relative
-/// like [`Solution::gap`]; without a shift it is the distance to the optimum up to rounding. Weights may be negative as long as
-/// the problem stays convex. Rows of `u` that nothing determines keep their target.
+/// The gap of the solution is the decrease of the objective that one more step with the factored matrix would
+/// bring, relative like [`Solution::gap`]; without a shift it is the distance to the optimum up to rounding.
+/// Weights may be negative as long as the problem stays convex. Rows of `u` that nothing determines keep
+/// their target.
 ///
 /// # Errors
-/// Arguments that do not fit, constraints that contradict or repeat each other, a problem that is not convex, or
-/// [`Error::Cancelled`].
+/// Arguments that do not fit, constraints that contradict or repeat each other, a problem that is not convex,
+/// or [`Error::Cancelled`].
 pub fn minimize(problem: &Problem<'_>, settings: &Settings, progress: &Progress) -> Result<Solution> {
     problem.check_shapes()?;
     let free = FreeOperator::new(problem.operator, &problem.fixed)?;
@@ -93,10 +95,14 @@ struct Newton<'a> {
 
 impl<'a> Newton<'a> {
     fn new(problem: &'a Problem<'a>, free: &'a FreeOperator, memory_limit: Option<usize>) -> Result<Self> {
-        // Negative weights tell of a matrix that may not be definite, and a cut block with one makes any that is not.
+        // Negative weights tell of a matrix that may not be definite,
+        // and a cut block with one makes any that is not.
         let negative = problem.weights.iter().any(|w| *w < 0.0);
-        let normal =
-            if negative { NormalMatrix::new(&free.operator)? } else { NormalMatrix::stretched(&free.operator)? };
+        let normal = if negative {
+            NormalMatrix::new(&free.operator)?
+        } else {
+            NormalMatrix::stretched(&free.operator)?
+        };
         let mut cholesky = Cholesky::analyze(normal.pattern().clone(), memory_limit)?;
         if free.free.is_empty() {
             return Ok(Self { problem, free, cholesky });
@@ -113,11 +119,15 @@ impl<'a> Newton<'a> {
             Some(_) => SHIFT_UNDER_CONSTRAINTS,
         };
         // With negative weights a matrix that is far from definite tells of a problem that is not convex.
-        let largest =
-            if negative && problem.linear_constraints.is_none() { SHIFT_GROWTH * SHIFT } else { LARGEST_SHIFT };
+        let largest = if negative && problem.linear_constraints.is_none() {
+            SHIFT_GROWTH * SHIFT
+        } else {
+            LARGEST_SHIFT
+        };
         loop {
             for (&s, d) in normal.pattern().starts.iter().zip(&diagonal) {
-                // A row without an entry would make the matrix singular; nothing pulls at it, so it stays where it is.
+                // A row without an entry would make the matrix singular; nothing pulls at it,
+                // so it stays where it is.
                 values[s] = if *d == 0.0 { scale } else { d + shift * scale };
             }
             match cholesky.factorize(&values) {
@@ -217,14 +227,17 @@ impl Quadratic<1> for Descending<'_, '_> {
         direction.iter().zip(free).for_each(|(d, &i)| whole[i as usize] = d[0]);
         let product = problem.operator.normal_times(&problem.weights, &whole);
         out.clear();
-        out.extend(free.iter().map(|&i| i as usize).map(|i| [product[i] + 2.0 * problem.fidelity[i] * whole[i]]));
+        out.extend(
+            free.iter().map(|&i| i as usize).map(|i| [product[i] + 2.0 * problem.fidelity[i] * whole[i]]),
+        );
         Ok(())
     }
 
-    /// The factored matrix's inverse times the residual, projected on the kernel of the constraints, whose right side is zero.
+    /// The factored matrix's inverse times the residual, projected on the kernel of the constraints,
+    /// whose right side is zero.
     ///
-    /// What the constraints hold is taken out of the residual first: left in, its rounding would outgrow the rest (Gould, Hribar
-    /// and Nocedal 2001, section 6).
+    /// What the constraints hold is taken out of the residual first: left in, its rounding would outgrow the
+    /// rest (Gould, Hribar and Nocedal 2001, section 6).
     fn precondition(&mut self, residual: &mut [[f64; 1]]) -> Vec<[f64; 1]> {
         let mut z = residual.to_vec();
         self.newton.cholesky.solve(&mut z);
@@ -240,7 +253,8 @@ impl Quadratic<1> for Descending<'_, '_> {
         z
     }
 
-    /// The residual is computed anew: that is iterative refinement. A step up is rounding, which has the last word.
+    /// The residual is computed anew: that is iterative refinement. A step up is rounding,
+    /// which has the last word.
     fn go(&mut self, far: f64, direction: &[[f64; 1]], _: &[[f64; 1]], residual: &mut [[f64; 1]]) -> bool {
         let free = &self.newton.free.free;
         let before = self.newton.objective(self.u, self.target);
@@ -262,7 +276,8 @@ fn squared(x: [f64; 3]) -> f64 {
 fn not_convex() -> Error {
     Error::Solve(SolveError::Infeasible {
         reason:
-            "this energy is not convex on this mesh with these fixed values; fix more vertices, raise the fidelity, or \
+            "this energy is not convex on this mesh with these fixed values; fix more vertices, raise the \
+            fidelity, or \
                  use another energy"
                 .into(),
     })

@@ -16,8 +16,8 @@ pub(super) const GRAIN: usize = 4096;
 /// A transposed product has at most this many partial sums, each as long as the result.
 const MOST_PARTS: usize = 4;
 
-/// How the blocks are cut into parts that threads take, each with sums of its own: by the number of blocks alone, so that
-/// results do not depend on the number of threads.
+/// How the blocks are cut into parts that threads take, each with sums of its own: by the number of blocks
+/// alone, so that results do not depend on the number of threads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Parts {
     /// Blocks in each part but the last.
@@ -68,7 +68,11 @@ impl<'a, const K: usize> Reduced<'a, K> {
     ///
     /// # Errors
     /// [`SolveError::Infeasible`] when a linear constraint speaks of fixed rows only and contradicts them.
-    pub fn new(problem: &'a Problem<'_>, free: &'a FreeOperator, columns: &[usize]) -> Result<Self, SolveError> {
+    pub fn new(
+        problem: &'a Problem<'_>,
+        free: &'a FreeOperator,
+        columns: &[usize],
+    ) -> Result<Self, SolveError> {
         let row_of = |i: usize| -> [f64; K] {
             std::array::from_fn(|c| columns.get(c).map_or(0.0, |&column| problem.target.column(column)[i]))
         };
@@ -190,8 +194,9 @@ impl<'a, const K: usize> Reduced<'a, K> {
         self.offset + norms + self.fidelity_term(u)
     }
 
-    /// Below this an objective counts as zero: a millionth of the objective at the target, or 1e-9 of what that would be
-    /// if the terms of `H t + c` did not cancel, whichever is larger. `h` is the operator applied to the target.
+    /// Below this an objective counts as zero: a millionth of the objective at the target, or 1e-9 of what
+    /// that would be if the terms of `H t + c` did not cancel, whichever is larger. `h` is the operator
+    /// applied to the target.
     #[must_use]
     pub fn floor(&self, h: &[Block<K>]) -> f64 {
         let operator = &self.free.operator;

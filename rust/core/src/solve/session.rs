@@ -1,4 +1,5 @@
-//! The fast solver for whole problems: fixed rows, joint or separate columns, and what one run leaves to the next.
+//! The fast solver for whole problems: fixed rows, joint or separate columns,
+//! and what one run leaves to the next.
 
 use crate::block_rows::BLOCK;
 use crate::linear::Columns;
@@ -15,8 +16,8 @@ use crate::{Error, Result};
 /// At most this many columns in one joint norm.
 pub const MAX_JOINT_COLUMNS: usize = 16;
 
-/// A solver that keeps the symbolic factorization while the operator's pattern stays, and starts each run from the
-/// multipliers of the last one while the problems stay alike.
+/// A solver that keeps the symbolic factorization while the operator's pattern stays, and starts each run
+/// from the multipliers of the last one while the problems stay alike.
 #[derive(Debug, Default)]
 pub struct Session {
     structure: Option<Structure>,
@@ -69,7 +70,12 @@ impl Session {
     ///
     /// # Errors
     /// Arguments that do not fit, a failed factorization, contradicting constraints, or [`Error::Cancelled`].
-    pub fn solve(&mut self, problem: &Problem<'_>, settings: &Settings, progress: &Progress) -> Result<Solution> {
+    pub fn solve(
+        &mut self,
+        problem: &Problem<'_>,
+        settings: &Settings,
+        progress: &Progress,
+    ) -> Result<Solution> {
         self.run(problem, Method::Fast, settings, progress)
     }
 
@@ -82,16 +88,18 @@ impl Session {
     ) -> Result<Solution> {
         problem.check()?;
         let k = problem.target.n_columns;
-        let groups: Vec<Vec<usize>> = match problem.coupling {
-            Coupling::Joint if k > MAX_JOINT_COLUMNS => {
-                return Err(Error::argument(
+        let groups: Vec<Vec<usize>> =
+            match problem.coupling {
+                Coupling::Joint if k > MAX_JOINT_COLUMNS => {
+                    return Err(Error::argument(
                     "values",
-                    format!("has {k} columns, one joint norm takes at most {MAX_JOINT_COLUMNS}; use separate coupling"),
+                    format!("has {k} columns, one joint norm takes at most {MAX_JOINT_COLUMNS}; use separate \
+                    coupling"),
                 ));
-            }
-            Coupling::Joint => vec![(0..k).collect()],
-            Coupling::Separate => (0..k).map(|c| vec![c]).collect(),
-        };
+                }
+                Coupling::Joint => vec![(0..k).collect()],
+                Coupling::Separate => (0..k).map(|c| vec![c]).collect(),
+            };
         self.prepare(problem)?;
         let stored = std::mem::take(&mut self.warm);
         let fits = stored.len() == groups.len();

@@ -1,15 +1,17 @@
 //! Matrix stretching (Grcar 1990; Adlers and Björck 2000): blocks with many columns cut into pieces with few.
 //!
-//! A block of `H` with `d` columns, as the Hessian at a vertex with `d` neighbors, makes a dense clique of `d²` entries of its
-//! term `HᵀRH` in the normal equations, and a factor that grows with the cube of `d`. Cut into `N` pieces `H_1 u + … + H_N u` with
-//! new unknowns `s_i` between them, each piece has a residual of its own,
+//! A block of `H` with `d` columns, as the Hessian at a vertex with `d` neighbors, makes a dense clique of
+//! `d²` entries of its term `HᵀRH` in the normal equations, and a factor that grows with the cube of `d`. Cut
+//! into `N` pieces `H_1 u + … + H_N u` with new unknowns `s_i` between them, each piece has a residual of its
+//! own,
 //!
 //! `e_1 = H_1 u + s_1, e_2 = H_2 u − s_1 + s_2, …, e_N = H_N u − s_{N−1}`,
 //!
-//! which sum to `H u`. The least of `N Σ e_iᵀ V e_i` over the `s_i` has all `e_i` alike and is `(H u)ᵀ V (H u)`: eliminating the new
-//! unknowns from the stretched matrix leaves the one before, for every `V`, so both have the same solution, and one is as
-//! definite as the other. Pieces follow each other in the order in which the rest of the matrix would be eliminated; then a
-//! subtree of the elimination holds a run of pieces, and no front grows by more than the unknowns at the two ends of a run.
+//! which sum to `H u`. The least of `N Σ e_iᵀ V e_i` over the `s_i` has all `e_i` alike and is
+//! `(H u)ᵀ V (H u)`: eliminating the new unknowns from the stretched matrix leaves the one before, for every
+//! `V`, so both have the same solution, and one is as definite as the other. Pieces follow each other in the
+//! order in which the rest of the matrix would be eliminated; then a subtree of the elimination holds a run
+//! of pieces, and no front grows by more than the unknowns at the two ends of a run.
 
 use crate::block_rows::{BlockRows, BLOCK};
 use crate::error::SolveError;
@@ -17,8 +19,9 @@ use crate::linear::ordering::eliminated;
 use crate::memory;
 use crate::solve::normal_pattern::pattern_of;
 
-/// Blocks with more columns than this are cut. Measured on spheres with poles of so many columns, 24k and 120k vertices in all: at 128
-/// cutting takes as long or a fifth longer, at 256 two thirds of the time, at 1024 a fifth.
+/// Blocks with more columns than this are cut. Measured on spheres with poles of so many columns, 24k and
+/// 120k vertices in all: at 128 cutting takes as long or a fifth longer, at 256 two thirds of the time, at
+/// 1024 a fifth.
 const DENSE: usize = 160;
 
 /// Columns of a piece: 16 to 48 take alike, 64 a fifth more (the same spheres).
@@ -139,11 +142,12 @@ impl Stretching {
         column
     }
 
-    /// Whether `operator`, of the same pattern, can be cut in the same way: rows that had no entries still have none.
+    /// Whether `operator`, of the same pattern, can be cut in the same way:
+    /// rows that had no entries still have none.
     pub(super) fn fits(&self, operator: &BlockRows) -> bool {
-        self.cut
-            .iter()
-            .all(|&(b, used)| used_rows(operator, b as usize).iter().zip(used).all(|(now, then)| then || !now))
+        self.cut.iter().all(|&(b, used)| {
+            used_rows(operator, b as usize).iter().zip(used).all(|(now, then)| then || !now)
+        })
     }
 
     /// The cut operator without the values of `operator`: its pattern.
@@ -189,8 +193,8 @@ mod tests {
     use crate::solve::normal_matrix::NormalMatrix;
     use crate::solve::primal_dual::Stiffness;
 
-    /// A ring of `n` columns in a scattered order around two more: blocks of three neighbors and a hub, and for both hubs blocks
-    /// of all, the last with entries in its first row only.
+    /// A ring of `n` columns in a scattered order around two more: blocks of three neighbors and a hub, and
+    /// for both hubs blocks of all, the last with entries in its first row only.
     fn hubs(n: usize) -> BlockRows {
         let mut rows = BlockRows::empty(n + 2);
         let scattered = |k: usize| ((k % n) * 7 % n) as u32;
@@ -239,7 +243,12 @@ mod tests {
 
         let stiffness: Vec<Stiffness> = weights
             .iter()
-            .map(|&scale| Stiffness { scale, drop: 0.3 * scale, dual: [0.9, 0.1, 0.2], primal: [0.5, 0.7, -0.3] })
+            .map(|&scale| Stiffness {
+                scale,
+                drop: 0.3 * scale,
+                dual: [0.9, 0.1, 0.2],
+                primal: [0.5, 0.7, -0.3],
+            })
             .collect();
         whole.assemble_stiff(&h, &stiffness, &diagonal, &mut of_whole);
         cut.assemble_stiff(&h, &stiffness, &diagonal, &mut of_cut);

@@ -1,4 +1,5 @@
-//! The surface of a kind that fits points best: robust least squares by the method of Levenberg and Marquardt.
+//! The surface of a kind that fits points best: robust least squares by the method of Levenberg and
+//! Marquardt.
 
 use super::motion::COUNT;
 use super::starts::starts;
@@ -6,21 +7,22 @@ use super::{Kind, Surface};
 use crate::linear::small::symmetric_eigen;
 use crate::mesh::vector::{add, dot, norm, scale, sub, Point};
 
-/// The most that one point's misfit counts: noise is off by more than 3.5 standard deviations once in two thousand points, and
-/// what is off by more belongs to something else.
+/// The most that one point's misfit counts: noise is off by more than 3.5 standard deviations once in two
+/// thousand points, and what is off by more belongs to something else.
 pub const MOST_MISFIT: f64 = 6.0;
 
 /// Steps at most; fits settle after five to fifteen.
 const MOST_STEPS: usize = 30;
 
-/// Starts that are followed to the end, the best of some twenty: the median distance that ranks them is blind to which of two
-/// close ones has the better end.
+/// Starts that are followed to the end, the best of some twenty: the median distance that ranks them is blind
+/// to which of two close ones has the better end.
 const FOLLOWED: usize = 3;
 
 /// A step that lowers the cost by less than this part of it is the last.
 const SETTLED: f64 = 1e-10;
 
-/// No radius is larger than this many times the size of what is fitted: beyond, the surface is a plane as far as doubles tell.
+/// No radius is larger than this many times the size of what is fitted: beyond,
+/// the surface is a plane as far as doubles tell.
 const LARGEST: f64 = 1e4;
 
 /// Points with normals, to which surfaces are fitted.
@@ -43,8 +45,8 @@ pub struct Fit {
     pub cost: f64,
 }
 
-/// What a point at this distance costs where the noise has standard deviation `sigma`: half the square of their ratio, the
-/// negative logarithm of the likelihood, and no more than [`MOST_MISFIT`].
+/// What a point at this distance costs where the noise has standard deviation `sigma`: half the square of
+/// their ratio, the negative logarithm of the likelihood, and no more than [`MOST_MISFIT`].
 #[must_use]
 pub fn misfit(distance: f64, sigma: f64) -> f64 {
     let ratio = distance / sigma;
@@ -138,11 +140,12 @@ impl Samples {
     }
 }
 
-/// The surface of a `kind` with the least sum of [`misfit`]s to `samples`, whose noise has standard deviation `sigma` along the
-/// normal. `None` where the points determine none.
+/// The surface of a `kind` with the least sum of [`misfit`]s to `samples`, whose noise has standard deviation
+/// `sigma` along the normal. `None` where the points determine none.
 ///
-/// Distances, not algebraic residuals, are minimized: radii have no bias to speak of. Several starts are made of points and
-/// normals, the best followed with weights of Geman and McClure, whose scale falls from what the start leaves to the noise.
+/// Distances, not algebraic residuals, are minimized: radii have no bias to speak of. Several starts are made
+/// of points and normals, the best followed with weights of Geman and McClure, whose scale falls from what
+/// the start leaves to the noise.
 #[must_use]
 pub fn fit(kind: Kind, samples: &Samples, sigma: f64) -> Option<Fit> {
     let (here, center, size) = samples.normalized()?;
@@ -178,7 +181,8 @@ impl Samples {
     fn spread(&self, surface: &Surface) -> f64 {
         const ENOUGH: usize = 400;
         let step = self.len().div_ceil(ENOUGH).max(1);
-        let mut distances: Vec<f64> = self.points.iter().step_by(step).map(|&p| surface.distance(p).0.abs()).collect();
+        let mut distances: Vec<f64> =
+            self.points.iter().step_by(step).map(|&p| surface.distance(p).0.abs()).collect();
         let middle = distances.len() / 2;
         *distances.select_nth_unstable_by(middle, f64::total_cmp).1
     }
@@ -221,7 +225,8 @@ fn refined(start: Surface, samples: &Samples, sigma: f64) -> (Surface, f64) {
     (best, least)
 }
 
-/// Where the weights of Geman and McClure have fallen to a quarter, in standard deviations: as far as [`MOST_MISFIT`] reaches.
+/// Where the weights of Geman and McClure have fallen to a quarter, in standard deviations: as far as
+/// [`MOST_MISFIT`] reaches.
 const TAIL: f64 = 3.5;
 
 fn soft_cost(samples: &Samples, surface: &Surface, width: f64) -> f64 {
@@ -270,7 +275,9 @@ fn damped(matrix: &Matrix, right: &[f64; COUNT], damping: f64) -> [f64; COUNT] {
         step.iter_mut().zip(vector).for_each(|(s, v)| *s += length * v);
     }
     // No turn of more than half a radian at once, nor a shift of more than the size.
-    let most = norm([step[3], step[4], step[5]]).max(step[7].abs()).max(0.5 * norm([step[0], step[1], step[2]])) / 0.5;
+    let most =
+        norm([step[3], step[4], step[5]]).max(step[7].abs()).max(0.5 * norm([step[0], step[1], step[2]]))
+            / 0.5;
     if most > 1.0 {
         step.iter_mut().for_each(|s| *s /= most);
     }

@@ -1,5 +1,6 @@
-//! Surfaces by name: plane, sphere, cylinder, cone, torus. Their distances, normals and projections ([`Surface`]), their fits
-//! to points with noise ([`fit`]), and the curves and corners where several of them meet ([`meeting`]).
+//! Surfaces by name: plane, sphere, cylinder, cone, torus. Their distances, normals and projections
+//! ([`Surface`]), their fits to points with noise ([`fit`]), and the curves and corners where several of them
+//! meet ([`meeting`]).
 
 mod fit;
 mod meeting;
@@ -137,8 +138,8 @@ impl Surface {
         }
     }
 
-    /// The signed distance of `p`, and the direction in which it grows, of length 1: the normal of the surface in the nearest
-    /// point. Positive outside, for planes on the side of the normal.
+    /// The signed distance of `p`, and the direction in which it grows, of length 1: the normal of the
+    /// surface in the nearest point. Positive outside, for planes on the side of the normal.
     #[must_use]
     pub fn distance(&self, p: Point) -> (f64, Point) {
         match *self {
@@ -205,7 +206,9 @@ impl Surface {
     pub fn placed(&self, size: f64, shift: Point) -> Self {
         let place = |p: Point| add(scale(p, size), shift);
         match *self {
-            Self::Plane { normal, offset } => Self::Plane { normal, offset: size * offset + dot(normal, shift) },
+            Self::Plane { normal, offset } => {
+                Self::Plane { normal, offset: size * offset + dot(normal, shift) }
+            }
             Self::Sphere { center, radius } => Self::Sphere { center: place(center), radius: size * radius },
             Self::Cylinder { point, axis, radius } => {
                 Self::Cylinder { point: place(point), axis, radius: size * radius }
@@ -252,7 +255,10 @@ mod tests {
                 for c in 0..3 {
                     let mut q = p;
                     q[c] += 1e-6;
-                    assert!(((surface.distance(q).0 - distance) / 1e-6 - normal[c]).abs() < 1e-4, "{surface:?}");
+                    assert!(
+                        ((surface.distance(q).0 - distance) / 1e-6 - normal[c]).abs() < 1e-4,
+                        "{surface:?}"
+                    );
                 }
             }
         }
@@ -264,7 +270,9 @@ mod tests {
         for surface in all() {
             let p = [0.4, 0.9, -0.2];
             let placed = surface.placed(2.0, shift);
-            assert!((placed.distance(add(scale(p, 2.0), shift)).0 - 2.0 * surface.distance(p).0).abs() < 1e-12);
+            assert!(
+                (placed.distance(add(scale(p, 2.0), shift)).0 - 2.0 * surface.distance(p).0).abs() < 1e-12
+            );
         }
         let tip = all()[3].apex().unwrap_or_default();
         assert!(all()[3].distance(tip).0.abs() < 1e-12);

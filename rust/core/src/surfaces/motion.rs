@@ -1,4 +1,5 @@
-//! How a surface moves and changes its radii: the parameters of the fit, and the derivatives of the distance by them.
+//! How a surface moves and changes its radii: the parameters of the fit,
+//! and the derivatives of the distance by them.
 
 use super::{beside, Surface};
 use crate::mesh::vector::{add, cross, dot, norm, scale, unit, Point};
@@ -7,8 +8,8 @@ use crate::mesh::vector::{add, cross, dot, norm, scale, unit, Point};
 pub(super) const COUNT: usize = 8;
 
 impl Surface {
-    /// The signed distance of `p`, and its derivatives by shift, turn, and the radii and angles of the surface in the order in
-    /// which they are declared; zero for those that it does not have.
+    /// The signed distance of `p`, and its derivatives by shift, turn, and the radii and angles of the
+    /// surface in the order in which they are declared; zero for those that it does not have.
     pub(super) fn derivatives(&self, p: Point) -> (f64, [f64; COUNT]) {
         let (distance, normal) = self.distance(p);
         let turn = cross(normal, p);

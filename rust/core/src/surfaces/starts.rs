@@ -39,7 +39,8 @@ fn principal(matrix: [[f64; 3]; 3]) -> [Point; 3] {
 
 fn planes(samples: &Samples) -> Vec<Surface> {
     let [.., thin] = principal(spread(&samples.points, &samples.weights, true));
-    let sum = samples.normals.iter().zip(&samples.weights).fold([0.0; 3], |sum, (&n, &w)| add(sum, scale(n, w)));
+    let sum =
+        samples.normals.iter().zip(&samples.weights).fold([0.0; 3], |sum, (&n, &w)| add(sum, scale(n, w)));
     let through = |normal: Point| {
         let mut offsets: Vec<f64> = samples.points.iter().map(|&p| dot(p, normal)).collect();
         let middle = offsets.len() / 2;
@@ -75,7 +76,8 @@ fn least_squares<const N: usize>(rows: impl Iterator<Item = ([f64; N], f64, f64)
 /// `|p|² = 2 c · p + k`, and from the normals, which meet in the center.
 fn spheres(samples: &Samples) -> Vec<Surface> {
     let each = || samples.points.iter().zip(&samples.normals).zip(&samples.weights);
-    let x = least_squares(each().map(|((p, _), &w)| ([2.0 * p[0], 2.0 * p[1], 2.0 * p[2], 1.0], dot(*p, *p), w)));
+    let x =
+        least_squares(each().map(|((p, _), &w)| ([2.0 * p[0], 2.0 * p[1], 2.0 * p[2], 1.0], dot(*p, *p), w)));
     let algebraic = [x[0], x[1], x[2]];
     let radius = (x[3] + dot(algebraic, algebraic)).max(0.0).sqrt();
     // p = c + r n

@@ -1,4 +1,5 @@
-//! What holds of every answer before it is handed out: it is a number, near what went in, and claims no more than is so.
+//! What holds of every answer before it is handed out: it is a number, near what went in,
+//! and claims no more than is so.
 
 use crate::error::{Error, SolveError};
 use crate::linear::Columns;
@@ -6,10 +7,12 @@ use crate::solve::{Problem, Settings, Solution, Status};
 use crate::unit::Unit;
 use crate::Result;
 
-/// No point of an answer is farther from the box around what went in than this many times the box's longest side.
+/// No point of an answer is farther from the box around what went in than this many times the box's longest
+/// side.
 ///
-/// A step of the flow weighs moving against bending and stays within the box of sound meshes; where triangles are so uneven
-/// that the factorization has no correct digit left, points end up anywhere (1e66 was seen on a mesh of size 1e30).
+/// A step of the flow weighs moving against bending and stays within the box of sound meshes; where triangles
+/// are so uneven that the factorization has no correct digit left, points end up anywhere (1e66 was seen on a
+/// mesh of size 1e30).
 const FARTHEST: f64 = 10.0;
 
 /// The box around points that went in.
@@ -43,7 +46,8 @@ pub(crate) fn refused() -> Error {
     Error::Solve(SolveError::Uneven)
 }
 
-/// Makes `solution` claim what is so: the objective is that of the values handed out, and the gap and the status follow.
+/// Makes `solution` claim what is so: the objective is that of the values handed out,
+/// and the gap and the status follow.
 ///
 /// # Errors
 /// [`SolveError::Uneven`] for values or an objective that are no numbers.
@@ -57,12 +61,15 @@ pub(super) fn settle(
         return Err(refused());
     }
     solution.objective = problem.objective(&solution.values, quadratic);
-    let gap = (solution.objective - solution.dual_objective) / Problem::gap_scale(solution.objective, solution.floor);
+    let gap = (solution.objective - solution.dual_objective)
+        / Problem::gap_scale(solution.objective, solution.floor);
     solution.gap = gap.max(0.0);
     if !(solution.objective.is_finite() && gap.is_finite()) {
         return Err(refused());
     }
-    if solution.status == Status::Solved && settings.tolerance.is_some_and(|tolerance| solution.gap > tolerance) {
+    if solution.status == Status::Solved
+        && settings.tolerance.is_some_and(|tolerance| solution.gap > tolerance)
+    {
         solution.status = Status::Inaccurate;
     }
     Ok(())

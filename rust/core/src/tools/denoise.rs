@@ -25,15 +25,20 @@ impl Default for DenoiseOptions {
     }
 }
 
-/// `min_u E(u) + α (u − u₀)ᵀ M (u − u₀)`, for the columns of `values` (n × k) on the vertices, with the energy `E` of the options
-/// and the Voronoi mass `M`.
+/// `min_u E(u) + α (u − u₀)ᵀ M (u − u₀)`, for the columns of `values` (n × k) on the vertices, with the
+/// energy `E` of the options and the Voronoi mass `M`.
 ///
 /// Source: Rowe et al. 2024, eq. (23).
 ///
 /// # Errors
-/// Arguments of the wrong shape or range, a fidelity that is not positive, an energy that the mesh does not have, and the
-/// errors of [`crate::solve::solve`].
-pub fn denoise(mesh: &Mesh, values: &Columns, options: &DenoiseOptions, progress: &Progress) -> Result<Solution> {
+/// Arguments of the wrong shape or range, a fidelity that is not positive, an energy that the mesh does not
+/// have, and the errors of [`crate::solve::solve`].
+pub fn denoise(
+    mesh: &Mesh,
+    values: &Columns,
+    options: &DenoiseOptions,
+    progress: &Progress,
+) -> Result<Solution> {
     if !(options.fidelity > 0.0 && options.fidelity.is_finite()) {
         return Err(Error::argument("fidelity", format!("is {}; it must be positive", options.fidelity)));
     }
@@ -41,7 +46,10 @@ pub fn denoise(mesh: &Mesh, values: &Columns, options: &DenoiseOptions, progress
     values.check("values", n)?;
     let fixed = options.fixed.clone().unwrap_or_else(|| vec![false; n]);
     if fixed.len() != n {
-        return Err(Error::argument("fixed", format!("has {} entries, expected one per vertex: {n}", fixed.len())));
+        return Err(Error::argument(
+            "fixed",
+            format!("has {} entries, expected one per vertex: {n}", fixed.len()),
+        ));
     }
     let data = memory::copied("values", &values.data)?;
     let target = Columns { n_rows: values.n_rows, n_columns: values.n_columns, data };

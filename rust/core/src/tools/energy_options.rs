@@ -15,12 +15,13 @@ use crate::{Error, Result};
 pub struct EnergyOptions {
     /// What to minimize.
     pub kind: Energy,
-    /// A weight for each face: smaller where ridges are welcome. See [`EnergyForm::new`] for energies that do not live on faces.
+    /// A weight for each face: smaller where ridges are welcome.
+    /// See [`EnergyForm::new`] for energies that do not live on faces.
     pub face_weights: Option<Vec<f64>>,
     /// Dual edges of the operator.
     pub dual: Dual,
-    /// Whether to flip edges to the intrinsic Delaunay triangulation first (Rowe et al. 2024, section 6.1); values stay at
-    /// the vertices, and face weights are carried over by [`delaunay_flips_carrying`].
+    /// Whether to flip edges to the intrinsic Delaunay triangulation first (Rowe et al. 2024, section 6.1);
+    /// values stay at the vertices, and face weights are carried over by [`delaunay_flips_carrying`].
     pub delaunay: bool,
 }
 
@@ -28,20 +29,23 @@ impl EnergyOptions {
     /// The surface to work on, its faces oriented, and the energy on it.
     ///
     /// # Errors
-    /// The errors of [`EnergyForm::new`], face weights that are negative or not finite, flips for an energy that needs positions,
-    /// and a mesh on which the energy has no terms.
+    /// The errors of [`EnergyForm::new`], face weights that are negative or not finite, flips for an energy
+    /// that needs positions, and a mesh on which the energy has no terms.
     pub(super) fn on<'a>(&self, mesh: &'a Mesh) -> Result<(Cow<'a, Mesh>, EnergyForm)> {
         check_weights("face_weights", self.face_weights.as_ref(), mesh.connectivity().n_faces(), "face")?;
         let mesh = Working::unwelded(mesh)?.into_mesh();
         let (mesh, weights) = if self.delaunay {
             if self.kind.is_extrinsic() {
-                let problem =
-                    format!("flips edges intrinsically, but {} needs a mesh in space; pass False", self.kind.name());
+                let problem = format!(
+                    "flips edges intrinsically, but {} needs a mesh in space; pass False",
+                    self.kind.name()
+                );
                 return Err(Error::argument("delaunay", problem));
             }
             let mut weights = self.face_weights.clone();
             let carried = weights.as_deref_mut().unwrap_or_default();
-            let (connectivity, lengths, _) = delaunay_flips_carrying(mesh.connectivity(), mesh.edge_lengths(), carried);
+            let (connectivity, lengths, _) =
+                delaunay_flips_carrying(mesh.connectivity(), mesh.edge_lengths(), carried);
             (Cow::Owned(Mesh::from_connectivity(connectivity, lengths)?), weights.map(Cow::Owned))
         } else {
             (mesh, self.face_weights.as_ref().map(Cow::Borrowed))
@@ -58,7 +62,8 @@ impl EnergyOptions {
         }
         if self.kind.is_extrinsic() {
             let name = self.kind.name();
-            let problem = format!("{name} needs vertices inside the surface, and this mesh has none; use another");
+            let problem =
+                format!("{name} needs vertices inside the surface, and this mesh has none; use another");
             return Err(Error::argument("energy", problem));
         }
         Err(MeshError::NoFaces.into())
@@ -71,7 +76,10 @@ impl EnergyOptions {
             _ if !self.kind.is_quadratic() => Ok(()),
             _ => {
                 let name = self.kind.name();
-                Err(Error::argument("solver", format!("{name} is quadratic and takes one factorization; use auto")))
+                Err(Error::argument(
+                    "solver",
+                    format!("{name} is quadratic and takes one factorization; use auto"),
+                ))
             }
         }
     }

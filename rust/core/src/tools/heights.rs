@@ -1,4 +1,5 @@
-//! Heights over a plane that are quadratic in the other two coordinates: how surfaces, and values on them, go on nearby.
+//! Heights over a plane that are quadratic in the other two coordinates: how surfaces, and values on them,
+//! go on nearby.
 
 use crate::mesh::vector::{add, cross, dot, scale, sub, unit, Point};
 
@@ -74,8 +75,8 @@ impl LeastSquares {
         }
     }
 
-    /// The coefficients of each function, with pulls to zero: `slight` on the constant and the slopes, which need it only where
-    /// the points lie on a line, and `stiffness` on the quadratic terms.
+    /// The coefficients of each function, with pulls to zero: `slight` on the constant and the slopes, which
+    /// need it only where the points lie on a line, and `stiffness` on the quadratic terms.
     pub(super) fn solve(mut self, slight: f64, stiffness: f64) -> Vec<[f64; TERMS]> {
         for (i, row) in self.matrix.iter_mut().enumerate() {
             row[i] += if i < 3 { slight } else { stiffness };

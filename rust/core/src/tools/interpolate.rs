@@ -9,14 +9,14 @@ use crate::solve::Solution;
 use crate::unit::Unit;
 use crate::{Error, Result};
 
-/// `min_u E(u)` with `u` given at the vertices `indices`: row `r` of `values` belongs to `indices[r]`, `E` is the energy of the
-/// options. Vertices that no face uses get the mean of the given values.
+/// `min_u E(u)` with `u` given at the vertices `indices`: row `r` of `values` belongs to `indices[r]`, `E` is
+/// the energy of the options. Vertices that no face uses get the mean of the given values.
 ///
 /// Source: Rowe et al. 2024, eq. (22).
 ///
 /// # Errors
-/// Indices out of range, repeated or none, a connected part of the mesh without any given value, and the errors of
-/// [`super::denoise`].
+/// Indices out of range, repeated or none, a connected part of the mesh without any given value, and the
+/// errors of [`super::denoise`].
 pub fn interpolate(
     mesh: &Mesh,
     indices: &[usize],
@@ -41,7 +41,10 @@ pub fn interpolate(
     }
     for (row, &i) in indices.iter().enumerate() {
         if i >= n {
-            return Err(Error::argument("indices", format!("entry {row} is {i}, but there are only {n} vertices")));
+            return Err(Error::argument(
+                "indices",
+                format!("entry {row} is {i}, but there are only {n} vertices"),
+            ));
         }
         if std::mem::replace(&mut fixed[i], true) {
             return Err(Error::argument("indices", format!("names vertex {i} twice; give each value once")));
@@ -72,7 +75,9 @@ fn refuse_unknown_component(connectivity: &Connectivity, known: &[bool]) -> Resu
         if !has_value[parts.root(a) as usize] {
             return Err(Error::argument(
                 "indices",
-                format!("gives no value on the connected part of the mesh with face {f}; give at least one there"),
+                format!(
+                    "gives no value on the connected part of the mesh with face {f}; give at least one there"
+                ),
             ));
         }
     }

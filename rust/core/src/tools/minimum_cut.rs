@@ -22,7 +22,8 @@ impl Graph {
     /// `n` nodes, and the edges with their capacities.
     pub(super) fn new(n: usize, edges: &[([u32; 2], f64)]) -> Self {
         let mut arcs_of = vec![Vec::new(); n];
-        let (mut heads, mut residual) = (Vec::with_capacity(2 * edges.len()), Vec::with_capacity(2 * edges.len()));
+        let (mut heads, mut residual) =
+            (Vec::with_capacity(2 * edges.len()), Vec::with_capacity(2 * edges.len()));
         for &([a, b], capacity) in edges {
             arcs_of[a as usize].push(heads.len() as u32);
             arcs_of[b as usize].push(heads.len() as u32 + 1);
@@ -68,7 +69,8 @@ impl Graph {
         loop {
             let node = path.last().map_or(source, |arc| self.heads[*arc as usize]);
             if node == sink {
-                let room = path.iter().fold(f64::INFINITY, |least, arc| least.min(self.residual[*arc as usize]));
+                let room =
+                    path.iter().fold(f64::INFINITY, |least, arc| least.min(self.residual[*arc as usize]));
                 for &arc in &path {
                     self.residual[arc as usize] -= room;
                     self.residual[arc as usize ^ 1] += room;

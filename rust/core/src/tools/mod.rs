@@ -29,7 +29,8 @@ pub use diffusion_curves::{
 pub use energy_options::EnergyOptions;
 pub use facet::{facet, FacetMerges, FacetOptions, Faceted};
 pub use fill_holes::{
-    fill_holes, filling_demand, FillHolesOptions, Filled, FilledHole, HoleStatus, LoopChoice, PatchShape, Sharpness,
+    fill_holes, filling_demand, FillHolesOptions, Filled, FilledHole, HoleStatus, LoopChoice, PatchShape,
+    Sharpness,
 };
 pub use interpolate::interpolate;
 pub use modes::{vibration_modes, ModeOptions, Modes};

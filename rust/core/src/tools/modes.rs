@@ -14,8 +14,8 @@ use crate::solve::eigen::{mass_dot, Eigenpairs, Pencil};
 use crate::solve::{solve, Coupling, Problem, Session, Settings, Solution, Solver, Status};
 use crate::{Error, Result};
 
-/// Eigenvalues below this part of the largest one computed belong to the kernel of an energy: those of the kernel come out at
-/// 1e-16 and less, the first of the others at 1e-3 and more.
+/// Eigenvalues below this part of the largest one computed belong to the kernel of an energy: those of the
+/// kernel come out at 1e-16 and less, the first of the others at 1e-3 and more.
 const KERNEL: f64 = 1e-9;
 
 /// How exact eigenvectors are: see [`Pencil::accuracy`].
@@ -29,39 +29,50 @@ const MOST_ALTERNATIONS: usize = 60;
 pub struct ModeOptions {
     /// The energy.
     pub energy: EnergyOptions,
-    /// The solver of the L1 problems; a mode is done when its energy falls by less than the tolerance, or 1e-4 where there is none.
+    /// The solver of the L1 problems; a mode is done when its energy falls by less than the tolerance, or
+    /// 1e-4 where there is none.
     pub solve: SolveOptions,
 }
 
 /// Modes and how they were left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Modes {
-    /// One mode a column, orthonormal with respect to the Voronoi mass (of the flipped mesh, where edges were), with ascending energies. The entry of largest magnitude
-    /// (the first of those that are equal to 1e-6) is positive. Vertices without mass have 0.
+    /// One mode a column, orthonormal with respect to the Voronoi mass (of the flipped mesh, where edges
+    /// were), with ascending energies. The entry of largest magnitude (the first of those that are equal to
+    /// 1e-6) is positive. Vertices without mass have 0.
     pub values: Columns,
     /// The energy of each mode; infinite where it is past the largest number.
     pub energies: Vec<f64>,
-    /// `Solved`, `Inaccurate` where a problem in between missed its tolerance, or `Stopped` with fewer modes than asked for.
+    /// `Solved`, `Inaccurate` where a problem in between missed its tolerance,
+    /// or `Stopped` with fewer modes than asked for.
     pub status: Status,
 }
 
 /// The `count` lowest vibration modes of a surface.
 ///
-/// For a quadratic energy `½ uᵀ Q u` these are the first eigenvectors of `Q u = λ M u`. For an L1 energy `E` they follow Rowe et
-/// al. 2024, eq. (38): `u ← argmin E(u) + ½ uᵀ L u / μ` over the `u` orthogonal to the modes before with `⟨c, u⟩ = 1`, `c ← u / ‖u‖`,
-/// in turns until the energy stays, all with respect to the mass. Taken in the limit of large `μ` (the paper has 10⁶) the
-/// Dirichlet energy `½ uᵀ L u` only orders functions without energy: those, constants and on a plane affine functions, come
-/// first and exactly, by a small eigenproblem of `L`. The other modes start from the eigenvectors of the sum of squared
-/// norms; each is a local optimum, as in the paper.
+/// For a quadratic energy `½ uᵀ Q u` these are the first eigenvectors of `Q u = λ M u`. For an L1 energy `E`
+/// they follow Rowe et al. 2024, eq. (38): `u ← argmin E(u) + ½ uᵀ L u / μ` over the `u` orthogonal to the
+/// modes before with `⟨c, u⟩ = 1`, `c ← u / ‖u‖`, in turns until the energy stays, all with respect to the
+/// mass. Taken in the limit of large `μ` (the paper has 10⁶) the Dirichlet energy `½ uᵀ L u` only orders
+/// functions without energy: those, constants and on a plane affine functions, come first and exactly, by a
+/// small eigenproblem of `L`. The other modes start from the eigenvectors of the sum of squared norms; each
+/// is a local optimum, as in the paper.
 ///
 /// # Errors
 /// No modes or more than vertices with mass asked for, and the errors of [`super::interpolate`].
-pub fn vibration_modes(mesh: &Mesh, count: usize, options: &ModeOptions, progress: &Progress) -> Result<Modes> {
+pub fn vibration_modes(
+    mesh: &Mesh,
+    count: usize,
+    options: &ModeOptions,
+    progress: &Progress,
+) -> Result<Modes> {
     let settings = Settings { announce: false, ..options.solve.settings()? };
     options.energy.check_solver(options.solve.solver)?;
     let tool = if options.energy.kind.is_quadratic() { Tool::QuadraticModes } else { Tool::Modes };
     let n_columns = count.min(mesh.connectivity().n_vertices());
-    mesh.demand(tool).with_columns(n_columns, options.solve.solver.is_clarabel()).admit(options.solve.memory_limit)?;
+    mesh.demand(tool)
+        .with_columns(n_columns, options.solve.solver.is_clarabel())
+        .admit(options.solve.memory_limit)?;
     let length = mesh.unit();
     let measured = mesh.measured(length)?;
     let (mesh, form) = options.energy.on(&measured)?;
@@ -129,8 +140,8 @@ impl Sequence<'_> {
         Ok((modes, status))
     }
 
-    /// The weights with which the squared norms sum to the integral of a squared density: for the norms of faces, which carry
-    /// the area, over the area.
+    /// The weights with which the squared norms sum to the integral of a squared density: for the norms of
+    /// faces, which carry the area, over the area.
     fn weights_of_squares(&self) -> Vec<f64> {
         if self.form.energy != Energy::L1Hessian {
             return self.form.weights.clone();
@@ -210,7 +221,8 @@ impl Sequence<'_> {
         Ok((direction, status))
     }
 
-    /// The first line of (38): the least energy among functions orthogonal to `modes` whose product with `direction` is 1.
+    /// The first line of (38): the least energy among functions orthogonal to `modes` whose product with
+    /// `direction` is 1.
     fn alternate(&self, direction: &[f64], modes: &[Vec<f64>], solver: &mut Session) -> Result<Solution> {
         let n = self.mass.len();
         let mut right = vec![0.0; modes.len()];
@@ -241,7 +253,8 @@ impl Sequence<'_> {
         rows.to_csr()
     }
 
-    /// The modes with linearly extrapolated values at the `unseen` vertices, orthonormal with respect to the `whole` mass.
+    /// The modes with linearly extrapolated values at the `unseen` vertices,
+    /// orthonormal with respect to the `whole` mass.
     fn extended(&self, modes: &[Vec<f64>], unseen: &[bool], whole: &[f64]) -> Result<Vec<Vec<f64>>> {
         let mut values = Columns { n_rows: whole.len(), n_columns: modes.len(), data: modes.concat() };
         extend(self.mesh, unseen, &mut values, self.progress)?;

@@ -12,8 +12,8 @@ pub struct SolveOptions {
     pub tolerance: Option<f64>,
     /// At most this many iterations of the solver.
     pub max_iterations: Option<usize>,
-    /// The most bytes that the factor of the linear system may take, the larger part of all memory; any that the system
-    /// gives where `None`. Clarabel does not know it.
+    /// The most bytes that the factor of the linear system may take, the larger part of all memory; any that
+    /// the system gives where `None`. Clarabel does not know it.
     pub memory_limit: Option<usize>,
     /// Threads to use, of those that the machine has; all where `None`. The result does not depend on it.
     pub threads: Option<usize>,
@@ -21,7 +21,13 @@ pub struct SolveOptions {
 
 impl Default for SolveOptions {
     fn default() -> Self {
-        Self { solver: Solver::Auto, tolerance: Some(1e-3), max_iterations: None, memory_limit: None, threads: None }
+        Self {
+            solver: Solver::Auto,
+            tolerance: Some(1e-3),
+            max_iterations: None,
+            memory_limit: None,
+            threads: None,
+        }
     }
 }
 
@@ -33,7 +39,10 @@ impl SolveOptions {
     pub fn settings(&self) -> Result<Settings> {
         if let Some(tolerance) = self.tolerance {
             if !(tolerance > 0.0 && tolerance.is_finite()) {
-                return Err(Error::argument("tolerance", format!("is {tolerance}; it must be positive, say 1e-3")));
+                return Err(Error::argument(
+                    "tolerance",
+                    format!("is {tolerance}; it must be positive, say 1e-3"),
+                ));
             }
         }
         if self.max_iterations == Some(0) {
@@ -66,11 +75,15 @@ pub(super) fn check_range(name: &'static str, value: f64, least: f64, most: f64)
     Err(Error::argument(name, format!("is {value}; it must be between {least} and {most}")))
 }
 
-/// Refuses weights of edges, one row a face, that do not fit a mesh of `m` faces, or are negative or not finite.
+/// Refuses weights of edges, one row a face, that do not fit a mesh of `m` faces,
+/// or are negative or not finite.
 pub(super) fn check_edge_weights(rows: Option<&[[f64; 3]]>, m: usize) -> Result<()> {
     let Some(rows) = rows else { return Ok(()) };
     if rows.len() != m {
-        return Err(Error::argument("edge_weights", format!("has {} rows, expected one per face: {m}", rows.len())));
+        return Err(Error::argument(
+            "edge_weights",
+            format!("has {} rows, expected one per face: {m}", rows.len()),
+        ));
     }
     check_weights("edge_weights", Some(&rows.as_flattened().to_vec()), 3 * m, "halfedge")
 }
@@ -92,10 +105,16 @@ pub(super) fn check_faces(faces: Option<&[bool]>, m: usize) -> Result<()> {
 pub(super) fn check_weights(name: &'static str, values: Option<&Vec<f64>>, n: usize, of: &str) -> Result<()> {
     let Some(values) = values else { return Ok(()) };
     if values.len() != n {
-        return Err(Error::argument(name, format!("has {} entries, expected one per {of}: {n}", values.len())));
+        return Err(Error::argument(
+            name,
+            format!("has {} entries, expected one per {of}: {n}", values.len()),
+        ));
     }
     match values.iter().position(|x| !(x.is_finite() && *x >= 0.0)) {
-        Some(i) => Err(Error::argument(name, format!("entry {i} is {}; it must be finite and at least 0", values[i]))),
+        Some(i) => Err(Error::argument(
+            name,
+            format!("entry {i} is {}; it must be finite and at least 0", values[i]),
+        )),
         None => Ok(()),
     }
 }

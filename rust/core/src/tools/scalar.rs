@@ -28,7 +28,8 @@ pub struct ScalarOptions {
     pub linear_constraints: Option<(CsMat<f64>, Columns)>,
     /// Joint or separate norms of several columns; quadratic energies do not tell them apart.
     pub coupling: Coupling,
-    /// 0: the convex energy; toward 1: reweighted rounds with ever sharper ridges. For [`Energy::L1Hessian`] only.
+    /// 0: the convex energy; toward 1: reweighted rounds with ever sharper ridges.
+    /// For [`Energy::L1Hessian`] only.
     pub sharpness: f64,
     /// The solver.
     pub solve: SolveOptions,
@@ -76,7 +77,8 @@ impl ScalarProblem<'_> {
         let fidelity = value.power(2).times(length.power(2)).times(energy.power(-1)).restore(self.fidelity);
         if self.fidelity > 0.0 && !fidelity.is_normal() {
             let problem = format!(
-                "is {:e}; on a mesh and with values of this size that weighs {}; scale them to a size around 1",
+                "is {:e}; on a mesh and with values of this size that weighs {}; scale them to a size around \
+                1",
                 self.fidelity,
                 if fidelity > 1.0 { "all there is" } else { "nothing" }
             );
@@ -86,7 +88,8 @@ impl ScalarProblem<'_> {
         let (mesh, form) = options.energy.on(&measured)?;
         let mass = voronoi_mass(mesh.connectivity(), mesh.edge_lengths());
         // With a fidelity or constraints, what the energy does not see is theirs.
-        let mut open = unseen(&mesh, &form).filter(|_| fidelity == 0.0 && options.linear_constraints.is_none());
+        let mut open =
+            unseen(&mesh, &form).filter(|_| fidelity == 0.0 && options.linear_constraints.is_none());
         if let Some(open) = &mut open {
             open.iter_mut().zip(&self.fixed).for_each(|(open, fixed)| *open &= !fixed);
         }

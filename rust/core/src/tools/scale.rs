@@ -2,7 +2,8 @@
 
 use crate::mesh::{edge_lengths, triangle, Connectivity};
 
-/// A cube's side over the root mean square distance of its surface from its center: 0.25 + 2/12 for a side of 1.
+/// A cube's side over the root mean square distance of its surface from its center:
+/// 0.25 + 2/12 for a side of 1.
 const SIDE_OF_EXTENT: f64 = 1.549_193_338_482_966_8;
 
 /// The unit of length: energies grow with length, fidelity terms with its fourth power.
@@ -15,8 +16,8 @@ pub enum Scale {
     BoundingBox,
     /// The square root of the surface area: like the bounding box, but independent of rotations.
     Area,
-    /// The side of the cube whose surface is as far from its center, root mean square: nearer to the bounding box than the area
-    /// is, and independent of rotations.
+    /// The side of the cube whose surface is as far from its center, root mean square: nearer to the bounding
+    /// box than the area is, and independent of rotations.
     Extent,
     /// This length, whatever the shape.
     Length(f64),
@@ -35,13 +36,14 @@ impl Scale {
     }
 }
 
-/// Root mean square distance of the face barycenters, weighted by area, from their center (a size that rotations do not
-/// change), and the area.
+/// Root mean square distance of the face barycenters, weighted by area, from their center (a size that
+/// rotations do not change), and the area.
 pub(super) fn extent(connectivity: &Connectivity, points: &[[f64; 3]]) -> (f64, f64) {
     let (mut total, mut first, mut second) = (0.0, [0.0; 3], 0.0);
     for (face, l) in connectivity.faces().iter().zip(edge_lengths(connectivity.faces(), points)) {
         let area = triangle::area(l);
-        let center: [f64; 3] = std::array::from_fn(|c| face.iter().map(|&v| points[v as usize][c]).sum::<f64>() / 3.0);
+        let center: [f64; 3] =
+            std::array::from_fn(|c| face.iter().map(|&v| points[v as usize][c]).sum::<f64>() / 3.0);
         total += area;
         for (f, c) in first.iter_mut().zip(&center) {
             *f += area * c;

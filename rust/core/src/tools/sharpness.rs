@@ -1,7 +1,8 @@
 //! Sharpness: iterated reweighting, which makes facets where the plain L1 energy makes domes.
 //!
-//! The Frobenius norm of the Hessian prefers a dome to facets, since `√(κ₁² + κ₂²) < κ₁ + κ₂`. Weights that fall with
-//! the curvature already there (Candès et al. 2008) turn the sum of norms toward the sum of their `p`-th powers.
+//! The Frobenius norm of the Hessian prefers a dome to facets, since `√(κ₁² + κ₂²) < κ₁ + κ₂`. Weights that
+//! fall with the curvature already there (Candès et al. 2008) turn the sum of norms toward the sum of their
+//! `p`-th powers.
 
 use rayon::prelude::*;
 
@@ -9,8 +10,8 @@ use crate::block_rows::BlockRows;
 use crate::linear::Columns;
 use crate::solve::Coupling;
 
-/// Curvature below this part of the mean counts as none: keeps the weights of flat faces finite. 0.03 and 0.1 look
-/// alike, 0.1 converges faster.
+/// Curvature below this part of the mean counts as none: keeps the weights of flat faces finite. 0.03 and 0.1
+/// look alike, 0.1 converges faster.
 const FLOOR: f64 = 0.1;
 
 /// The norms `‖(H u)_b‖` of every block, joint over the columns or summed over them.
@@ -29,20 +30,25 @@ pub(super) fn block_norms(operator: &BlockRows, u: &Columns, coupling: Coupling)
         .collect()
 }
 
-/// `base · (a_f / mean a + 0.1)^(−sharpness)` with `a_f = ‖(H u)_f‖ / √A_f`, scaled so that `Σ w_f ‖(H u)_f‖` is what it
-/// was with `base` alone. `norms` are the `‖(H u)_f‖` (times area, as the operator has them), `areas` the `A_f`.
+/// `base · (a_f / mean a + 0.1)^(−sharpness)` with `a_f = ‖(H u)_f‖ / √A_f`, scaled so that `Σ w_f ‖(H u)_f‖`
+/// is what it was with `base` alone. `norms` are the `‖(H u)_f‖` (times area, as the operator has them),
+/// `areas` the `A_f`.
 #[must_use]
 pub fn sharpened_weights(norms: &[f64], areas: &[f64], base: &[f64], sharpness: f64) -> Vec<f64> {
     if sharpness == 0.0 {
         return base.to_vec();
     }
-    let density: Vec<f64> =
-        norms.iter().zip(areas).map(|(norm, area)| if *area > 0.0 { norm / area.sqrt() } else { 0.0 }).collect();
+    let density: Vec<f64> = norms
+        .iter()
+        .zip(areas)
+        .map(|(norm, area)| if *area > 0.0 { norm / area.sqrt() } else { 0.0 })
+        .collect();
     let mean = density.iter().sum::<f64>() / density.len().max(1) as f64;
     if mean <= 0.0 || !mean.is_finite() {
         return base.to_vec();
     }
-    let raw: Vec<f64> = density.iter().zip(base).map(|(a, w)| w * (a / mean + FLOOR).powf(-sharpness)).collect();
+    let raw: Vec<f64> =
+        density.iter().zip(base).map(|(a, w)| w * (a / mean + FLOOR).powf(-sharpness)).collect();
     let total = |weights: &[f64]| weights.iter().zip(norms).map(|(w, x)| w * x).sum::<f64>();
     let (before, after) = (total(base), total(&raw));
     if after <= 0.0 || !after.is_finite() {

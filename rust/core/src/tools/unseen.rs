@@ -1,4 +1,5 @@
-//! Vertices that an energy does not touch: with the Hessian of Stein et al. 2018b, the tips of triangles with two boundary edges.
+//! Vertices that an energy does not touch: with the Hessian of Stein et al. 2018b,
+//! the tips of triangles with two boundary edges.
 
 use crate::linear::Columns;
 use crate::mesh::Mesh;
@@ -21,7 +22,8 @@ pub(super) fn unseen(mesh: &Mesh, form: &EnergyForm) -> Option<Vec<bool>> {
     unseen.contains(&true).then_some(unseen)
 }
 
-/// Sets the values of the `unseen` vertices so that the gradient jumps as little as possible there: linear extrapolation.
+/// Sets the values of the `unseen` vertices so that the gradient jumps as little as possible there:
+/// linear extrapolation.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`], and a factorization that fails.

@@ -16,7 +16,8 @@ use ridgeform_core::tools::{
 };
 use ridgeform_core::{Progress, Result};
 
-/// Each call, and how many vertices a side of its mesh has: those that take little are asked for on large meshes only.
+/// Each call, and how many vertices a side of its mesh has:
+/// those that take little are asked for on large meshes only.
 pub const CALLS: [(&str, usize); 13] = [
     ("stylize", 75),
     ("denoise", 75),
@@ -35,7 +36,8 @@ pub const CALLS: [(&str, usize); 13] = [
 
 /// The mesh of a call.
 pub fn shape_for(name: &str, side: usize, scale: f64) -> Shape {
-    let shape = if name == "fill_holes" { cylinder(side, 2, side as f64 / 6.0, 2.0) } else { grid(side, side) };
+    let shape =
+        if name == "fill_holes" { cylinder(side, 2, side as f64 / 6.0, 2.0) } else { grid(side, side) };
     let lift = |[x, y, z]: [f64; 3]| [x, y, z + 2.0 * (0.1 * x).sin() + (3.7 * x * y).sin() * 0.05];
     shape.map(|p| lift(p).map(|x| scale * x))
 }
@@ -58,7 +60,8 @@ pub struct Given {
 impl Given {
     pub fn new(mesh: Mesh) -> Self {
         let points = mesh.positions().unwrap().to_vec();
-        let heights = Columns { n_rows: points.len(), n_columns: 1, data: points.iter().map(|p| p[2]).collect() };
+        let heights =
+            Columns { n_rows: points.len(), n_columns: 1, data: points.iter().map(|p| p[2]).collect() };
         let pins: Vec<usize> = (0..points.len()).step_by(500).collect();
         let data = pins.iter().map(|&i| heights.data[i]).collect();
         let middle = points.len() as u32 / 2;

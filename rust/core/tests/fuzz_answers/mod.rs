@@ -50,7 +50,11 @@ fn values(random: &mut Random, rows: usize) -> Columns {
     let columns = 1 + (random.bits() % 3) as usize;
     let exponent = any(random, &[0, 0, 0, -30, 30, -500, 500, -1000, 1000]);
     let size = 2_f64.powi(exponent / 2) * 2_f64.powi(exponent - exponent / 2);
-    Columns { n_rows: rows, n_columns: columns, data: (0..rows * columns).map(|_| size * random.symmetric()).collect() }
+    Columns {
+        n_rows: rows,
+        n_columns: columns,
+        data: (0..rows * columns).map(|_| size * random.symmetric()).collect(),
+    }
 }
 
 fn solving(random: &mut Random) -> SolveOptions {
@@ -66,7 +70,11 @@ fn solving(random: &mut Random) -> SolveOptions {
 fn scalar(random: &mut Random) -> ScalarOptions {
     let kind = any(random, &Energy::ALL).1;
     ScalarOptions {
-        energy: EnergyOptions { kind, delaunay: any(random, &[false, false, true]), ..EnergyOptions::default() },
+        energy: EnergyOptions {
+            kind,
+            delaunay: any(random, &[false, false, true]),
+            ..EnergyOptions::default()
+        },
         coupling: any(random, &[Coupling::Joint, Coupling::Separate]),
         sharpness: if kind == Energy::L1Hessian { any(random, &[0.0, 0.0, 0.7]) } else { 0.0 },
         solve: SolveOptions { solver: Solver::Auto, ..solving(random) },
@@ -129,21 +137,26 @@ pub(crate) fn check(tool: Tool, mesh: &Mesh, random: &mut Random) -> Result<()> 
         }
         Tool::Interpolate => {
             let scalar = scalar(random);
-            let mut used: Vec<usize> = mesh.connectivity().faces().iter().flatten().map(|&v| v as usize).collect();
+            let mut used: Vec<usize> =
+                mesh.connectivity().faces().iter().flatten().map(|&v| v as usize).collect();
             used.sort_unstable();
             used.dedup();
-            let few: Vec<usize> = random.permutation(used.len()).into_iter().take(5).map(|i| used[i]).collect();
+            let few: Vec<usize> =
+                random.permutation(used.len()).into_iter().take(5).map(|i| used[i]).collect();
             let given = values(random, few.len());
             let found = interpolate(mesh, &few, &given, &scalar, &progress)?;
             assert_sound(&found, &scalar);
         }
         Tool::Modes => {
             let energy = scalar(random).energy;
-            let options = ModeOptions { energy, solve: SolveOptions { solver: Solver::Auto, ..solving(random) } };
+            let options =
+                ModeOptions { energy, solve: SolveOptions { solver: Solver::Auto, ..solving(random) } };
             let found = vibration_modes(mesh, 1 + (random.bits() % 3) as usize, &options, &progress)?;
             assert_finite("modes", &found.values.data);
-            // Energies grow with a power of the inverse size, up to the fourth: of a mesh of 1e-124 they are past all numbers.
-            let longest = mesh.edge_lengths().as_flattened().iter().fold(0.0_f64, |longest, l| longest.max(*l));
+            // Energies grow with a power of the inverse size, up to the fourth:
+            // of a mesh of 1e-124 they are past all numbers.
+            let longest =
+                mesh.edge_lengths().as_flattened().iter().fold(0.0_f64, |longest, l| longest.max(*l));
             let is_one = |energy: &f64| energy.is_finite() || longest < 1e-60 && *energy == f64::INFINITY;
             assert!(found.energies.iter().all(is_one), "energies: not a number");
         }
@@ -201,8 +214,12 @@ pub(crate) fn check(tool: Tool, mesh: &Mesh, random: &mut Random) -> Result<()> 
             let colors = values(random, n);
             let regions = SegmentOptions::default();
             let labels = color_regions(mesh, &colors, &regions, None, 1e3, &progress)?;
-            let found = diffusion_curves(mesh, &colors, &labels, &DiffusionCurvesOptions::default(), &progress)?;
-            assert_finite("colors", found.redrawn.colors.data.iter().chain(&found.curves.left).chain([&found.error]));
+            let found =
+                diffusion_curves(mesh, &colors, &labels, &DiffusionCurvesOptions::default(), &progress)?;
+            assert_finite(
+                "colors",
+                found.redrawn.colors.data.iter().chain(&found.curves.left).chain([&found.error]),
+            );
         }
     }
     Ok(())

@@ -8,7 +8,8 @@ use ridgeform_core::mesh::vector::{area_vector, dot, quality, unit, Point};
 use ridgeform_core::mesh::{invariants, report, Connectivity, Mesh, MeshReport};
 use ridgeform_core::shapes::{Random, Shape};
 
-/// The mesh with its patches; the connectivity is sound, and nothing is non-manifold, degenerate or double that was not.
+/// The mesh with its patches; the connectivity is sound, and nothing is non-manifold,
+/// degenerate or double that was not.
 pub(crate) fn patched(mesh: &Mesh, patches: &[Patch]) -> Result<Mesh, String> {
     let mut vertices = mesh.positions().unwrap().to_vec();
     let mut faces = mesh.connectivity().faces().to_vec();
@@ -25,7 +26,9 @@ pub(crate) fn patched(mesh: &Mesh, patches: &[Patch]) -> Result<Mesh, String> {
         nonmanifold_vertices: after.nonmanifold_vertices.clone(),
         ..before.clone()
     };
-    if after != expected || !after.nonmanifold_vertices.iter().all(|v| before.nonmanifold_vertices.contains(v)) {
+    if after != expected
+        || !after.nonmanifold_vertices.iter().all(|v| before.nonmanifold_vertices.contains(v))
+    {
         return Err(format!("before {before:?}\nafter {after:?}"));
     }
     Ok(filled)
@@ -59,7 +62,8 @@ pub(crate) fn shapeliness(filled: &Mesh, n_old: usize) -> Shapeliness {
     found
 }
 
-/// A connected set of up to `size` faces around `seed`: a round one where `ragged` is 0, a branching one where it is 1.
+/// A connected set of up to `size` faces around `seed`: a round one where `ragged` is 0,
+/// a branching one where it is 1.
 pub(crate) fn region(
     connectivity: &Connectivity,
     seed: usize,

@@ -67,11 +67,13 @@ impl Case {
         let (kind, shape) = surface(random, n);
         let mesh = shape.mesh().unwrap();
         let connectivity = mesh.connectivity();
-        let operator =
-            HessianPattern::new(connectivity).assemble(connectivity, mesh.edge_lengths(), Dual::Barycentric).unwrap();
+        let operator = HessianPattern::new(connectivity)
+            .assemble(connectivity, mesh.edge_lengths(), Dual::Barycentric)
+            .unwrap();
         let n = operator.n_columns;
         let columns = if class == Class::Coordinates { 2 + pick(random, 4) } else { 1 };
-        // No unit is special: values of any size, and a fidelity that means the same for all sizes and scales.
+        // No unit is special: values of any size, and a fidelity that means the same for all sizes and
+        // scales.
         let amplitude = 10f64.powf(2.0 * random.symmetric());
         let noise = 10f64.powf(-3.0 + 3.5 * random.uniform());
         let data = Data { clean: ridges(&mesh, columns, amplitude, random), noise: noise * amplitude };
@@ -92,9 +94,11 @@ impl Case {
             _ => random.uniform() < 0.4,
         };
         if !interpolates {
-            case.fidelity = voronoi_mass(connectivity, mesh.edge_lengths()).iter().map(|m| alpha * m).collect();
+            case.fidelity =
+                voronoi_mass(connectivity, mesh.edge_lengths()).iter().map(|m| alpha * m).collect();
             data.add_noise(&mut case.target, random);
-            case.name += &format!(", noise {noise:.1e}, fidelity {:.1e}", alpha * amplitude * size(&mesh).powi(2));
+            case.name +=
+                &format!(", noise {noise:.1e}, fidelity {:.1e}", alpha * amplitude * size(&mesh).powi(2));
         } else if class == Class::Hole {
             case.fix_around_a_patch(&mesh, random);
         } else {
@@ -127,7 +131,8 @@ impl Case {
         }
     }
 
-    /// A neighbor of the problem, as the next step of a flow or the next frame would be: a hundredth more noise.
+    /// A neighbor of the problem, as the next step of a flow or the next frame would be:
+    /// a hundredth more noise.
     pub(crate) fn neighbor(&self, seed: u64) -> Problem<'_> {
         let mut problem = self.problem();
         let size = problem.target.data.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
@@ -171,11 +176,16 @@ impl Case {
         for c in 0..self.target.n_columns {
             let column = self.target.column_mut(c);
             let sum: f64 = column.iter().zip(&self.fixed).filter(|(_, fixed)| **fixed).map(|(x, _)| x).sum();
-            column.iter_mut().zip(&self.fixed).filter(|(_, fixed)| !**fixed).for_each(|(x, _)| *x = sum / known);
+            column
+                .iter_mut()
+                .zip(&self.fixed)
+                .filter(|(_, fixed)| !**fixed)
+                .for_each(|(x, _)| *x = sum / known);
         }
     }
 
-    /// One to four rows on free vertices that a function near `clean` fulfils: the mean, or a random combination.
+    /// One to four rows on free vertices that a function near `clean` fulfils: the mean,
+    /// or a random combination.
     fn constrain(&mut self, mesh: &Mesh, clean: &Columns, random: &mut Random) {
         let free: Vec<usize> = (0..self.fixed.len()).filter(|&i| !self.fixed[i]).collect();
         let count = (1 + pick(random, 4)).min(free.len() / 2);
@@ -240,11 +250,13 @@ fn ridges(mesh: &Mesh, n_columns: usize, amplitude: f64, random: &mut Random) ->
     let unit = 1.0 / size(mesh);
     let mut columns = Columns::zeros(points.len(), n_columns);
     for c in 0..n_columns {
-        let [along, slope]: [[f64; 3]; 2] = std::array::from_fn(|_| std::array::from_fn(|_| random.symmetric()));
+        let [along, slope]: [[f64; 3]; 2] =
+            std::array::from_fn(|_| std::array::from_fn(|_| random.symmetric()));
         let (offset, smooth) = (random.symmetric(), if random.uniform() < 0.3 { 0.5 } else { 0.0 });
         let middle = points[pick(random, points.len())];
         for (x, p) in columns.column_mut(c).iter_mut().zip(points) {
-            let [a, b] = [along, slope].map(|d| (0..3).map(|k| unit * d[k] * (p[k] - middle[k])).sum::<f64>());
+            let [a, b] =
+                [along, slope].map(|d| (0..3).map(|k| unit * d[k] * (p[k] - middle[k])).sum::<f64>());
             *x = amplitude * (2.0 * a.abs() + b + offset + smooth * (6.0 * b).sin());
         }
     }
@@ -257,8 +269,8 @@ fn norms(operator: &BlockRows, u: &Columns) -> Vec<f64> {
     (0..operator.n_blocks()).map(|b| squares(b).sum::<f64>().sqrt()).collect()
 }
 
-/// Half of the time `v²` as a segmentation has it, 1 away from the ridges of `u` and down to 1e-6 on them; else log-uniform,
-/// with a few zeros.
+/// Half of the time `v²` as a segmentation has it, 1 away from the ridges of `u` and down to 1e-6 on them;
+/// else log-uniform, with a few zeros.
 fn weights(operator: &BlockRows, u: &Columns, random: &mut Random) -> Vec<f64> {
     if random.uniform() < 0.5 {
         let mut draw = || if random.uniform() < 0.02 { 0.0 } else { 10f64.powf(-6.0 * random.uniform()) };

@@ -1,4 +1,5 @@
-//! Random surfaces: closed and open, regular and noisy, in several parts, with slivers, of any size and scale.
+//! Random surfaces: closed and open, regular and noisy, in several parts, with slivers,
+//! of any size and scale.
 
 use ridgeform_core::shapes::{self, Random, Shape};
 
@@ -25,12 +26,22 @@ pub(super) fn surface(random: &mut Random, n: usize) -> (&'static str, Shape) {
         (7, _) => {
             let half = ((n as f64 / 2.0).sqrt() as usize).max(2);
             let other = shapes::cube((cube / 2).max(1)).map(|p| p.map(|x| x - 3.0));
-            ("a grid and a cube", shapes::grid(half, half).map(|p| p.map(|x| x / half as f64)).and(&other), 0.1)
+            (
+                "a grid and a cube",
+                shapes::grid(half, half).map(|p| p.map(|x| x / half as f64)).and(&other),
+                0.1,
+            )
         }
-        (8, _) => ("slivers", shapes::grid(side, side).map(|[x, y, z]| [x + 0.5 * y, stretch * y, z]), stretch),
+        (8, _) => {
+            ("slivers", shapes::grid(side, side).map(|[x, y, z]| [x + 0.5 * y, stretch * y, z]), stretch)
+        }
         _ => {
             let squeezed = shapes::torus(2 * side + 3, side / 2 + 3, 1.0, 0.4);
-            ("a squeezed torus", squeezed.map(|[x, y, z]| [x, 10.0 * stretch * y, z]), 2.0 * stretch / side as f64)
+            (
+                "a squeezed torus",
+                squeezed.map(|[x, y, z]| [x, 10.0 * stretch * y, z]),
+                2.0 * stretch / side as f64,
+            )
         }
     };
     let noise = if random.uniform() < 0.3 { 0.0 } else { 0.25 * random.uniform() };

@@ -1,9 +1,9 @@
 //! Adding what is left of a child to the front of its parent (extend-add; Duff and Reid 1983).
 
-use super::dense::Padded;
+use super::padded::Padded;
 
-/// Adds the columns that belong to the panel: `relative` are the places of the rows of `from` in the front, whose first
-/// `n_columns` are the panel's.
+/// Adds the columns that belong to the panel: `relative` are the places of the rows of `from` in the front,
+/// whose first `n_columns` are the panel's.
 pub(super) fn add_to_panel(relative: &[u32], from: &[f64], n_columns: usize, panel: &mut Padded) {
     let stride = Padded::stride_of(relative.len());
     let run = run(relative);
@@ -18,14 +18,26 @@ pub(super) fn add_to_panel(relative: &[u32], from: &[f64], n_columns: usize, pan
 }
 
 /// Adds the other columns to what will be left of the parent.
-pub(super) fn add_to_update(relative: &[u32], from: &[f64], n_columns: usize, update: &mut [f64], stride: usize) {
+pub(super) fn add_to_update(
+    relative: &[u32],
+    from: &[f64],
+    n_columns: usize,
+    update: &mut [f64],
+    stride: usize,
+) {
     let own = Padded::stride_of(relative.len());
     let run = run(relative);
     let first = relative.partition_point(|&row| (row as usize) < n_columns);
     for (j, &column) in relative.iter().enumerate().skip(first) {
         let column = column as usize - n_columns;
         let to = &mut update[column * stride..(column + 1) * stride];
-        add(&relative[j..], &from[j * own + j..j * own + relative.len()], run.saturating_sub(j), n_columns, to);
+        add(
+            &relative[j..],
+            &from[j * own + j..j * own + relative.len()],
+            run.saturating_sub(j),
+            n_columns,
+            to,
+        );
     }
 }
 

@@ -1,14 +1,15 @@
-//! Memory of the factorization, kept from one to the next: a solver factors the same pattern several times, and fresh pages
-//! take a tenth of the time.
+//! Memory of the factorization, kept from one to the next: a solver factors the same pattern several times,
+//! and fresh pages take a tenth of the time.
 
 use std::sync::{Mutex, PoisonError};
 
-use super::dense::Padded;
+use super::padded::Padded;
 
 /// What one thread needs for the fronts of a subtree.
 #[derive(Debug, Default)]
 pub(crate) struct Work {
-    /// What is left of fronts until their parents take it: a front writes to one stack and reads from the other.
+    /// What is left of fronts until their parents take it:
+    /// a front writes to one stack and reads from the other.
     pub stacks: [Stack; 2],
     /// The columns that are eliminated.
     pub panel: Padded,
@@ -68,7 +69,8 @@ impl Workspace {
         self.works.lock().unwrap_or_else(PoisonError::into_inner).push(work);
     }
 
-    /// Makes `buffer` hold `len` numbers of any value: the smallest free buffer that does, or a new one for the largest.
+    /// Makes `buffer` hold `len` numbers of any value: the smallest free buffer that does,
+    /// or a new one for the largest.
     pub(crate) fn take(&self, len: usize, buffer: &mut Vec<f64>) {
         if len == 0 {
             // Roots leave nothing, and a mesh can have as many as vertices.

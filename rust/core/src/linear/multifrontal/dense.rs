@@ -1,21 +1,14 @@
 //! Dense kernels of the factorization: the first columns of a front, and what they take off the rest.
 //!
-//! Fronts of surface meshes are small: a handful of columns, tens of rows. General dense kernels spend their time on packing
-//! there, so these work straight on the columns; large updates go to the library's product.
+//! Fronts of surface meshes are small: a handful of columns, tens of rows. General dense kernels spend their
+//! time on packing there, so these work straight on the columns; large updates go to the library's product.
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, MatMut, MatRef, Par};
 use pulp::{Arch, Simd, WithSimd};
 
-/// Columns that are brought up to date and eliminated together.
-const COLUMNS: usize = 4;
-
-/// Strides are multiples of this: two of the widest vector registers.
-const ALIGNMENT: usize = 16;
-
-/// Groups of so many rows are enough for the stride to matter.
-const LONG: usize = 4;
+use super::padded::{Padded, COLUMNS};
 
 /// Columns that are eliminated before the rest of a wide panel is brought up to date.
 const BLOCK_COLUMNS: usize = 64;
@@ -23,64 +16,18 @@ const BLOCK_COLUMNS: usize = 64;
 /// From this many columns on the library's product is faster (measured: equal at 32).
 const LARGE: usize = 24;
 
-/// Products of fewer rows are not worth sharing between threads. How they are cut does not depend on the threads, so results do
-/// not either.
+/// Products of fewer rows are not worth sharing between threads. How they are cut does not depend on the
+/// threads, so results do not either.
 const SHARED: usize = 512;
 
-/// A dense matrix stored column by column, rows and columns padded so that whole registers and groups of columns fit.
-#[derive(Debug, Default)]
-pub(crate) struct Padded {
-    /// The numbers; those in the padding mean nothing.
-    pub values: Vec<f64>,
-    /// From one column to the next.
-    pub stride: usize,
-}
-
-impl Padded {
-    /// The stride of a matrix with so many rows.
-    #[must_use]
-    pub(crate) fn stride_of(n_rows: usize) -> usize {
-        let groups = n_rows.div_ceil(ALIGNMENT);
-        // Even multiples put the same row of many columns in few sets of the cache: up to a fifth slower products.
-        ALIGNMENT * if groups > LONG { groups | 1 } else { groups }
-    }
-
-    /// Numbers in a matrix of so many rows and columns.
-    #[must_use]
-    pub(crate) fn len_of(n_rows: usize, n_columns: usize) -> usize {
-        // Registers that start inside the last column may end behind it.
-        Self::stride_of(n_rows) * n_columns.next_multiple_of(COLUMNS) + ALIGNMENT
-    }
-
-    /// Becomes a matrix whose lower triangle is zero. What was above the diagonal may stay: nothing reads it.
-    pub(crate) fn clear(&mut self, n_rows: usize, n_columns: usize) {
-        self.stride = Self::stride_of(n_rows);
-        let len = Self::len_of(n_rows, n_columns);
-        if self.values.len() < len {
-            self.values.resize(len, 0.0);
-        }
-        for (j, column) in self.values[..len].chunks_mut(self.stride.max(1)).enumerate() {
-            let from = (j / ALIGNMENT * ALIGNMENT).min(column.len());
-            column[from..].fill(0.0);
-        }
-    }
-}
-
-/// Numbers in what is left of a front with `n` rows below its panel, stored like [`Padded`].
-#[must_use]
-pub(super) fn update_len(n: usize) -> usize {
-    if n == 0 {
-        return 0;
-    }
-    Padded::len_of(n, n)
-}
-
-/// One front: `panel` holds its first `n_columns` columns of `n_rows`, `update` the columns and rows after these.
+/// One front: `panel` holds its first `n_columns` columns of `n_rows`,
+/// `update` the columns and rows after these.
 #[derive(Debug)]
 pub(super) struct Front<'f> {
     /// Columns to be eliminated, lower triangle.
     pub panel: &'f mut Padded,
-    /// What is left for the parent, lower triangle with the stride of [`Padded`]; what stood there is forgotten.
+    /// What is left for the parent, lower triangle with the stride of [`Padded`];
+    /// what stood there is forgotten.
     pub update: &'f mut [f64],
     /// Rows of the panel.
     pub n_rows: usize,
@@ -89,8 +36,8 @@ pub(super) struct Front<'f> {
 }
 
 impl Front<'_> {
-    /// Turns the panel into columns of the factor and takes their product off the update; `false` when a pivot is not
-    /// positive.
+    /// Turns the panel into columns of the factor and takes their product off the update;
+    /// `false` when a pivot is not positive.
     #[must_use]
     pub(super) fn eliminate(&mut self) -> bool {
         let mut begin = 0;
@@ -113,7 +60,8 @@ impl Front<'_> {
         let (stride, n_rows) = (self.panel.stride, self.n_rows);
         let (done, rest) = self.panel.values.split_at_mut(end * stride);
         let rest = &mut rest[..(self.n_columns - end) * stride];
-        let done = MatRef::from_column_major_slice_with_stride(&done[begin * stride..], n_rows, end - begin, stride);
+        let done =
+            MatRef::from_column_major_slice_with_stride(&done[begin * stride..], n_rows, end - begin, stride);
         let width = self.n_columns - end;
         let rest = MatMut::from_column_major_slice_with_stride_mut(rest, n_rows, width, stride);
         let (_, rest) = rest.split_at_row_mut(end);
@@ -140,7 +88,8 @@ impl Front<'_> {
     }
 }
 
-/// `target −= x xᵀ` or `target = −x xᵀ`, lower triangle: cut in halves, on several threads while they are large.
+/// `target −= x xᵀ` or `target = −x xᵀ`, lower triangle: cut in halves,
+/// on several threads while they are large.
 fn subtract_product(target: MatMut<'_, f64>, x: MatRef<'_, f64>, accumulate: Accum) {
     let n = target.nrows();
     if n < SHARED {
@@ -152,7 +101,10 @@ fn subtract_product(target: MatMut<'_, f64>, x: MatRef<'_, f64>, accumulate: Acc
     let (top, bottom) = x.split_at_row(n / 2);
     let corner = || subtract_rectangle(below, bottom, top, accumulate);
     let triangles = || {
-        rayon::join(|| subtract_product(left, top, accumulate), || subtract_product(right, bottom, accumulate));
+        rayon::join(
+            || subtract_product(left, top, accumulate),
+            || subtract_product(right, bottom, accumulate),
+        );
     };
     rayon::join(corner, triangles);
 }
@@ -166,11 +118,15 @@ fn subtract_rectangle(target: MatMut<'_, f64>, x: MatRef<'_, f64>, y: MatRef<'_,
     }
     let (above, below) = target.split_at_row_mut(n / 2);
     let (top, bottom) = x.split_at_row(n / 2);
-    rayon::join(|| subtract_rectangle(above, top, y, accumulate), || subtract_rectangle(below, bottom, y, accumulate));
+    rayon::join(
+        || subtract_rectangle(above, top, y, accumulate),
+        || subtract_rectangle(below, bottom, y, accumulate),
+    );
 }
 
-/// `target −= Σ_a source_a · tops_a` for the rows from `first` to `end` of [`COLUMNS`] columns: row `i` of the target goes with
-/// row `i + shift` of the sources, and `tops_a` are the rows from `top` on of source `a`.
+/// `target −= Σ_a source_a · tops_a` for the rows from `first` to `end` of [`COLUMNS`] columns: row `i` of
+/// the target goes with row `i + shift` of the sources, and `tops_a` are the rows from `top` on of source
+/// `a`.
 struct RankUpdate<'u> {
     target: &'u mut [f64],
     stride: usize,
@@ -257,7 +213,8 @@ impl WithSimd for Eliminate<'_> {
     }
 }
 
-/// `L` of the triangle at `row`, column by column, and the reciprocals of its diagonal; the identity behind `width`.
+/// `L` of the triangle at `row`, column by column, and the reciprocals of its diagonal;
+/// the identity behind `width`.
 #[inline(always)]
 fn corner(
     columns: &[f64],
@@ -350,6 +307,7 @@ impl WithSimd for TakeOff<'_> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
+    use super::super::padded::update_len;
     use super::*;
 
     /// A positive definite matrix of `m` rows.
@@ -360,7 +318,9 @@ mod tests {
     /// `L Lᵀ` of the columns, plus what is left, is the matrix again, whatever the sizes.
     #[test]
     fn eliminated_columns_and_the_rest_are_the_matrix() {
-        for (m, k) in [(1, 1), (2, 1), (5, 3), (8, 4), (16, 16), (23, 9), (40, 33), (150, 70), (600, 200), (530, 3)] {
+        for (m, k) in
+            [(1, 1), (2, 1), (5, 3), (8, 4), (16, 16), (23, 9), (40, 33), (150, 70), (600, 200), (530, 3)]
+        {
             let (mut panel, mut update) = (Padded::default(), vec![f64::NAN; update_len(m - k)]);
             let stride = Padded::stride_of(m - k);
             panel.clear(m, k);

@@ -1,13 +1,15 @@
-//! Numeric Cholesky factorization front by front (multifrontal; Duff and Reid 1983), subtrees on several threads.
+//! Numeric Cholesky factorization front by front (multifrontal; Duff and Reid 1983),
+//! subtrees on several threads.
 //!
-//! A front is a dense matrix: the columns of one panel and what their elimination takes off later rows. Children leave the
-//! latter to their parent. Subtrees know nothing of each other until their common parent, so they go to different threads, and
-//! large fronts share their products. How the work is cut depends on the pattern alone, so results are the same on any number
-//! of threads.
+//! A front is a dense matrix: the columns of one panel and what their elimination takes off later rows.
+//! Children leave the latter to their parent. Subtrees know nothing of each other until their common parent,
+//! so they go to different threads, and large fronts share their products. How the work is cut depends on the
+//! pattern alone, so results are the same on any number of threads.
 
 mod assembly;
 mod buffers;
 mod dense;
+mod padded;
 mod tree;
 
 use buffers::Work;
@@ -18,8 +20,8 @@ pub(super) use tree::Tree;
 
 use crate::linear::triangular::Panels;
 
-/// Factors the matrix with these values (one per entry of the pattern) into `factor`, panel by panel as in `panels`; `None` when
-/// it is not positive definite.
+/// Factors the matrix with these values (one per entry of the pattern) into `factor`, panel by panel as in
+/// `panels`; `None` when it is not positive definite.
 #[must_use]
 pub(super) fn factorize(
     tree: &Tree,
@@ -42,7 +44,8 @@ struct Numeric<'n> {
 }
 
 impl Numeric<'_> {
-    /// Factors subtrees that follow each other, and returns what is left of each; `factor` starts with panel `begin`.
+    /// Factors subtrees that follow each other, and returns what is left of each;
+    /// `factor` starts with panel `begin`.
     fn subtrees(&self, roots: &[u32], begin: usize, factor: &mut [f64]) -> Option<Vec<Vec<f64>>> {
         let mut rest = factor;
         let mut at = self.panels.values[begin];
@@ -57,7 +60,8 @@ impl Numeric<'_> {
         each.map(|(&root, segment)| self.subtree(root as usize, segment)).collect()
     }
 
-    /// Factors a subtree into `factor`, which starts with its first panel, and returns what is left for the parent of its root.
+    /// Factors a subtree into `factor`, which starts with its first panel,
+    /// and returns what is left for the parent of its root.
     fn subtree(&self, root: usize, factor: &mut [f64]) -> Option<Vec<f64>> {
         let first = self.tree.first[root] as usize;
         let base = self.panels.values[first];
@@ -65,7 +69,7 @@ impl Numeric<'_> {
         if self.tree.is_split[root] {
             let (below, own) = factor.split_at_mut(self.panels.values[root] - base);
             let left = self.subtrees(self.tree.children(root), first, below)?;
-            self.workspace.take(dense::update_len(self.panels.below(root).len()), &mut update);
+            self.workspace.take(padded::update_len(self.panels.below(root).len()), &mut update);
             let mut work = self.workspace.work();
             let children: Vec<&[f64]> = left.iter().map(Vec::as_slice).collect();
             let done = self.front(root, own, &children, &mut update, &mut work.panel);
@@ -78,21 +82,26 @@ impl Numeric<'_> {
             let out = self.panels.values[s] - base..self.panels.values[s + 1] - base;
             self.stacked(s, &mut factor[out], &mut work, None)
         });
-        self.workspace.take(dense::update_len(self.panels.below(root).len()), &mut update);
-        let done =
-            done && self.stacked(root, &mut factor[self.panels.values[root] - base..], &mut work, Some(&mut update));
+        self.workspace.take(padded::update_len(self.panels.below(root).len()), &mut update);
+        let done = done
+            && self.stacked(
+                root,
+                &mut factor[self.panels.values[root] - base..],
+                &mut work,
+                Some(&mut update),
+            );
         work.clear();
         self.workspace.back(work);
         done.then_some(update)
     }
 
-    /// One front of a subtree that runs on one thread: takes what is left of its children from one stack, and leaves its own on
-    /// the other, or in `update`.
+    /// One front of a subtree that runs on one thread: takes what is left of its children from one stack, and
+    /// leaves its own on the other, or in `update`.
     fn stacked(&self, s: usize, out: &mut [f64], work: &mut Work, update: Option<&mut [f64]>) -> bool {
         let children = self.tree.children(s);
         let [even, odd] = &mut work.stacks;
         let (own, other) = if self.tree.stack[s] == 0 { (even, odd) } else { (odd, even) };
-        let lengths = |c: &u32| dense::update_len(self.panels.below(*c as usize).len());
+        let lengths = |c: &u32| padded::update_len(self.panels.below(*c as usize).len());
         let mut waiting = other.last(children.iter().map(lengths).sum());
         let mut left = Vec::with_capacity(children.len());
         for child in children {
@@ -102,16 +111,23 @@ impl Numeric<'_> {
         }
         let update = match update {
             Some(update) => update,
-            None => own.push(dense::update_len(self.panels.below(s).len())),
+            None => own.push(padded::update_len(self.panels.below(s).len())),
         };
         let done = self.front(s, out, &left, update, &mut work.panel);
         other.pop(children.iter().map(lengths).sum());
         done
     }
 
-    /// Assembles and eliminates one front, writes its columns into `out`, and what is left into `update`; `false` when a pivot is
-    /// not positive.
-    fn front(&self, s: usize, out: &mut [f64], left: &[&[f64]], update: &mut [f64], panel: &mut dense::Padded) -> bool {
+    /// Assembles and eliminates one front, writes its columns into `out`, and what is left into `update`;
+    /// `false` when a pivot is not positive.
+    fn front(
+        &self,
+        s: usize,
+        out: &mut [f64],
+        left: &[&[f64]],
+        update: &mut [f64],
+        panel: &mut padded::Padded,
+    ) -> bool {
         let n_columns = self.panels.begin[s + 1] - self.panels.begin[s];
         let n_below = self.panels.below(s).len();
         let n_rows = n_columns + n_below;
@@ -133,7 +149,7 @@ impl Numeric<'_> {
         for (out, column) in out.chunks_exact_mut(n_rows).zip(panel.values.chunks_exact(panel.stride)) {
             out.copy_from_slice(&column[..n_rows]);
         }
-        let stride = dense::Padded::stride_of(n_below);
+        let stride = padded::Padded::stride_of(n_below);
         for (&child, from) in self.tree.children(s).iter().zip(left) {
             assembly::add_to_update(relative(child), from, n_columns, update, stride);
         }

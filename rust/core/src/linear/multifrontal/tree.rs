@@ -1,6 +1,6 @@
 //! The tree of the fronts, and where everything goes in them: found once per pattern.
 
-use super::dense::{update_len, Padded};
+use super::padded::{update_len, Padded};
 use crate::buckets::Buckets;
 use crate::error::SolveError;
 use crate::linear::pattern::LowerPattern;
@@ -13,8 +13,8 @@ pub(super) const NONE: u32 = u32::MAX;
 /// Multiplications from which on a factorization is shared between threads: below it takes 15 ms.
 const SHARED: f64 = 2e8;
 
-/// Subtrees with more than this part of all multiplications are split at their root: what is left is many enough for many
-/// threads, and large enough for buffers of its own.
+/// Subtrees with more than this part of all multiplications are split at their root: what is left is many
+/// enough for many threads, and large enough for buffers of its own.
 const SPLIT: f64 = 1.0 / 48.0;
 
 /// No subtree is split deeper than this below the root: trees of long thin meshes would be chains of calls.
@@ -33,7 +33,8 @@ pub(crate) struct Tree {
     pub stack: Vec<u8>,
     /// For each row below a panel (as in [`Panels::rows`]) its place in the front of the parent.
     pub relative: Vec<u32>,
-    /// Panel `s` takes the matrix entries `starts[s]..starts[s + 1]` of `source` to the places `target` of its front.
+    /// Panel `s` takes the matrix entries `starts[s]..starts[s + 1]` of `source` to the places `target` of
+    /// its front.
     pub starts: Vec<usize>,
     /// Numbers of entries of the matrix.
     pub source: Vec<u32>,
@@ -69,7 +70,9 @@ impl Tree {
                 && next == s as u32
         });
         if !is_postorder {
-            return Err(SolveError::Factorization { reason: "the ordering of the matrix is no postorder".into() });
+            return Err(SolveError::Factorization {
+                reason: "the ordering of the matrix is no postorder".into(),
+            });
         }
         tree.split(panels, &parents);
         tree.find_relative(panels, &parents)?;
@@ -112,11 +115,13 @@ impl Tree {
                 self.stack[s] = 1 - self.stack[parent];
             }
             let parent_is_split = parents[s] == NONE || self.is_split[parent];
-            self.is_split[s] = total > SHARED && work[s] > SPLIT * total && parent_is_split && depth[s] < DEEPEST;
+            self.is_split[s] =
+                total > SHARED && work[s] > SPLIT * total && parent_is_split && depth[s] < DEEPEST;
         }
     }
 
-    /// The most numbers that wait for their parents at once when the panels follow each other, with the panel at work.
+    /// The most numbers that wait for their parents at once when the panels follow each other,
+    /// with the panel at work.
     #[must_use]
     pub(crate) fn most_waiting(&self, panels: &Panels) -> usize {
         let (mut waiting, mut most) = (0, 0);
@@ -124,7 +129,8 @@ impl Tree {
             let (k, below) = (panels.begin[s + 1] - panels.begin[s], panels.below(s).len());
             waiting += update_len(below);
             most = most.max(waiting + Padded::len_of(k + below, k));
-            waiting -= self.children(s).iter().map(|&c| update_len(panels.below(c as usize).len())).sum::<usize>();
+            waiting -=
+                self.children(s).iter().map(|&c| update_len(panels.below(c as usize).len())).sum::<usize>();
         }
         most
     }

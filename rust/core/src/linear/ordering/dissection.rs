@@ -1,7 +1,8 @@
-//! Nested dissection: an order of rows that leaves fewer entries in the factor of a large matrix than minimum degree does.
+//! Nested dissection: an order of rows that leaves fewer entries in the factor of a large matrix than minimum
+//! degree does.
 //!
-//! A small separator cuts the graph of the matrix in two, its rows come last, and each half is ordered in the same way
-//! (George 1973), down to parts that minimum degree orders as well.
+//! A small separator cuts the graph of the matrix in two, its rows come last, and each half is ordered in the
+//! same way (George 1973), down to parts that minimum degree orders as well.
 
 use super::graph::Graph;
 use super::minimum_degree::minimum_degree;
@@ -10,7 +11,8 @@ use crate::error::SolveError;
 use crate::linear::pattern::LowerPattern;
 use crate::random::Random;
 
-/// Parts of at most so many rows are left to minimum degree: with 200 one factor entry in twenty goes, for twice the time.
+/// Parts of at most so many rows are left to minimum degree: with 200 one factor entry in twenty goes,
+/// for twice the time.
 const LEAF: usize = 1000;
 
 /// Parts of at least so many rows are ordered by threads of their own.
@@ -147,7 +149,10 @@ mod tests {
         assert!(count(0) > graph.n() / 4 && count(1) > graph.n() / 4, "{} and {}", count(0), count(1));
         assert!(count(SEPARATOR) <= 100, "{}", count(SEPARATOR));
         for v in 0..graph.n() {
-            assert!(graph.around(v).iter().all(|&u| side[v] + side[u as usize] != 1), "an edge joins the sides");
+            assert!(
+                graph.around(v).iter().all(|&u| side[v] + side[u as usize] != 1),
+                "an edge joins the sides"
+            );
         }
     }
 

@@ -50,8 +50,9 @@ impl Graph {
         &self.neighbors[self.starts[v] as usize..self.starts[v + 1] as usize]
     }
 
-    /// Merges vertices with the neighbor that most edges lead to, as long as the two weigh at most `heaviest`; also says
-    /// which coarse vertex each vertex went into (heavy edge matching, Karypis and Kumar 1998).
+    /// Merges vertices with the neighbor that most edges lead to, as long as the two weigh at most
+    /// `heaviest`; also says which coarse vertex each vertex went into (heavy edge matching, Karypis and
+    /// Kumar 1998).
     #[must_use]
     pub(super) fn coarsened(&self, heaviest: u32, random: &mut Random) -> (Self, Vec<u32>) {
         let n = self.n();
@@ -84,7 +85,8 @@ impl Graph {
     }
 
     fn contracted(&self, map: &[u32], firsts: &[u32], mate: &[u32]) -> Self {
-        let mut coarse = Self { starts: vec![0], neighbors: Vec::new(), edges: Vec::new(), weights: Vec::new() };
+        let mut coarse =
+            Self { starts: vec![0], neighbors: Vec::new(), edges: Vec::new(), weights: Vec::new() };
         coarse.neighbors.reserve(self.neighbors.len());
         coarse.edges.reserve(self.neighbors.len());
         let mut place = vec![NONE; firsts.len()];
@@ -122,7 +124,8 @@ impl Graph {
         for (k, &v) in members.iter().enumerate() {
             place[v as usize] = k as u32;
         }
-        let mut part = Self { starts: vec![0], neighbors: Vec::new(), edges: Vec::new(), weights: Vec::new() };
+        let mut part =
+            Self { starts: vec![0], neighbors: Vec::new(), edges: Vec::new(), weights: Vec::new() };
         for &v in &members {
             for k in self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize {
                 let u = place[self.neighbors[k] as usize];

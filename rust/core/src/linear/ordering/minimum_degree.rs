@@ -1,4 +1,5 @@
-//! Approximate minimum degree, as the library has it: the best order of small matrices and of the leaves of a dissection.
+//! Approximate minimum degree, as the library has it: the best order of small matrices and of the leaves of a
+//! dissection.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::amd;

@@ -8,8 +8,8 @@ use crate::memory;
 /// No row.
 const NONE: u32 = u32::MAX;
 
-/// `order` changed so that every subtree of the elimination tree is contiguous: that leaves the factor as it is, and lets
-/// columns with the same pattern stand together.
+/// `order` changed so that every subtree of the elimination tree is contiguous: that leaves the factor as it
+/// is, and lets columns with the same pattern stand together.
 ///
 /// # Errors
 /// [`SolveError::Memory`].
@@ -79,7 +79,8 @@ mod tests {
     /// A path of four rows, eliminated from both ends, beside a single row.
     #[test]
     fn subtrees_become_contiguous_and_the_tree_stays() {
-        let pattern = LowerPattern { n: 5, starts: vec![0, 2, 4, 6, 7, 8], rows: vec![0, 1, 1, 2, 2, 3, 3, 4] };
+        let pattern =
+            LowerPattern { n: 5, starts: vec![0, 2, 4, 6, 7, 8], rows: vec![0, 1, 1, 2, 2, 3, 3, 4] };
         let order = [0, 3, 4, 1, 2];
         assert_eq!(parents(&pattern, &order).unwrap(), [3, 4, NONE, 4, NONE]);
         let post = postordered(&pattern, &order).unwrap();

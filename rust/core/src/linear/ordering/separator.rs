@@ -1,5 +1,5 @@
-//! Small sets of vertices that cut a graph in two: found on a coarse version, refined on every finer one (Karypis and Kumar
-//! 1998; moves with a look ahead as Fiduccia and Mattheyses 1982).
+//! Small sets of vertices that cut a graph in two: found on a coarse version, refined on every finer one
+//! (Karypis and Kumar 1998; moves with a look ahead as Fiduccia and Mattheyses 1982).
 
 use std::collections::BinaryHeap;
 
@@ -100,7 +100,8 @@ fn grown(graph: &Graph, random: &mut Random) -> Vec<u8> {
     side
 }
 
-/// Makes the separator lighter by moving vertices off it; returns whether the sides are too unlike, and its weight.
+/// Makes the separator lighter by moving vertices off it; returns whether the sides are too unlike,
+/// and its weight.
 fn refine(graph: &Graph, side: &mut [u8]) -> (bool, u64) {
     let mut refinement = Refinement::new(graph, side);
     for _ in 0..PASSES {
@@ -227,8 +228,9 @@ impl<'g> Refinement<'g> {
         for to in [lighter, 1 - lighter] {
             let t = to as usize;
             while let Some(&(gain, v)) = self.queues[t].peek() {
-                let stale =
-                    self.side[v as usize] != SEPARATOR || self.moved[v as usize] || self.gains[t][v as usize] != gain;
+                let stale = self.side[v as usize] != SEPARATOR
+                    || self.moved[v as usize]
+                    || self.gains[t][v as usize] != gain;
                 if !stale {
                     let fits = to == lighter || self.total[t] + self.weight(v) <= self.limit;
                     if fits && best.is_none_or(|(most, _, _)| gain > most) {

@@ -14,7 +14,8 @@ use crate::{Error, Result};
 /// Alternating directions go this far at least: the steps need few factorizations from where the ridges show.
 pub(super) const FIRST_STEPS: usize = 20;
 
-/// What the objective fell since the last look, this many times over, is an estimate of what it has still to fall.
+/// What the objective fell since the last look, this many times over,
+/// is an estimate of what it has still to fall.
 const STILL_TO_FALL: f64 = 10.0;
 
 /// The part of the gap asked for that the central path aims at: the rest is for the distance from the path.
@@ -23,8 +24,9 @@ const AIM: f64 = 0.8;
 /// The aim of the next step, in gaps reached so far.
 const NEXT_AIM: f64 = 0.1;
 
-/// Factorizations' worth of steps that a run takes which begins with the objective still, and more for each digit that the
-/// objective has to fall (measured from 8k to 200k vertices; they are what decides, not what is done).
+/// Factorizations' worth of steps that a run takes which begins with the objective still, and more for each
+/// digit that the objective has to fall (measured from 8k to 200k vertices; they are what decides, not what
+/// is done).
 const STEPS_WHEN_STILL: f64 = 3.0;
 const STEPS_A_DIGIT: f64 = 3.0;
 
@@ -32,14 +34,15 @@ const STEPS_A_DIGIT: f64 = 3.0;
 const IDLE: f64 = 0.7;
 const MOST_IDLE: usize = 6;
 
-/// Iterations of conjugate gradients for a step with an older factor, and the part of the residual that is enough. They cost
-/// as much as the factorization they save; a run longer than [`LONG`] says that the factor is too old for the next step.
+/// Iterations of conjugate gradients for a step with an older factor, and the part of the residual that is
+/// enough. They cost as much as the factorization they save; a run longer than [`LONG`] says that the factor
+/// is too old for the next step.
 const MOST_GRADIENTS: usize = 10;
 const LONG: usize = 7;
 const GRADIENT_GOAL: f64 = 0.05;
 
-/// How often the dual point is corrected for what rounding and inexact steps leave over of its equations, and the part of the
-/// gap asked for that needs no correction.
+/// How often the dual point is corrected for what rounding and inexact steps leave over of its equations, and
+/// the part of the gap asked for that needs no correction.
 const MOST_CORRECTIONS: usize = 2;
 const NEGLIGIBLE: f64 = 0.1;
 
@@ -54,7 +57,13 @@ struct Steps<const K: usize> {
 
 impl<const K: usize> Run<'_, '_, K> {
     /// Whether primal-dual steps cost less than the iterations that are `left`.
-    pub(super) fn steps_pay(&self, settings: &Settings, iterations: usize, last_primal: f64, left: f64) -> bool {
+    pub(super) fn steps_pay(
+        &self,
+        settings: &Settings,
+        iterations: usize,
+        last_primal: f64,
+        left: f64,
+    ) -> bool {
         // A joint norm of several columns would couple them in the matrix.
         if self.reduced.n_columns != 1 || settings.tolerance.is_none() || iterations < self.next_steps {
             return false;
@@ -63,7 +72,8 @@ impl<const K: usize> Run<'_, '_, K> {
         left > FACTORIZATION * (STEPS_WHEN_STILL + STEPS_A_DIGIT * digits)
     }
 
-    /// The relative gap of the point of the central path to start at: the objective is as far from its minimum there.
+    /// The relative gap of the point of the central path to start at:
+    /// the objective is as far from its minimum there.
     fn first_aim(&self, settings: &Settings, last_primal: f64) -> f64 {
         let fell = (last_primal - self.best.primal) / self.scale();
         let least = least_aim(settings);
@@ -175,12 +185,19 @@ impl<const K: usize> Run<'_, '_, K> {
     }
 
     /// Corrects a dual point for what its equations lack, with the stiffness that is `factored`.
-    fn correct(&mut self, settings: &Settings, factored: &[Stiffness], step: &[[f64; K]], z: &mut [Block<K>]) {
+    fn correct(
+        &mut self,
+        settings: &Settings,
+        factored: &[Stiffness],
+        step: &[[f64; K]],
+        z: &mut [Block<K>],
+    ) {
         let spread = spread(&self.u);
         let negligible = NEGLIGIBLE * settings.tolerance.unwrap_or(RESIDUAL_GOAL) * self.scale();
         for _ in 0..MOST_CORRECTIONS {
             let mut rest = self.lacking(z, Some(step));
-            let left: f64 = rest.iter().map(|row| row.iter().zip(spread).map(|(x, s)| x.abs() * s).sum::<f64>()).sum();
+            let left: f64 =
+                rest.iter().map(|row| row.iter().zip(spread).map(|(x, s)| x.abs() * s).sum::<f64>()).sum();
             if left <= negligible {
                 break;
             }

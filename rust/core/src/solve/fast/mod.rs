@@ -1,8 +1,8 @@
 //! The fast solver: alternating directions on `z = H u + c` with a penalty `R_b` per block.
 //!
 //! `(2a + HᵀRH) u = 2a·t + Hᵀ(R(z − c) − p)`, over-relaxation `h ← 1.7 (H u + c) − 0.7 z`, shrinkage
-//! `z ← shrink(h + p/R, w/R)`, multipliers `p ← p + R (h − z)`. The point `p + R(Hu + c − z)` before the shrinkage solves
-//! the dual equations exactly, which is what the certificate is made of.
+//! `z ← shrink(h + p/R, w/R)`, multipliers `p ← p + R (h − z)`. The point `p + R(Hu + c − z)` before the
+//! shrinkage solves the dual equations exactly, which is what the certificate is made of.
 
 mod finish;
 pub mod penalty;
@@ -31,23 +31,25 @@ const CHECK_EVERY: usize = 3;
 /// Default bound on the iterations; a problem that needs more is better served by an interior-point method.
 const MAX_ITERATIONS: usize = 3000;
 
-/// Without a tolerance the iteration stops when the objective falls by less than this part between two checks and
-/// `H u + c` and `z` differ by less than [`SPLIT_RESIDUAL`]: the true error is then about [`RESIDUAL_GOAL`].
+/// Without a tolerance the iteration stops when the objective falls by less than this part between two checks
+/// and `H u + c` and `z` differ by less than [`SPLIT_RESIDUAL`]: the true error is then about
+/// [`RESIDUAL_GOAL`].
 const STILL: f64 = 6e-5;
 const SPLIT_RESIDUAL: f64 = 2e-2;
 
 /// The true error that a run without a tolerance aims at.
 const RESIDUAL_GOAL: f64 = 1e-4;
 
-/// A gap this small also means a true error of about 1e-4: the bound is the slower of the two by a factor of ten (measured
-/// on the flow), so there is no need to wait for the residuals.
+/// A gap this small also means a true error of about 1e-4: the bound is the slower of the two by a factor of
+/// ten (measured on the flow), so there is no need to wait for the residuals.
 const GAP_ENOUGH: f64 = 1e-3;
 
-/// The part of the gap asked for that residuals of the linear system may take before its solutions are refined.
+/// The part of the gap asked for that residuals of the linear system may take before its solutions are
+/// refined.
 const WORTH_REFINING: f64 = 0.1;
 
-/// The first new penalties come after this many iterations from nothing, when the ridges begin to show, and then each
-/// time the iterations have tripled.
+/// The first new penalties come after this many iterations from nothing, when the ridges begin to show, and
+/// then each time the iterations have tripled.
 const REWEIGHT_COLD: usize = 10;
 
 /// A warm start brings good penalties along.
@@ -228,8 +230,8 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         }
     }
 
-    /// Lower bounds from `p + R (H u + c − z)` and, where there is fidelity everywhere, from the multipliers themselves,
-    /// which are never too long.
+    /// Lower bounds from `p + R (H u + c − z)` and, where there is fidelity everywhere, from the multipliers
+    /// themselves, which are never too long.
     fn bound(&mut self, sums: &Sums, settings: &Settings) {
         let mut g = self.sweep.from_equations().to_vec();
         self.add_constraints(&mut g);
@@ -242,8 +244,8 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         }
     }
 
-    /// Asks the linear system for refined solutions once what it leaves over would show in the gap. `g` is `Hᵀq + Aᵀy` for
-    /// the dual point that solves the equations, were they solved exactly.
+    /// Asks the linear system for refined solutions once what it leaves over would show in the gap. `g` is
+    /// `Hᵀq + Aᵀy` for the dual point that solves the equations, were they solved exactly.
     fn refine_if_worth(&mut self, g: &[[f64; K]], settings: &Settings) {
         let spread = spread(&self.u);
         let mut left = 0.0;
@@ -280,12 +282,14 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             Some(tolerance) => self.gap() <= tolerance,
             None => {
                 self.gap() <= GAP_ENOUGH
-                    || (last_check - self.best.primal < STILL * scale && sums.split < SPLIT_RESIDUAL * sums.norms)
+                    || (last_check - self.best.primal < STILL * scale
+                        && sums.split < SPLIT_RESIDUAL * sums.norms)
             }
         }
     }
 
-    /// Iterations until the gap asked for, at the rate since the last check; infinitely many where none is asked for.
+    /// Iterations until the gap asked for, at the rate since the last check;
+    /// infinitely many where none is asked for.
     fn iterations_left(&self, settings: &Settings, last_gap: f64) -> f64 {
         let digits = |from: f64, to: f64| (from / to).ln();
         match settings.tolerance {

@@ -5,27 +5,29 @@ use crate::solve::fast::system::System;
 use crate::solve::reduced::Reduced;
 use crate::{Progress, Result};
 
-/// The product of penalty and typical block length, in units of the weight, at which alternating directions converge
-/// fastest (0.2 to 1 measured alike).
+/// The product of penalty and typical block length, in units of the weight, at which alternating directions
+/// converge fastest (0.2 to 1 measured alike).
 const BALANCE: f64 = 0.5;
 
-/// Lengths are clipped to these multiples of their mean: outside, the linear system loses digits and nothing is gained.
+/// Lengths are clipped to these multiples of their mean: outside,
+/// the linear system loses digits and nothing is gained.
 const CLIP: [f64; 2] = [0.03, 30.0];
 
-/// A scale within this factor of the one sought is taken: new penalties come after a few iterations anyway, and the
-/// search would cost a factorization more.
+/// A scale within this factor of the one sought is taken: new penalties come after a few iterations anyway,
+/// and the search would cost a factorization more.
 const GOOD_ENOUGH: f64 = 3.2;
 
-/// The scale grows with noise, each time by less. On ten problems from light to heavy noise the whole way was the first
-/// growth to the power of 1.6 to 2.6, so this saves one factorization and rarely overshoots.
+/// The scale grows with noise, each time by less. On ten problems from light to heavy noise the whole way was
+/// the first growth to the power of 1.6 to 2.6, so this saves one factorization and rarely overshoots.
 const JUMP: f64 = 1.7;
 
-/// The sum of all block lengths of a typical function without noise, in units of its standard deviation and of the mean norm
-/// of the blocks. It depends little on the mesh: from 5 (a sphere's coordinates) to 70 (a function with many ridges) measured.
+/// The sum of all block lengths of a typical function without noise, in units of its standard deviation and
+/// of the mean norm of the blocks. It depends little on the mesh: from 5 (a sphere's coordinates) to 70 (a
+/// function with many ridges) measured.
 const FOLDS: f64 = 20.0;
 
-/// How much of the way from the scale of the noisy target to that of a function without noise the search starts at, in
-/// logarithms.
+/// How much of the way from the scale of the noisy target to that of a function without noise the search
+/// starts at, in logarithms.
 const SMOOTH_SHARE: f64 = 5.0 / 6.0;
 
 /// Factorizations that the search may take.
@@ -41,8 +43,9 @@ pub fn reweighted(lengths: &[f64], weights: &[f64]) -> Vec<f64> {
     lengths.iter().zip(weights).map(|(g, w)| BALANCE * w / g.clamp(CLIP[0] * mean, CLIP[1] * mean)).collect()
 }
 
-/// The penalties `R = ρ w` to start with: `ρ · mean ‖H u(ρ) + c‖ ≈ BALANCE`, where `u(ρ)` is the quadratic minimizer.
-/// Leaves `system` factored for them, after one to a few factorizations. `h` is the operator applied to the target.
+/// The penalties `R = ρ w` to start with: `ρ · mean ‖H u(ρ) + c‖ ≈ BALANCE`, where `u(ρ)` is the quadratic
+/// minimizer. Leaves `system` factored for them, after one to a few factorizations. `h` is the operator
+/// applied to the target.
 ///
 /// Without fidelity `u(ρ)` does not depend on `ρ`, and one factorization does.
 ///
@@ -85,9 +88,9 @@ pub fn uniform<const K: usize>(
     }
 }
 
-/// A guess at the scale, before anything is known but the target: what balances the target itself is far too little where
-/// there is noise, by a factor of thousands on fine meshes, so what would balance [`FOLDS`] over the whole surface counts for
-/// the most of it.
+/// A guess at the scale, before anything is known but the target: what balances the target itself is far too
+/// little where there is noise, by a factor of thousands on fine meshes, so what would balance [`FOLDS`] over
+/// the whole surface counts for the most of it.
 fn first_scale<const K: usize>(reduced: &Reduced<'_, K>, h: &[Block<K>]) -> f64 {
     let noisy = balance_for(reduced, h);
     let smooth = BALANCE * h.len() as f64 / (FOLDS * deviation(&reduced.target) * mean_norm(reduced));

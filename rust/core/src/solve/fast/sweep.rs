@@ -1,8 +1,9 @@
-//! The pass over the blocks between two linear solves: product with `H`, shrinkage, multipliers and the product with `Hᵀ`
-//! of what comes next, block by block, so that every block is read once and nothing is stored in between.
+//! The pass over the blocks between two linear solves: product with `H`, shrinkage, multipliers and the
+//! product with `Hᵀ` of what comes next, block by block, so that every block is read once and nothing is
+//! stored in between.
 //!
-//! Split variable and multipliers are kept as one, `v = z + p/R`, from which `z = shrink(v, w/R)` and `p = R (v − z)`
-//! (the Douglas-Rachford form of alternating directions; Eckstein and Bertsekas 1992).
+//! Split variable and multipliers are kept as one, `v = z + p/R`, from which `z = shrink(v, w/R)` and
+//! `p = R (v − z)` (the Douglas-Rachford form of alternating directions; Eckstein and Bertsekas 1992).
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -96,13 +97,15 @@ impl<const K: usize> Sweep<K> {
         &self.from_equations[0]
     }
 
-    /// `Hᵀp` for [`Sums::multipliers`] after a pass that was asked to check; only where there is fidelity everywhere.
+    /// `Hᵀp` for [`Sums::multipliers`] after a pass that was asked to check;
+    /// only where there is fidelity everywhere.
     #[must_use]
     pub fn multipliers(&self) -> &[[f64; K]] {
         &self.multipliers[0]
     }
 
-    /// Takes split variables and multipliers one iteration further, from the solution `u` of the linear system.
+    /// Takes split variables and multipliers one iteration further,
+    /// from the solution `u` of the linear system.
     pub fn advance(&mut self, reduced: &Reduced<'_, K>, r: &[f64], u: &[[f64; K]], check: bool) -> Sums {
         if check {
             self.pass::<true>(reduced, r, u)
@@ -271,7 +274,8 @@ mod tests {
         let m = 20_000;
         let operator = operator(m);
         let n = operator.n_columns;
-        let target = Columns { n_rows: n, n_columns: 2, data: (0..2 * n).map(|i| (i as f64).cos()).collect() };
+        let target =
+            Columns { n_rows: n, n_columns: 2, data: (0..2 * n).map(|i| (i as f64).cos()).collect() };
         let problem = Problem {
             operator: &operator,
             weights: (0..m).map(|b| if b % 7 == 0 { 0.0 } else { 1.0 + (b % 3) as f64 }).collect(),
@@ -289,7 +293,8 @@ mod tests {
             std::array::from_fn(|i| std::array::from_fn(|c| (s * (b + 10 * i + 100 * c) as f64).sin()))
         };
         // Any z, and a p in the subdifferential of w‖·‖ there.
-        let z: Vec<Block<2>> = (0..m).map(|b| if w[b] > 0.0 { at(b, 0.7) } else { [[0.0; 2]; BLOCK] }).collect();
+        let z: Vec<Block<2>> =
+            (0..m).map(|b| if w[b] > 0.0 { at(b, 0.7) } else { [[0.0; 2]; BLOCK] }).collect();
         let p: Vec<Block<2>> = z.iter().zip(w).map(|(z, w)| scaled(w / norm(z).max(1e-300), z)).collect();
         let u: Vec<[f64; 2]> = (0..reduced.n()).map(|i| [(i as f64).sin(), (2.0 * i as f64).cos()]).collect();
 

@@ -1,4 +1,5 @@
-//! The linear system of the fast solver: pattern and ordering once, factorization as often as the penalties change.
+//! The linear system of the fast solver: pattern and ordering once,
+//! factorization as often as the penalties change.
 
 use crate::block_rows::BlockRows;
 use crate::error::SolveError;
@@ -10,8 +11,8 @@ use crate::solve::normal_matrix::NormalMatrix;
 use crate::solve::primal_dual::Stiffness;
 use crate::solve::reduced::Reduced;
 
-/// Rows whose fidelity is below this share of the mean diagonal are raised to it by a proximal term: it makes the matrix
-/// definite where the operator alone does not, and vanishes from the iteration as it converges.
+/// Rows whose fidelity is below this share of the mean diagonal are raised to it by a proximal term: it makes
+/// the matrix definite where the operator alone does not, and vanishes from the iteration as it converges.
 const PROXIMAL: f64 = 1e-10;
 
 /// How much more of it is tried when the factorization still fails, and how often.
@@ -60,7 +61,11 @@ impl System {
     ///
     /// # Errors
     /// A matrix that is not positive definite, or dependent linear constraints.
-    pub fn factorize<const K: usize>(&mut self, reduced: &mut Reduced<'_, K>, r: &[f64]) -> Result<(), SolveError> {
+    pub fn factorize<const K: usize>(
+        &mut self,
+        reduced: &mut Reduced<'_, K>,
+        r: &[f64],
+    ) -> Result<(), SolveError> {
         let twice: Vec<f64> = reduced.fidelity.iter().map(|a| 2.0 * a).collect();
         self.normal.assemble(&reduced.free.operator, r, &twice, &mut self.values);
         self.factorize_values(reduced, &twice)
@@ -108,8 +113,8 @@ impl System {
         Ok(())
     }
 
-    /// From now on takes the residual of every solution and solves for it: in matrices with very unlike weights a solution is
-    /// far less exact than its digits.
+    /// From now on takes the residual of every solution and solves for it: in matrices with very unlike
+    /// weights a solution is far less exact than its digits.
     pub fn refine(&mut self) {
         self.refined = true;
     }
@@ -132,7 +137,8 @@ impl System {
         out
     }
 
-    /// Turns the factored matrix into `factor` times itself: all penalties scaled alike, where there is no fidelity.
+    /// Turns the factored matrix into `factor` times itself: all penalties scaled alike,
+    /// where there is no fidelity.
     pub fn rescale(&mut self, factor: f64) {
         self.scale *= factor;
         self.proximal.iter_mut().for_each(|p| *p *= factor);
@@ -144,8 +150,8 @@ impl System {
         &self.proximal
     }
 
-    /// Solves `(2a + HᵀRH) u + Aᵀy = 2a·t + right`, `A u = b`; `u` holds the last iterate before and the solution after.
-    /// Returns `y`.
+    /// Solves `(2a + HᵀRH) u + Aᵀy = 2a·t + right`, `A u = b`; `u` holds the last iterate before and the
+    /// solution after. Returns `y`.
     pub fn solve<const K: usize>(
         &mut self,
         reduced: &Reduced<'_, K>,
@@ -175,11 +181,19 @@ impl System {
         y
     }
 
-    /// The change of a solution that makes up for `rest` missing on the right side, in place, and the change of `y`.
-    pub fn solve_change<const K: usize>(&mut self, reduced: &Reduced<'_, K>, rest: &mut [[f64; K]]) -> Vec<[f64; K]> {
+    /// The change of a solution that makes up for `rest` missing on the right side, in place,
+    /// and the change of `y`.
+    pub fn solve_change<const K: usize>(
+        &mut self,
+        reduced: &Reduced<'_, K>,
+        rest: &mut [[f64; K]],
+    ) -> Vec<[f64; K]> {
         rest.iter_mut().flatten().for_each(|x| *x /= self.scale);
         self.substitute(reduced.n_columns, rest);
-        let mut y = reduced.constraints.as_ref().map_or_else(Vec::new, |constraints| constraints.correct_change(rest));
+        let mut y = reduced
+            .constraints
+            .as_ref()
+            .map_or_else(Vec::new, |constraints| constraints.correct_change(rest));
         y.iter_mut().flatten().for_each(|y| *y *= self.scale);
         y
     }

@@ -19,7 +19,8 @@ pub(super) struct Borders<'a> {
 }
 
 impl Borders<'_> {
-    /// The curves with the colors of `values` on their sides, one row a copy; a side without a face gets those of the other.
+    /// The curves with the colors of `values` on their sides, one row a copy;
+    /// a side without a face gets those of the other.
     pub(super) fn colored(&self, values: &Columns) -> ColoredCurves {
         let k = values.n_columns;
         let mut curves = ColoredCurves { n_channels: k, ..ColoredCurves::default() };
@@ -40,7 +41,12 @@ impl Borders<'_> {
     }
 
     /// Thins the colors of every curve, [`thin`]; returns the number of knots of each.
-    pub(super) fn thin(&self, curves: &mut ColoredCurves, lengths: &[[f64; 3]], tolerance: f64) -> Vec<usize> {
+    pub(super) fn thin(
+        &self,
+        curves: &mut ColoredCurves,
+        lengths: &[[f64; 3]],
+        tolerance: f64,
+    ) -> Vec<usize> {
         let k = curves.n_channels;
         let length = |e: usize| {
             let [start, end] = curves.edges[e];

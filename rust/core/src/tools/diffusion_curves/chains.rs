@@ -13,8 +13,9 @@ pub(super) struct CurveEdge {
 
 /// The halfedges of the edge that starts at vertex `start`, each with whether its face lies left of it.
 ///
-/// Faces run counterclockwise, so the face whose halfedge starts at `start` is on the left and its neighbor on the right. Where
-/// faces disagree on their orientation, or more than two meet, the first one decides and all others are on its other side.
+/// Faces run counterclockwise, so the face whose halfedge starts at `start` is on the left and its neighbor
+/// on the right. Where faces disagree on their orientation, or more than two meet, the first one decides and
+/// all others are on its other side.
 pub(super) fn sided<'a>(
     connectivity: &'a Connectivity,
     table: &'a EdgeTable,
@@ -25,8 +26,8 @@ pub(super) fn sided<'a>(
     edge.map(move |h| (h, (first == Some(h)) == first.is_some_and(|first| connectivity.tail(first) == start)))
 }
 
-/// The edges whose faces have different labels, each with the smaller label on its left; with `rims` also the edges with one
-/// face, which lies on the left.
+/// The edges whose faces have different labels, each with the smaller label on its left; with `rims` also the
+/// edges with one face, which lies on the left.
 pub(super) fn border_edges(
     connectivity: &Connectivity,
     table: &EdgeTable,
@@ -54,8 +55,8 @@ pub(super) fn border_edges(
 
 /// The edges in the order of their curves, and where each curve starts in them, with their number last.
 ///
-/// A curve runs between two regions, the same on each side all along, and ends where another curve meets it or at the rim of
-/// the mesh. Closed curves come last.
+/// A curve runs between two regions, the same on each side all along, and ends where another curve meets it
+/// or at the rim of the mesh. Closed curves come last.
 pub(super) fn chain(connectivity: &Connectivity, edges: &[CurveEdge]) -> (Vec<CurveEdge>, Vec<usize>) {
     let stops = stops(connectivity, edges);
     let mut leaving = vec![None; connectivity.n_vertices()];

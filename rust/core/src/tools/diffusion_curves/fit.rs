@@ -22,7 +22,8 @@ pub(super) struct Task<'a> {
 /// Colors of the copies, and which of its copies each vertex takes its color from.
 pub(super) struct CopyColors {
     pub values: Columns,
-    /// The copy whose side a vertex is on; nothing for one that is a blend of its sides and for vertices without faces.
+    /// The copy whose side a vertex is on; nothing for one that is a blend of its sides and for vertices
+    /// without faces.
     pub owners: Vec<Option<u32>>,
     /// How much each copy's datum counts: its area, or nothing.
     weights: Vec<f64>,
@@ -31,8 +32,9 @@ pub(super) struct CopyColors {
 impl Task<'_> {
     /// Solves (27) on every piece of the cut surface.
     ///
-    /// A vertex on a curve has one color, which belongs to one of its sides or is a blend of them. A first fit leaves such
-    /// vertices out and tells, by the nearest color, which it is; the next uses it on its side and nowhere else.
+    /// A vertex on a curve has one color, which belongs to one of its sides or is a blend of them. A first
+    /// fit leaves such vertices out and tells, by the nearest color, which it is; the next uses it on its
+    /// side and nowhere else.
     pub(super) fn screened(&self, progress: &Progress) -> Result<CopyColors> {
         let copies = self.copies();
         let mut roots = pieces(self.cut);
@@ -65,10 +67,15 @@ impl Task<'_> {
         Ok(values)
     }
 
-    /// Least squares over the colors of the fixed copies: `min Σ_v m_v (c_v − t_v)²` for the colors `c` that the vertices take
-    /// from the harmonic function through them, each channel within the range of the data. The start is (27), and an
-    /// early stop keeps of it what the data do not determine.
-    pub(super) fn refined(&self, fit: &mut CopyColors, harmonic: &mut Harmonic<'_>, progress: &Progress) -> Result<()> {
+    /// Least squares over the colors of the fixed copies: `min Σ_v m_v (c_v − t_v)²` for the colors `c` that
+    /// the vertices take from the harmonic function through them, each channel within the range of the data.
+    /// The start is (27), and an early stop keeps of it what the data do not determine.
+    pub(super) fn refined(
+        &self,
+        fit: &mut CopyColors,
+        harmonic: &mut Harmonic<'_>,
+        progress: &Progress,
+    ) -> Result<()> {
         let reading = Reading::new(self, &fit.owners);
         let mut rebuilt = fit.values.clone();
         harmonic.extend(&mut rebuilt, progress)?;
@@ -176,7 +183,10 @@ impl<'a> Reading<'a> {
     fn given_back(&self, values: Columns) -> Columns {
         let copy = |c: usize| {
             let column = values.column(c);
-            self.vertices.iter().zip(&self.parts).map(|(&v, part)| part * self.mass[v as usize] * column[v as usize])
+            self.vertices
+                .iter()
+                .zip(&self.parts)
+                .map(|(&v, part)| part * self.mass[v as usize] * column[v as usize])
         };
         let data = (0..values.n_columns).flat_map(|c| copy(c).collect::<Vec<_>>()).collect();
         Columns { n_rows: self.vertices.len(), n_columns: values.n_columns, data }
@@ -208,5 +218,7 @@ pub(super) fn pieces(cut: &CutMesh) -> Partition {
 }
 
 fn range<'x>(column: impl IntoIterator<Item = &'x f64>) -> [f64; 2] {
-    column.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], &x| [least.min(x), most.max(x)])
+    column
+        .into_iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], &x| [least.min(x), most.max(x)])
 }

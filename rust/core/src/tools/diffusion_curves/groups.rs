@@ -27,7 +27,10 @@ impl Groups {
             }
             Some(numbers) => {
                 order.sort_by_key(|&f| numbers[f as usize]);
-                order.chunk_by(|&a, &b| numbers[a as usize] == numbers[b as usize]).map(<[u32]>::to_vec).collect()
+                order
+                    .chunk_by(|&a, &b| numbers[a as usize] == numbers[b as usize])
+                    .map(<[u32]>::to_vec)
+                    .collect()
             }
         };
         let mut of = vec![0; n_faces];
@@ -67,7 +70,8 @@ impl Groups {
         }
     }
 
-    /// Gives islands of fewer than [`LEAST_ISLAND`] groups, cut off from the rest of their region, to the region around them.
+    /// Gives islands of fewer than [`LEAST_ISLAND`] groups, cut off from the rest of their region,
+    /// to the region around them.
     pub(super) fn absorb_islands(&self, connectivity: &Connectivity, labels: &mut [i32]) {
         let mut pieces = self.pieces(connectivity, labels);
         let label_of = |piece: u32| labels[self.members[piece as usize][0] as usize];
@@ -90,7 +94,8 @@ impl Groups {
                 around.entry(piece).or_default().push(labels[g]);
             }
         }
-        let taken: BTreeMap<u32, i32> = around.into_iter().map(|(piece, labels)| (piece, majority(labels))).collect();
+        let taken: BTreeMap<u32, i32> =
+            around.into_iter().map(|(piece, labels)| (piece, majority(labels))).collect();
         for (g, members) in (0..).zip(&self.members) {
             if let Some(&label) = taken.get(&pieces.root(g)) {
                 members.iter().for_each(|&f| labels[f as usize] = label);

@@ -1,4 +1,5 @@
-//! The Laplacian of a cut mesh with weights that keep every solution within the range of its data, and its linear systems.
+//! The Laplacian of a cut mesh with weights that keep every solution within the range of its data,
+//! and its linear systems.
 
 use sprs::CsMat;
 
@@ -24,8 +25,8 @@ pub(super) struct Membrane {
 }
 
 impl Membrane {
-    /// The cotangent Laplacian on the intrinsic Delaunay triangulation of every piece of `cut` (Bobenko and Springborn 2007),
-    /// weights under [`LEAST_WEIGHT`] raised to it.
+    /// The cotangent Laplacian on the intrinsic Delaunay triangulation of every piece of `cut` (Bobenko and
+    /// Springborn 2007), weights under [`LEAST_WEIGHT`] raised to it.
     pub(super) fn new(cut: &CutMesh, lengths: &[[f64; 3]]) -> Result<Self> {
         let n = cut.n_copies();
         let connectivity = Connectivity::new(cut.faces.clone(), n)?;
@@ -80,8 +81,8 @@ impl Membrane {
         Ok(cholesky)
     }
 
-    /// `argmin uᵀ L u + Σ_i a_i (u_i − t_i)²`, column by column (Rowe et al. 2024, eq. (27)); every piece of the surface needs
-    /// a positive weight `a`.
+    /// `argmin uᵀ L u + Σ_i a_i (u_i − t_i)²`, column by column (Rowe et al. 2024, eq. (27)); every piece of
+    /// the surface needs a positive weight `a`.
     pub(super) fn screened(&self, weights: &[f64], target: &Columns, progress: &Progress) -> Result<Columns> {
         let all: Vec<u32> = (0..weights.len() as u32).collect();
         let mut cholesky = self.factorize(&all, &all, |v| weights[v])?;
@@ -110,11 +111,13 @@ impl<'a> Harmonic<'a> {
         let free: Vec<u32> = (0..fixed.len()).filter(|&v| !fixed[v]).map(|v| v as u32).collect();
         let mut index = vec![FIXED; fixed.len()];
         (0..).zip(&free).for_each(|(i, &v)| index[v as usize] = i);
-        let cholesky = if free.is_empty() { None } else { Some(membrane.factorize(&free, &index, |_| 0.0)?) };
+        let cholesky =
+            if free.is_empty() { None } else { Some(membrane.factorize(&free, &index, |_| 0.0)?) };
         Ok(Self { membrane, free, cholesky })
     }
 
-    /// Replaces the values of the free copies by the harmonic function through the others (Rowe et al. 2024, eq. (26)).
+    /// Replaces the values of the free copies by the harmonic function through the others (Rowe et al. 2024,
+    /// eq. (26)).
     pub(super) fn extend(&mut self, values: &mut Columns, progress: &Progress) -> Result<()> {
         let Some(cholesky) = &mut self.cholesky else { return Ok(()) };
         for c in 0..values.n_columns {
@@ -136,7 +139,8 @@ impl<'a> Harmonic<'a> {
         Ok(())
     }
 
-    /// The transpose of [`Harmonic::extend`]: what a change of each fixed value does to `Σ_i r_i u_i`, 0 at the free copies.
+    /// The transpose of [`Harmonic::extend`]: what a change of each fixed value does to `Σ_i r_i u_i`,
+    /// 0 at the free copies.
     pub(super) fn transposed(&mut self, residual: &mut Columns, progress: &Progress) -> Result<()> {
         let Some(cholesky) = &mut self.cholesky else { return Ok(()) };
         let mut inner = Columns::zeros(self.free.len(), residual.n_columns);
@@ -148,7 +152,9 @@ impl<'a> Harmonic<'a> {
         solve(cholesky, &mut inner, progress)?;
         for c in 0..residual.n_columns {
             for (x, &v) in inner.column(c).iter().zip(&self.free) {
-                for (u, value) in self.membrane.laplacian.outer_view(v as usize).iter().flat_map(|row| row.iter()) {
+                for (u, value) in
+                    self.membrane.laplacian.outer_view(v as usize).iter().flat_map(|row| row.iter())
+                {
                     residual.column_mut(c)[u] -= value * x;
                 }
             }
@@ -169,7 +175,8 @@ fn solve(cholesky: &mut Cholesky, right: &mut Columns, progress: &Progress) -> R
         progress.check()?;
         let lanes = LANES.min(right.n_columns - first);
         let at = |i: usize, c: usize| if c < lanes { (first + c) * n + i } else { first * n + i };
-        let mut rows: Vec<[f64; LANES]> = (0..n).map(|i| std::array::from_fn(|c| right.data[at(i, c)])).collect();
+        let mut rows: Vec<[f64; LANES]> =
+            (0..n).map(|i| std::array::from_fn(|c| right.data[at(i, c)])).collect();
         cholesky.solve(&mut rows);
         for (i, row) in rows.iter().enumerate() {
             (0..lanes).for_each(|c| right.data[at(i, c)] = row[c]);

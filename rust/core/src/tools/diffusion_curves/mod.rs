@@ -1,9 +1,11 @@
-//! Diffusion curves: the few curves, with a color on each side, that redraw a painted surface (Rowe et al. 2024,
-//! section 7.6).
+//! Diffusion curves: the few curves, with a color on each side,
+//! that redraw a painted surface (Rowe et al. 2024, section 7.6).
 //!
-//! [`regions`] ([`sharpen`]ed paint, [`sorting`] vertices, [`settle`] faces, [`patches`], [`weak`] borders, [`groups`] of faces) → [`chains`] (the edges between them, as curves) → [`fit`] (colors along the curves, (27)) → [`borders`],
-//! [`thinning`] (what is stored) → [`redraw()`] ((26)); fit and drawing on the Laplacian of [`membrane`].
-//! [`trace`] brings curves that were drawn or moved by hand onto the edges, [`smooth`] draws curves without teeth.
+//! [`regions`] ([`sharpen`]ed paint, [`sorting`] vertices, [`settle`] faces, [`patches`], [`weak`] borders,
+//! [`groups`] of faces) → [`chains`] (the edges between them, as curves) → [`fit`] (colors along the curves,
+//! (27)) → [`borders`], [`thinning`] (what is stored) → [`redraw()`] ((26)); fit and drawing on the Laplacian
+//! of [`membrane`]. [`trace`] brings curves that were drawn or moved by hand onto the edges, [`smooth`] draws
+//! curves without teeth.
 
 mod borders;
 mod chains;
@@ -45,7 +47,8 @@ use redraw::Conditions;
 /// How to find the colors of the curves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DiffusionCurvesOptions {
-    /// `α` of (27), in the unit that makes the area of the surface 1: colors are smoothed over a length of `1 / √α`.
+    /// `α` of (27), in the unit that makes the area of the surface 1:
+    /// colors are smoothed over a length of `1 / √α`.
     pub fidelity: f64,
     /// Whether the rims of an open mesh are curves too, with one side.
     pub rims: bool,
@@ -64,28 +67,30 @@ impl Default for DiffusionCurvesOptions {
 /// Curves with colors, and the surface that they rebuild.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DiffusionCurves {
-    /// The curves, edge after edge of one after another, and the colors on their sides; a point for every piece of surface
-    /// that no curve reaches.
+    /// The curves, edge after edge of one after another, and the colors on their sides; a point for every
+    /// piece of surface that no curve reaches.
     pub curves: ColoredCurves,
     /// Where each curve starts among the edges, and their number.
     pub starts: Vec<usize>,
     /// The rebuilt colors.
     pub redrawn: Redrawn,
-    /// A face for each vertex whose side it takes; nothing for a vertex that is a blend of its sides, and without faces.
+    /// A face for each vertex whose side it takes; nothing for a vertex that is a blend of its sides,
+    /// and without faces.
     pub sides: Vec<Option<u32>>,
     /// Mean squared error of the rebuilt colors over the area and the channels.
     pub error: f64,
-    /// How many numbers the curves are: two for each of their vertices (which it is, and its side), the colors, and one for
-    /// each knot where colors were thinned; for a point its vertex and color.
+    /// How many numbers the curves are: two for each of their vertices (which it is, and its side), the
+    /// colors, and one for each knot where colors were thinned; for a point its vertex and color.
     pub n_numbers: usize,
 }
 
-/// The curves along the borders of the regions `labels` (one a face), with colors that rebuild `colors` (n × c).
+/// The curves along the borders of the regions `labels` (one a face),
+/// with colors that rebuild `colors` (n × c).
 ///
-/// On each piece of the surface cut open along the borders `min uᵀ L u + α ‖u − u₀‖²` is solved; its values at the borders are
-/// the colors of the curves. A vertex on a border counts for the side whose color is nearest, and for none where the mean of its sides is nearer. With
-/// [`DiffusionCurvesOptions::refine`] least squares then improve them. Every color stays within the range of `colors`,
-/// channel by channel.
+/// On each piece of the surface cut open along the borders `min uᵀ L u + α ‖u − u₀‖²` is solved; its values
+/// at the borders are the colors of the curves. A vertex on a border counts for the side whose color is
+/// nearest, and for none where the mean of its sides is nearer. With [`DiffusionCurvesOptions::refine`] least
+/// squares then improve them. Every color stays within the range of `colors`, channel by channel.
 ///
 /// Source: Rowe et al. 2024, eqs. (26) and (27).
 ///

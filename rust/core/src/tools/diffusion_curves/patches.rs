@@ -28,9 +28,15 @@ impl Parts {
     }
 }
 
-/// Gives each patch a region of its own: a part of the vertices, none of which has the color of its region, and that `least` faces
-/// or more touch.
-pub(super) fn add_patches(paint: &Paint<'_>, sorted: &Sorted, groups: &Groups, least: usize, labels: &mut [i32]) {
+/// Gives each patch a region of its own: a part of the vertices, none of which has the color of its region,
+/// and that `least` faces or more touch.
+pub(super) fn add_patches(
+    paint: &Paint<'_>,
+    sorted: &Sorted,
+    groups: &Groups,
+    least: usize,
+    labels: &mut [i32],
+) {
     let connectivity = paint.mesh.connectivity();
     let Parts { root, tolerance } = Parts::new(paint);
     let mut strange = vec![true; root.len()];
@@ -39,7 +45,11 @@ pub(super) fn add_patches(paint: &Paint<'_>, sorted: &Sorted, groups: &Groups, l
     for face in connectivity.faces() {
         let mut found = face.map(|v| root[v as usize]);
         found.sort_unstable();
-        found.iter().enumerate().filter(|&(i, r)| i == 0 || found[i - 1] != *r).for_each(|(_, &r)| touching[r] += 1);
+        found
+            .iter()
+            .enumerate()
+            .filter(|&(i, r)| i == 0 || found[i - 1] != *r)
+            .for_each(|(_, &r)| touching[r] += 1);
     }
     let first = labels.iter().max().map_or(0, |most| most + 1);
     let patches = (0..root.len()).filter(|&r| root[r] == r && strange[r] && touching[r] >= least.max(1));

@@ -31,24 +31,25 @@ pub struct ColoredCurves {
 /// The colors of a surface between curves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Redrawn {
-    /// One color a vertex. A vertex on a curve takes the color of the side that was asked for, else the mean of its sides;
-    /// vertices without faces get 0.
+    /// One color a vertex. A vertex on a curve takes the color of the side that was asked for, else the mean
+    /// of its sides; vertices without faces get 0.
     pub colors: Columns,
     /// The colors at the three corners of every face, `faces × 3 × channels`: across a curve they jump.
     pub corners: Vec<f64>,
 }
 
-/// Diffuses the colors of curves over a mesh: `Δu = 0` between the curves and `u` as given on each of their sides, for the
-/// cotangent Laplacian on the intrinsic Delaunay triangulation of the mesh cut open along the curves.
+/// Diffuses the colors of curves over a mesh: `Δu = 0` between the curves and `u` as given on each of their
+/// sides, for the cotangent Laplacian on the intrinsic Delaunay triangulation of the mesh cut open along the
+/// curves.
 ///
-/// Every color lies within the range of the given ones, channel by channel. Where curves meet, the colors that they give to
-/// the same side are averaged. `sides` names for each vertex a face whose side it takes.
+/// Every color lies within the range of the given ones, channel by channel. Where curves meet, the colors
+/// that they give to the same side are averaged. `sides` names for each vertex a face whose side it takes.
 ///
 /// Source: Rowe et al. 2024, eq. (26); Orzan et al. 2008.
 ///
 /// # Errors
-/// [`Error::Argument`] for arrays of the wrong size, vertices that no edge joins, numbers that are not finite, and a piece of
-/// surface without a curve or point; [`Error::Cancelled`].
+/// [`Error::Argument`] for arrays of the wrong size, vertices that no edge joins, numbers that are not
+/// finite, and a piece of surface without a curve or point; [`Error::Cancelled`].
 pub fn redraw(
     mesh: &Mesh,
     curves: &ColoredCurves,
@@ -107,7 +108,8 @@ impl ColoredCurves {
         ];
         for (name, values, rows, what) in sized {
             if values.len() != rows * self.n_channels {
-                let problem = format!("has {} numbers, expected {what}: {}", values.len(), rows * self.n_channels);
+                let problem =
+                    format!("has {} numbers, expected {what}: {}", values.len(), rows * self.n_channels);
                 return Err(Error::argument(name, problem));
             }
             if let Some(i) = values.iter().position(|x| !x.is_finite()) {
@@ -140,7 +142,8 @@ impl ColoredCurves {
 fn check_sides(connectivity: &Connectivity, sides: Option<&[Option<u32>]>) -> Result<()> {
     let Some(sides) = sides else { return Ok(()) };
     if sides.len() != connectivity.n_vertices() {
-        let problem = format!("has {} entries, expected one per vertex: {}", sides.len(), connectivity.n_vertices());
+        let problem =
+            format!("has {} entries, expected one per vertex: {}", sides.len(), connectivity.n_vertices());
         return Err(Error::argument("sides", problem));
     }
     let wrong = |(v, side): (usize, &Option<u32>)| {
@@ -148,7 +151,9 @@ fn check_sides(connectivity: &Connectivity, sides: Option<&[Option<u32>]>) -> Re
         (!face.is_some_and(|face| face.contains(&(v as u32)))).then_some((v, side.unwrap_or_default()))
     };
     match sides.iter().enumerate().find_map(wrong) {
-        Some((v, f)) => Err(Error::argument("sides", format!("entry {v} names face {f}, which has no such vertex"))),
+        Some((v, f)) => {
+            Err(Error::argument("sides", format!("entry {v} names face {f}, which has no such vertex")))
+        }
         None => Ok(()),
     }
 }
@@ -160,8 +165,14 @@ pub(super) struct Conditions {
 }
 
 impl Conditions {
-    /// Gives each copy the mean of the colors that curves give it, and those of points to the copies that no curve reaches.
-    pub(super) fn new(connectivity: &Connectivity, table: &EdgeTable, cut: &CutMesh, curves: &ColoredCurves) -> Self {
+    /// Gives each copy the mean of the colors that curves give it,
+    /// and those of points to the copies that no curve reaches.
+    pub(super) fn new(
+        connectivity: &Connectivity,
+        table: &EdgeTable,
+        cut: &CutMesh,
+        curves: &ColoredCurves,
+    ) -> Self {
         let (n, k) = (cut.n_copies(), curves.n_channels);
         let mut counts = vec![0_u32; n];
         let mut values = Columns::zeros(n, k);
@@ -193,10 +204,14 @@ impl Conditions {
     fn check(&self, cut: &CutMesh) -> Result<()> {
         let mut roots = pieces(cut);
         let mut reached = vec![false; cut.n_copies()];
-        (0..).zip(&self.fixed).filter(|(_, fixed)| **fixed).for_each(|(i, _)| reached[roots.root(i) as usize] = true);
+        (0..)
+            .zip(&self.fixed)
+            .filter(|(_, fixed)| **fixed)
+            .for_each(|(i, _)| reached[roots.root(i) as usize] = true);
         match cut.faces.iter().position(|face| !reached[roots.root(face[0]) as usize]) {
             Some(face) => {
-                let problem = format!("none of them reaches the piece of surface of face {face}; color it by a point");
+                let problem =
+                    format!("none of them reaches the piece of surface of face {face}; color it by a point");
                 Err(Error::argument("edges", problem))
             }
             None => Ok(()),
@@ -225,24 +240,31 @@ impl Conditions {
             out.iter_mut().zip(&counts).filter(|(_, &count)| count > 1.0).for_each(|(x, count)| *x /= count);
         }
         for (v, side) in sides.into_iter().flatten().enumerate() {
-            let corner = side.and_then(|f| (0..3).find(|&i| connectivity.faces()[f as usize][i] as usize == v));
+            let corner =
+                side.and_then(|f| (0..3).find(|&i| connectivity.faces()[f as usize][i] as usize == v));
             if let (Some(f), Some(i)) = (side, corner) {
                 let copy = cut.faces[*f as usize][i] as usize;
                 (0..k).for_each(|c| colors.column_mut(c)[v] = values.column(c)[copy]);
             }
         }
         let corner_colors = |&copy: &u32| (0..k).map(move |c| (c, copy as usize));
-        let corners =
-            cut.faces.iter().flatten().flat_map(corner_colors).map(|(c, copy)| values.column(c)[copy]).collect();
+        let corners = cut
+            .faces
+            .iter()
+            .flatten()
+            .flat_map(corner_colors)
+            .map(|(c, copy)| values.column(c)[copy])
+            .collect();
         Ok(Redrawn { colors, corners })
     }
 
     /// Takes out of the solution what rounding lets leave the range of the given values.
     fn clamp(&self, values: &mut Columns) {
         for c in 0..values.n_columns {
-            let given = self.values.column(c).iter().zip(&self.fixed).filter(|(_, fixed)| **fixed).map(|(x, _)| *x);
-            let (least, most) =
-                given.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| (least.min(x), most.max(x)));
+            let given =
+                self.values.column(c).iter().zip(&self.fixed).filter(|(_, fixed)| **fixed).map(|(x, _)| *x);
+            let (least, most) = given
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| (least.min(x), most.max(x)));
             if least <= most {
                 values.column_mut(c).iter_mut().for_each(|x| *x = x.clamp(least, most));
             }

@@ -1,4 +1,5 @@
-//! The regions of a painted surface: segments of its colors, whose borders then follow the paint vertex by vertex.
+//! The regions of a painted surface: segments of its colors,
+//! whose borders then follow the paint vertex by vertex.
 
 use super::constants::{REGION_ROUNDS, SHADING};
 use super::groups::Groups;
@@ -16,14 +17,16 @@ use crate::tools::{segment, SegmentOptions};
 use crate::unit::Unit;
 use crate::Result;
 
-/// The region of each face by the colors at the vertices (n × c): what [`segment`] finds, its borders moved by [`follow_colors`].
+/// The region of each face by the colors at the vertices (n × c): what [`segment`] finds,
+/// its borders moved by [`follow_colors`].
 ///
 /// Soft edges of the paint count as sharp ones, or the blends in them would become regions.
 ///
-/// If no number of regions is asked for, patches that it has left in a region of another color get regions of their own, and
-/// regions without which the surface comes back as well become part of a neighbor.
+/// If no number of regions is asked for, patches that it has left in a region of another color get regions of
+/// their own, and regions without which the surface comes back as well become part of a neighbor.
 ///
-/// Faces with the same number in `groups`, the triangles of a polygon, come into one region: that of most of them.
+/// Faces with the same number in `groups`, the triangles of a polygon, come into one region:
+/// that of most of them.
 ///
 /// # Errors
 /// Groups of the wrong length, and the errors of [`segment`] and [`super::diffusion_curves`].
@@ -39,7 +42,8 @@ pub fn color_regions(
     let connectivity = mesh.connectivity();
     mesh.demand(Tool::DiffusionCurves).admit(options.solve.memory_limit)?;
     let groups = Groups::new(groups, connectivity.n_faces())?;
-    let (mesh, colors) = (mesh.measured(mesh.unit())?, colors.measured(Unit::of(colors.data.iter().copied())));
+    let (mesh, colors) =
+        (mesh.measured(mesh.unit())?, colors.measured(Unit::of(colors.data.iter().copied())));
     let original = Paint { mesh: &mesh, colors: &colors, fidelity, progress };
     let sharp = sharpened(&original);
     let paint = Paint { colors: &sharp, ..original };
@@ -67,9 +71,9 @@ pub fn color_regions(
     Ok(labels)
 }
 
-/// Moves the borders of regions until they follow the colors: each vertex is told by its color to which of the regions around it
-/// it belongs, and has a face of that region in the end; no face lies in a region that none of its vertices belongs to. Among
-/// the borders that do so, short ones are taken.
+/// Moves the borders of regions until they follow the colors: each vertex is told by its color to which of
+/// the regions around it it belongs, and has a face of that region in the end; no face lies in a region that
+/// none of its vertices belongs to. Among the borders that do so, short ones are taken.
 ///
 /// # Errors
 /// Those of [`super::diffusion_curves`], and groups of the wrong length.
@@ -92,8 +96,8 @@ pub fn follow_colors(
     Ok(labels)
 }
 
-/// Moves borders until every face is in a region of one of its vertices, and with `cover` until every vertex has a face of its
-/// region; returns where the vertices belong.
+/// Moves borders until every face is in a region of one of its vertices, and with `cover` until every vertex
+/// has a face of its region; returns where the vertices belong.
 fn follow(paint: &Paint<'_>, groups: &Groups, cover: bool, labels: &mut [i32]) -> Result<Sorted> {
     let most = SHADING * paint.scale();
     let mut sorted = paint.sort(labels)?;

@@ -18,19 +18,26 @@ pub(super) struct Faces<'a> {
 }
 
 impl<'a> Faces<'a> {
-    pub(super) fn new(mesh: &'a Mesh, groups: &'a Groups, regions: &'a [Option<i32>], labels: &'a mut [i32]) -> Self {
+    pub(super) fn new(
+        mesh: &'a Mesh,
+        groups: &'a Groups,
+        regions: &'a [Option<i32>],
+        labels: &'a mut [i32],
+    ) -> Self {
         let connectivity = mesh.connectivity();
         let mut covers = vec![0; regions.len()];
         let mut around = vec![Vec::new(); regions.len()];
         for ((f, face), &label) in (0..).zip(connectivity.faces()).zip(labels.iter()) {
             face.iter().for_each(|&v| around[v as usize].push(f));
-            face.iter().filter(|&&v| regions[v as usize] == Some(label)).for_each(|&v| covers[v as usize] += 1);
+            face.iter()
+                .filter(|&&v| regions[v as usize] == Some(label))
+                .for_each(|&v| covers[v as usize] += 1);
         }
         Self { connectivity, lengths: mesh.edge_lengths(), groups, regions, labels, covers, around }
     }
 
-    /// Gives every group of faces without a vertex of its region to the region of most of its vertices; returns whether any
-    /// changed.
+    /// Gives every group of faces without a vertex of its region to the region of most of its vertices;
+    /// returns whether any changed.
     pub(super) fn follow(&mut self) -> bool {
         let mut changed = false;
         for group in 0..self.groups.members.len() {
@@ -43,8 +50,9 @@ impl<'a> Faces<'a> {
         changed
     }
 
-    /// Gives every vertex that is `sure` of its region, and has no face of it, one of those around it, which no other vertex needs; of several the one
-    /// that makes the borders shortest. Returns whether any changed.
+    /// Gives every vertex that is `sure` of its region, and has no face of it, one of those around it, which
+    /// no other vertex needs; of several the one that makes the borders shortest. Returns whether any
+    /// changed.
     pub(super) fn cover(&mut self, sure: impl Fn(usize) -> bool) -> bool {
         let mut changed = false;
         for v in 0..self.regions.len() {
@@ -61,14 +69,16 @@ impl<'a> Faces<'a> {
         changed
     }
 
-    /// Shortens the borders by giving groups of faces to other regions that their vertices belong to. An edge of a border more than
-    /// two at a vertex counts as much as all edges around the group, so that regions are not pinched off where it can be helped.
+    /// Shortens the borders by giving groups of faces to other regions that their vertices belong to. An edge
+    /// of a border more than two at a vertex counts as much as all edges around the group, so that regions
+    /// are not pinched off where it can be helped.
     pub(super) fn shorten(&mut self) {
         for _ in 0..REGION_ROUNDS {
             let mut changed = false;
             for group in 0..self.groups.members.len() {
                 let old = self.label(group);
-                let mut others: Vec<i32> = self.corners(group).filter_map(|v| self.regions[v as usize]).collect();
+                let mut others: Vec<i32> =
+                    self.corners(group).filter_map(|v| self.regions[v as usize]).collect();
                 others.sort_unstable();
                 others.dedup();
                 others.retain(|&region| region != old);
@@ -108,14 +118,18 @@ impl<'a> Faces<'a> {
     fn is_needed(&self, group: usize) -> bool {
         let label = self.label(group);
         let here = |v: u32| self.corners(group).filter(|&u| u == v).count() as u32;
-        self.corners(group).any(|v| self.regions[v as usize] == Some(label) && self.covers[v as usize] <= here(v))
+        self.corners(group)
+            .any(|v| self.regions[v as usize] == Some(label) && self.covers[v as usize] <= here(v))
     }
 
-    /// The length of the edges around a group, and how much longer borders become if it goes over to `region`.
+    /// The length of the edges around a group, and how much longer borders become if it goes over to
+    /// `region`.
     fn change(&self, group: usize, region: i32) -> [f64; 2] {
         let mut sums = [0.0, 0.0];
         for h in self.groups.members[group].iter().flat_map(|&f| 3 * f as usize..3 * f as usize + 3) {
-            let Some(mate) = self.connectivity.mate(h).filter(|mate| self.groups.of[mate / 3] as usize != group) else {
+            let Some(mate) =
+                self.connectivity.mate(h).filter(|mate| self.groups.of[mate / 3] as usize != group)
+            else {
                 continue;
             };
             let (length, other) = (self.lengths[h / 3][h % 3], self.labels[mate / 3]);
@@ -134,7 +148,8 @@ impl<'a> Faces<'a> {
     fn borders_at(&self, v: u32) -> usize {
         let edges = self.around[v as usize].iter().flat_map(|&f| 3 * f as usize..3 * f as usize + 3);
         let ending = edges.filter(|&h| self.connectivity.opposite(h) != v);
-        let other = |h: usize| self.connectivity.mate(h).is_none_or(|g| self.labels[g / 3] != self.labels[h / 3]);
+        let other =
+            |h: usize| self.connectivity.mate(h).is_none_or(|g| self.labels[g / 3] != self.labels[h / 3]);
         // Every edge is seen from both of its faces, those of a rim from one.
         ending.filter(|&h| other(h)).count() / 2
     }

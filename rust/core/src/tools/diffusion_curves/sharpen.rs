@@ -1,4 +1,5 @@
-//! Paint without its soft edges: what a soft brush or a smoothed image leaves between two colors is no color of its own.
+//! Paint without its soft edges: what a soft brush or a smoothed image leaves between two colors is no color
+//! of its own.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -9,12 +10,14 @@ use super::sorting::{neighbors, Paint};
 use crate::linear::Columns;
 use crate::ordered::Ordered;
 
-/// The colors, with every blend replaced by the one of the colors that it is a blend of to which it is nearest.
+/// The colors, with every blend replaced by the one of the colors that it is a blend of to which it is
+/// nearest.
 ///
-/// Of a part of the surface that edges join over which colors hardly change, all vertices may be blends but those that are no
-/// end of another edge. Where there is none such, the part is a blend if most of its vertices have a mixture of the colors around it.
-/// Blends are filled from what is around them, the most similar vertex first (seeded region growing, Adams and Bischof 1994). Borders
-/// then are where one color outweighs the other, and flat paint stays as it is.
+/// Of a part of the surface that edges join over which colors hardly change, all vertices may be blends but
+/// those that are no end of another edge. Where there is none such, the part is a blend if most of its
+/// vertices have a mixture of the colors around it. Blends are filled from what is around them, the most
+/// similar vertex first (seeded region growing, Adams and Bischof 1994). Borders then are where one color
+/// outweighs the other, and flat paint stays as it is.
 pub(super) fn sharpened(paint: &Paint<'_>) -> Columns {
     let colors = paint.colors;
     let connectivity = paint.mesh.connectivity();
@@ -65,8 +68,8 @@ fn blends(paint: &Paint<'_>, around: &[Vec<u32>]) -> Vec<bool> {
     root.iter().zip(&flat).map(blended).collect()
 }
 
-/// Whether a mixture of the colors of `others` comes as near to the color of `v` as `tolerance`: steps toward the nearest point of
-/// their convex hull (Frank and Wolfe 1956).
+/// Whether a mixture of the colors of `others` comes as near to the color of `v` as `tolerance`: steps toward
+/// the nearest point of their convex hull (Frank and Wolfe 1956).
 fn is_mixture(colors: &Columns, v: usize, others: &[u32], tolerance: f64) -> bool {
     let color = |v: usize| (0..colors.n_columns).map(|c| colors.column(c)[v]).collect::<Vec<f64>>();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
@@ -79,7 +82,9 @@ fn is_mixture(colors: &Columns, v: usize, others: &[u32], tolerance: f64) -> boo
         if dot(&off, &off) <= tolerance * tolerance {
             return true;
         }
-        let Some(best) = others.iter().min_by(|a, b| dot(a, &off).total_cmp(&dot(b, &off))) else { return false };
+        let Some(best) = others.iter().min_by(|a, b| dot(a, &off).total_cmp(&dot(b, &off))) else {
+            return false;
+        };
         let step = difference(best, &mixture);
         let gain = -dot(&step, &off);
         if gain <= 0.0 {

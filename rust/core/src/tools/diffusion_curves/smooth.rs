@@ -9,9 +9,11 @@ use crate::mesh::{EdgeTable, Mesh};
 use crate::remesh::closest::ClosestPoint;
 use crate::{Error, Result};
 
-/// A place for each end of each edge of curves on a mesh: near the vertex, on the surface, and on smooth lines.
+/// A place for each end of each edge of curves on a mesh: near the vertex, on the surface,
+/// and on smooth lines.
 ///
-/// The places of one vertex are the same. Ends of curves and vertices on the rim of the mesh stay where they are.
+/// The places of one vertex are the same. Ends of curves and vertices on the rim of the mesh stay where they
+/// are.
 ///
 /// Source: Taubin 1995 (Laplacian smoothing), with bounded steps.
 ///
@@ -24,7 +26,10 @@ pub fn smooth_curves(mesh: &Mesh, edges: &[[u32; 2]]) -> Result<Vec<[Point; 2]>>
     let positions = measured.positions().ok_or(MeshError::NoPositions)?;
     let connectivity = mesh.connectivity();
     if let Some(v) = edges.iter().flatten().find(|&&v| v as usize >= positions.len()) {
-        return Err(Error::argument("edges", format!("vertex {v} does not exist: there are {}", positions.len())));
+        return Err(Error::argument(
+            "edges",
+            format!("vertex {v} does not exist: there are {}", positions.len()),
+        ));
     }
     mesh.demand(Tool::Curves).admit(None)?;
     let mut around = vec![Vec::new(); positions.len()];
@@ -44,7 +49,8 @@ pub fn smooth_curves(mesh: &Mesh, edges: &[[u32; 2]]) -> Result<Vec<[Point; 2]>>
         scale(sum, 1.0 / others.len() as f64)
     };
     let reach = |v: u32| {
-        let lengths = around[v as usize].iter().map(|&u| distance(positions[u as usize], positions[v as usize]));
+        let lengths =
+            around[v as usize].iter().map(|&u| distance(positions[u as usize], positions[v as usize]));
         FARTHEST * lengths.sum::<f64>() / around[v as usize].len() as f64
     };
     let mut places = positions.to_vec();
@@ -106,8 +112,9 @@ mod tests {
         let edges: Vec<[u32; 2]> =
             border_edges(mesh.connectivity(), &table, &labels, false).iter().map(|edge| edge.ends).collect();
         let places = smooth_curves(&mesh, &edges).unwrap();
-        let length =
-            |at: &dyn Fn(usize, usize) -> Point| (0..edges.len()).map(|e| distance(at(e, 0), at(e, 1))).sum::<f64>();
+        let length = |at: &dyn Fn(usize, usize) -> Point| {
+            (0..edges.len()).map(|e| distance(at(e, 0), at(e, 1))).sum::<f64>()
+        };
         let vertex = |e: usize, end: usize| shape.vertices[edges[e][end] as usize];
         assert!(length(&|e, end| places[e][end]) < 0.95 * length(&vertex));
         for (e, pair) in places.iter().enumerate() {

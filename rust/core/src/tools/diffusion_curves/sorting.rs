@@ -21,8 +21,8 @@ pub(super) struct Paint<'a> {
 
 /// Vertices by regions.
 pub(super) struct Sorted {
-    /// The region that each vertex has the color of: of several with that color the one with most faces around it. Nothing where
-    /// all that are near explain it about as well.
+    /// The region that each vertex has the color of: of several with that color the one with most faces
+    /// around it. Nothing where all that are near explain it about as well.
     pub regions: Vec<Option<i32>>,
     /// How far each color is from that of the region nearest to it.
     pub off: Vec<f64>,
@@ -61,14 +61,19 @@ impl Paint<'_> {
         let values = task.screened(self.progress)?.values;
         let copies = task.copies();
         let mut label_of = vec![0; cut.n_copies()];
-        cut.faces.iter().zip(labels).for_each(|(face, &label)| face.iter().for_each(|&i| label_of[i as usize] = label));
-        let around = neighbors(connectivity.faces(), connectivity.n_vertices(), |v| copies[v as usize].len() > 1);
+        cut.faces
+            .iter()
+            .zip(labels)
+            .for_each(|(face, &label)| face.iter().for_each(|&i| label_of[i as usize] = label));
+        let around =
+            neighbors(connectivity.faces(), connectivity.n_vertices(), |v| copies[v as usize].len() > 1);
         let mut corners = vec![Vec::new(); copies.len()];
         for (face, &label) in connectivity.faces().iter().zip(labels) {
             face.iter().for_each(|&v| corners[v as usize].push(label));
         }
         let least = UNSEEN * self.scale();
-        let mut sorted = Sorted { regions: Vec::with_capacity(copies.len()), off: Vec::with_capacity(copies.len()) };
+        let mut sorted =
+            Sorted { regions: Vec::with_capacity(copies.len()), off: Vec::with_capacity(copies.len()) };
         for (v, own) in copies.iter().enumerate() {
             let beside = around[v].iter().flat_map(|&u| &copies[u as usize]);
             let mut fits = Misfits { labels: &label_of, values: &values, found: Vec::new() };
@@ -135,7 +140,11 @@ impl Misfits<'_> {
 }
 
 /// The neighbors of every vertex that `on_border` holds for or that has such a neighbor.
-pub(super) fn neighbors(faces: &[[u32; 3]], n_vertices: usize, on_border: impl Fn(u32) -> bool) -> Vec<Vec<u32>> {
+pub(super) fn neighbors(
+    faces: &[[u32; 3]],
+    n_vertices: usize,
+    on_border: impl Fn(u32) -> bool,
+) -> Vec<Vec<u32>> {
     let mut around = vec![Vec::new(); n_vertices];
     for face in faces.iter().filter(|face| face.iter().any(|&v| on_border(v))) {
         for i in 0..3 {

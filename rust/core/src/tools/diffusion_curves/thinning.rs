@@ -1,9 +1,11 @@
 //! Fewer colors along a curve: knots, and linear colors by arc length between them.
 
-/// Thins the colors of one curve: `rows` has a row of `width` numbers a point, `lengths` the edges between the points.
+/// Thins the colors of one curve: `rows` has a row of `width` numbers a point,
+/// `lengths` the edges between the points.
 ///
-/// The knots are the ends and, again and again, the point that is farthest from the linear colors between its neighboring
-/// knots (Ramer 1972; Douglas and Peucker 1973), until no number is off by more than `tolerance`. Returns how many there are.
+/// The knots are the ends and, again and again, the point that is farthest from the linear colors between its
+/// neighboring knots (Ramer 1972; Douglas and Peucker 1973), until no number is off by more than `tolerance`.
+/// Returns how many there are.
 pub(super) fn thin(rows: &mut [f64], width: usize, lengths: &[f64], tolerance: f64) -> usize {
     let last = lengths.len();
     let mut places = vec![0.0; last + 1];
@@ -20,7 +22,8 @@ pub(super) fn thin(rows: &mut [f64], width: usize, lengths: &[f64], tolerance: f
     while let Some(&to) = ends.last() {
         let from = knots[knots.len() - 1];
         let off = |i: usize| {
-            let differences = (0..width).map(|k| (rows[i * width + k] - between(rows, i, [from, to], k)).abs());
+            let differences =
+                (0..width).map(|k| (rows[i * width + k] - between(rows, i, [from, to], k)).abs());
             differences.fold(0.0, f64::max)
         };
         let farthest = (from + 1..to).map(|i| (i, off(i))).reduce(|a, b| if b.1 > a.1 { b } else { a });

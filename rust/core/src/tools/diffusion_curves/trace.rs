@@ -24,14 +24,14 @@ pub struct TracedCurve {
 
 /// Paths along edges that follow lines of points on or near the surface.
 ///
-/// Every point goes to the nearest corner of the nearest face, and between them the path of least `Σ length (1 + (d/h)²)` is taken,
-/// `d` the distance of an edge's middle from the straight line between the points and `h` the mean edge: a shortest path that
-/// keeps to the line (Dijkstra 1959). `closed` lines return from their last point to the first. Steps forth and back over the same
-/// edge are left out.
+/// Every point goes to the nearest corner of the nearest face, and between them the path of least
+/// `Σ length (1 + (d/h)²)` is taken, `d` the distance of an edge's middle from the straight line between the
+/// points and `h` the mean edge: a shortest path that keeps to the line (Dijkstra 1959). `closed` lines
+/// return from their last point to the first. Steps forth and back over the same edge are left out.
 ///
 /// # Errors
-/// [`MeshError::NoPositions`], [`MeshError::NoFaces`]; [`Error::Argument`] for points that are not finite and two points in a row on
-/// parts that no edges join.
+/// [`MeshError::NoPositions`], [`MeshError::NoFaces`]; [`Error::Argument`] for points that are not finite and
+/// two points in a row on parts that no edges join.
 pub fn trace_curves(mesh: &Mesh, curves: &[(Vec<Point>, bool)]) -> Result<Vec<TracedCurve>> {
     let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
     let connectivity = mesh.connectivity();
@@ -39,7 +39,8 @@ pub fn trace_curves(mesh: &Mesh, curves: &[(Vec<Point>, bool)]) -> Result<Vec<Tr
         return Err(MeshError::NoFaces.into());
     }
     mesh.demand(Tool::Curves).admit(None)?;
-    let unit = Unit::of(positions.iter().chain(curves.iter().flat_map(|(points, _)| points)).flatten().copied());
+    let unit =
+        Unit::of(positions.iter().chain(curves.iter().flat_map(|(points, _)| points)).flatten().copied());
     if !unit.is_one() {
         let measured = |(points, closed): &(Vec<Point>, bool)| {
             (points.iter().map(|p| p.map(|x| unit.measure(x))).collect(), *closed)
@@ -93,13 +94,20 @@ impl<'a> Search<'a> {
                 visit(b as usize, a);
             }
         });
-        let total: f64 = edges.iter().map(|&[a, b]| distance(positions[a as usize], positions[b as usize])).sum();
+        let total: f64 =
+            edges.iter().map(|&[a, b]| distance(positions[a as usize], positions[b as usize])).sum();
         let mean_edge = (total / edges.len().max(1) as f64).max(f64::MIN_POSITIVE);
         Self { positions, neighbors, mean_edge, seen: vec![(0, 0.0, 0); positions.len()], stamp: 0 }
     }
 
     /// The path over `vertices`, which stand for `points`; `first` is the row of the first point.
-    fn curve(&mut self, points: &[Point], vertices: &[u32], closed: bool, first: usize) -> Result<TracedCurve> {
+    fn curve(
+        &mut self,
+        points: &[Point],
+        vertices: &[u32],
+        closed: bool,
+        first: usize,
+    ) -> Result<TracedCurve> {
         let mut traced = TracedCurve::default();
         let Some(&start) = vertices.first() else { return Ok(traced) };
         traced.push(start, 0.0);
@@ -233,7 +241,9 @@ mod tests {
         let curve = traced(&line, false);
         let size = distance(positions[0], positions[1]);
         assert_eq!((curve.vertices.first(), curve.vertices.last()), (Some(&0), Some(&44)));
-        assert!(places(&curve).iter().all(|&p| distance(p, closest_on_segment(p, line[0], line[1])) < 0.75 * size));
+        assert!(places(&curve)
+            .iter()
+            .all(|&p| distance(p, closest_on_segment(p, line[0], line[1])) < 0.75 * size));
         let mesh = shapes::grid(8, 8).mesh().unwrap();
         let table = EdgeTable::new(mesh.connectivity());
         assert!(curve.vertices.windows(2).all(|pair| table.between(pair[0], pair[1]).next().is_some()));

@@ -14,8 +14,8 @@ struct Trial<'a> {
     mass: Vec<f64>,
 }
 
-/// Makes one region of two as long as the surface comes back as well without their border: faintest borders first, as many at once
-/// as have no region in common. Finishing stops with what is reached.
+/// Makes one region of two as long as the surface comes back as well without their border: faintest borders
+/// first, as many at once as have no region in common. Finishing stops with what is reached.
 pub(super) fn merge_weak(paint: &Paint<'_>, labels: &mut [i32]) -> Result<()> {
     let mesh = paint.mesh;
     let trial = Trial { paint, mass: voronoi_mass(mesh.connectivity(), mesh.edge_lengths()) };

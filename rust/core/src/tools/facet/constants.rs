@@ -1,39 +1,45 @@
-//! Every number that facets depend on, with its reason. Lengths are parts of the diagonal of the bounding box.
+//! Every number that facets depend on, with its reason.
+//! Lengths are parts of the diagonal of the bounding box.
 
-/// What faces that are turned away cost against faces that are away, over the area of the region: a spherical cap of radius
-/// `r` and curvature `k` is off its plane by `k² r⁴ / 48` in the mean square, its normals by `k² r² / 2`; with the area `π r²`
-/// both then weigh about the same. Without it the two sides of an ear become one facet.
+/// What faces that are turned away cost against faces that are away, over the area of the region: a spherical
+/// cap of radius `r` and curvature `k` is off its plane by `k² r⁴ / 48` in the mean square, its normals by
+/// `k² r² / 2`; with the area `π r²` both then weigh about the same. Without it the two sides of an ear
+/// become one facet.
 pub(super) const TURN: f64 = 0.01;
 
-/// The corners that two facets share lie on one line, as where a step is cut into an edge. They may be off that line by this
-/// part of the distance between the farthest two.
+/// The corners that two facets share lie on one line, as where a step is cut into an edge. They may be off
+/// that line by this part of the distance between the farthest two.
 pub(super) const BESIDE: f64 = 0.1;
 
-/// So many regions are merged at once at most, where fewer leave no facets: the three sides of a bump and the plane around it
-/// take four.
+/// So many regions are merged at once at most, where fewer leave no facets: the three sides of a bump and the
+/// plane around it take four.
 pub(super) const TOGETHER: usize = 8;
 
-/// What a move of a corner costs against distances of faces from planes, over its part of the areas around it, while facets are
-/// sought that are sound at all.
+/// What a move of a corner costs against distances of faces from planes, over its part of the areas around
+/// it, while facets are sought that are sound at all.
 pub(super) const STAY: f64 = 1.0;
 
-/// The same while planes are fitted. Distances of 100 facets of Spot and the bunny are least from 0.1 to 0.3; with less, corners of
-/// facets that are nearly parallel leave the mesh (3.8 % of the diagonal with 0.02 against 1.9 % with 0.2 on Spot).
+/// The same while planes are fitted. Distances of 100 facets of Spot and the bunny are least from 0.1 to 0.3;
+/// with less, corners of facets that are nearly parallel leave the mesh (3.8 % of the diagonal with 0.02
+/// against 1.9 % with 0.2 on Spot).
 pub(super) const FITTING: f64 = 0.2;
 
-/// How far corners are drawn to the mesh while planes are fitted, as a part of their distance: without it corners of 100 facets
-/// of Spot are 3.5 % of the diagonal away, with 0.3 1.8 %, and the root mean square stays within a fortieth.
+/// How far corners are drawn to the mesh while planes are fitted, as a part of their distance: without it
+/// corners of 100 facets of Spot are 3.5 % of the diagonal away, with 0.3 1.8 %, and the root mean square
+/// stays within a fortieth.
 pub(super) const PULL: f64 = 0.3;
 
-/// How much planes resist to being turned, as a part of the spread of their faces: thin facets, whose planes their faces hardly
-/// determine, turned by radians without.
+/// How much planes resist to being turned, as a part of the spread of their faces: thin facets, whose planes
+/// their faces hardly determine, turned by radians without.
 pub(super) const DAMPING: f64 = 0.03;
 
-/// Newton steps in one go towards the least distances, and at most as many that only flatten: four to six reach rounding.
+/// Newton steps in one go towards the least distances, and at most as many that only flatten:
+/// four to six reach rounding.
 pub(super) const STEPS: usize = 10;
 
-/// How much constraints may give at first, as a part of the diagonal of their system, from a start that is not flat and from one
-/// that is: with none at all steps swing between two places (eight of twenty-four shapes did not become flat).
+/// How much constraints may give at first, as a part of the diagonal of their system, from a start that is
+/// not flat and from one that is: with none at all steps swing between two places (eight of twenty-four
+/// shapes did not become flat).
 pub(super) const SLACK: [f64; 2] = [0.1, 1e-6];
 
 /// The least of it, as constraints may depend on each other.
@@ -51,8 +57,8 @@ pub(super) const FLAT: f64 = 1e-7;
 /// Rounds of repairing facets that cross themselves. Of 24 shapes and counts none took more than six.
 pub(super) const REPAIRS: usize = 12;
 
-/// Faces are shared out and planes fitted until both surfaces have not come nearer, to this part of their distance, so many times
-/// in a row.
+/// Faces are shared out and planes fitted until both surfaces have not come nearer, to this part of their
+/// distance, so many times in a row.
 pub(super) const NEARER: f64 = 0.999;
 pub(super) const IDLE: usize = 2;
 
@@ -62,7 +68,8 @@ pub(super) const TRIES: usize = 6;
 /// How much firmer.
 pub(super) const FIRMER: f64 = 10.0;
 
-/// How many times the planes are taken anew to end at the number of facets asked for, since repairs change it.
+/// How many times the planes are taken anew to end at the number of facets asked for,
+/// since repairs change it.
 pub(super) const COUNTS: usize = 4;
 
 /// The root mean square distance that facets keep where nothing is asked for.

@@ -34,14 +34,17 @@ impl Merges {
     /// How many of `n` regions to leave, on a mesh of so many vertices.
     pub(super) fn count(&self, wanted: Wanted, n: usize, n_vertices: usize, area: f64) -> usize {
         let [fewest, most] = self.range(n);
-        let within = |error: f64| (fewest..=most).find(|&count| self.distance(n, count, area) <= error).unwrap_or(most);
+        let within = |error: f64| {
+            (fewest..=most).find(|&count| self.distance(n, count, area) <= error).unwrap_or(most)
+        };
         match wanted {
             Wanted::Facets(count) => count.clamp(fewest, most),
             Wanted::Error(error) => within(error),
             Wanted::Found => {
                 let data = n_vertices as f64;
                 let unlikely = |&count: &usize| {
-                    data * self.distance(n, count, area).max(FLAT).powi(2).ln() + 3.0 * count as f64 * data.ln()
+                    data * self.distance(n, count, area).max(FLAT).powi(2).ln()
+                        + 3.0 * count as f64 * data.ln()
                 };
                 let counts = fewest..=within(ERROR);
                 counts.min_by(|a, b| unlikely(a).total_cmp(&unlikely(b))).unwrap_or(most)

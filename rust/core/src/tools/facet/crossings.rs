@@ -5,8 +5,8 @@ use robust::{orient3d, Coord3D};
 use crate::mesh::vector::Point;
 use crate::remesh::closest::ClosestPoint;
 
-/// The pairs of triangles, given by corners and places, that cross: an edge of one passes through the inside of the other.
-/// What only touches does not.
+/// The pairs of triangles, given by corners and places, that cross: an edge of one passes through the inside
+/// of the other. What only touches does not.
 pub(super) fn crossings(triangles: &[[u32; 3]], place: impl Fn(u32) -> Point) -> Vec<[u32; 2]> {
     let places: Vec<[Point; 3]> = triangles.iter().map(|t| t.map(&place)).collect();
     let tree = ClosestPoint::new(places.clone());
@@ -33,7 +33,8 @@ pub(super) fn crossings(triangles: &[[u32; 3]], place: impl Fn(u32) -> Point) ->
 fn cross(triangles: &[[u32; 3]], places: &[[Point; 3]], i: usize, j: usize) -> bool {
     (0..3).any(|k| {
         let ends = [k, (k + 1) % 3];
-        ends.iter().all(|&e| !triangles[j].contains(&triangles[i][e])) && passes(ends.map(|e| places[i][e]), places[j])
+        ends.iter().all(|&e| !triangles[j].contains(&triangles[i][e]))
+            && passes(ends.map(|e| places[i][e]), places[j])
     })
 }
 

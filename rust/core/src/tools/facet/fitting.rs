@@ -24,14 +24,16 @@ pub(super) fn settle(shape: &mut Shape, faces: &mut Faces, progress: &Progress) 
         let homes: Vec<Point> = shape.corners.iter().map(|corner| corner.home).collect();
         flatten(shape, STAY, &homes)?;
         let faulty = Inspection::new(shape, false).faults(&before);
-        if faulty.is_empty() || round == REPAIRS || progress.is_finishing() || !repair(shape, faces, &faulty) {
+        if faulty.is_empty() || round == REPAIRS || progress.is_finishing() || !repair(shape, faces, &faulty)
+        {
             break;
         }
     }
     Ok(())
 }
 
-/// Gives every face to the nearest facet and fits the planes anew, in turns, as long as facets stay sound and come nearer.
+/// Gives every face to the nearest facet and fits the planes anew, in turns,
+/// as long as facets stay sound and come nearer.
 pub(super) fn refine(shape: &mut Shape, faces: &mut Faces, progress: &Progress) -> Result<()> {
     let mut inspection = Inspection::new(shape, true);
     let (mut labels, distance) = measured(shape, faces, &inspection);
@@ -54,8 +56,8 @@ pub(super) fn refine(shape: &mut Shape, faces: &mut Faces, progress: &Progress) 
     Ok(())
 }
 
-/// The facet nearest to each face, and the distance of both surfaces from each other: from the faces to the facets, and from the
-/// facets to the mesh.
+/// The facet nearest to each face, and the distance of both surfaces from each other: from the faces to the
+/// facets, and from the facets to the mesh.
 fn measured(shape: &Shape, faces: &Faces, inspection: &Inspection) -> (Vec<u32>, f64) {
     let (labels, distances) = faces.nearest(shape, inspection);
     let (mut squares, mut total) = (0.0, 0.0);
@@ -71,7 +73,12 @@ fn measured(shape: &Shape, faces: &Faces, inspection: &Inspection) -> (Vec<u32>,
 }
 
 /// The shape with planes fitted to its faces, if that can be had without facets that cross where none did.
-fn fitted(shape: &mut Shape, faces: &Faces, before: &Inspection, progress: &Progress) -> Result<Option<Shape>> {
+fn fitted(
+    shape: &mut Shape,
+    faces: &Faces,
+    before: &Inspection,
+    progress: &Progress,
+) -> Result<Option<Shape>> {
     let aim = |corner: &Corner| between(corner.point, faces.on_mesh(corner.point), PULL);
     let aims: Vec<Point> = shape.corners.iter().map(aim).collect();
     for _ in 0..TRIES {

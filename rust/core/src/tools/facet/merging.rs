@@ -54,8 +54,8 @@ impl Refused {
     }
 }
 
-/// Merges regions, whose `moments` are given, until none can be merged with another. Regions that are `held` are none of them.
-/// `weight` is what a border along a halfedge costs: cheap ones stay.
+/// Merges regions, whose `moments` are given, until none can be merged with another. Regions that are `held`
+/// are none of them. `weight` is what a border along a halfedge costs: cheap ones stay.
 pub(super) fn merges(
     regions: &mut Regions<'_>,
     moments: Vec<Moments>,
@@ -162,7 +162,8 @@ impl<W: Fn(u32) -> f64> Merging<'_, '_, W> {
     fn cost(&self, set: &Set) -> f64 {
         let joined = set.iter().fold(Moments::default(), |sum, r| sum.plus(&self.moments[r as usize]));
         // What is flat grows evenly: one region that takes a face at a time is slow.
-        FLAT * FLAT * joined.area + joined.fit().energy - set.iter().map(|r| self.energies[r as usize]).sum::<f64>()
+        FLAT * FLAT * joined.area + joined.fit().energy
+            - set.iter().map(|r| self.energies[r as usize]).sum::<f64>()
     }
 
     /// How often the regions have changed.
@@ -172,7 +173,8 @@ impl<W: Fn(u32) -> f64> Merging<'_, '_, W> {
 }
 
 impl Merges {
-    /// The regions of `n` that are `count` after the first merges, numbered in the order of their first members.
+    /// The regions of `n` that are `count` after the first merges,
+    /// numbered in the order of their first members.
     pub(super) fn labels(&self, n: usize, count: usize) -> Vec<u32> {
         let mut sets = Partition::new(n);
         self.pairs[..n - count].iter().for_each(|&[kept, gone]| sets.unite(kept, gone));

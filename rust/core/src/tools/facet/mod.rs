@@ -1,10 +1,12 @@
 //! Facets: a mesh as a polyhedron of flat polygons with straight ridges, as a low-poly artist models.
 //!
-//! Faces are merged into regions, always those that cost least ([`merging`], after Garland, Willmott and Heckbert 2001), as long as the
-//! regions can be the facets of a polyhedron ([`regions`]). Where three regions meet is a corner ([`shape`]). Then planes and corners are
-//! found together, such that every corner lies on all of its planes and the planes are near the faces ([`mod@solve`]); facets that cross
-//! themselves or others ([`faults`], [`crossings`]) are repaired ([`mod@repair`]); faces are given to the nearest facet, and the planes
-//! fitted anew, in turns ([`fitting`]), as in variational shape approximation [Cohen-Steiner, Alliez and Desbrun 2004].
+//! Faces are merged into regions, always those that cost least ([`merging`], after Garland, Willmott and
+//! Heckbert 2001), as long as the regions can be the facets of a polyhedron ([`regions`]). Where three
+//! regions meet is a corner ([`shape`]). Then planes and corners are found together, such that every corner
+//! lies on all of its planes and the planes are near the faces ([`mod@solve`]); facets that cross themselves
+//! or others ([`faults`], [`crossings`]) are repaired ([`mod@repair`]); faces are given to the nearest facet,
+//! and the planes fitted anew, in turns ([`fitting`]), as in variational shape approximation [Cohen-Steiner,
+//! Alliez and Desbrun 2004].
 
 mod constants;
 mod count;
@@ -72,15 +74,17 @@ pub struct Faceted {
     pub merges: FacetMerges,
 }
 
-/// The order in which faces were merged: with it other numbers of facets are quick, and nested where they start.
+/// The order in which faces were merged: with it other numbers of facets are quick,
+/// and nested where they start.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FacetMerges(Merges);
 
-/// Makes facets of `mesh`. With the `merges` of an earlier call, of the same mesh, mask and weights, that part is not done again.
+/// Makes facets of `mesh`. With the `merges` of an earlier call, of the same mesh, mask and weights,
+/// that part is not done again.
 ///
 /// # Errors
-/// [`MeshError::NoPositions`], [`MeshError::NoFaces`], arguments of the wrong shape or range, [`crate::Error::Cancelled`],
-/// [`crate::Error::Memory`].
+/// [`MeshError::NoPositions`], [`MeshError::NoFaces`], arguments of the wrong shape or range,
+/// [`crate::Error::Cancelled`], [`crate::Error::Memory`].
 pub fn facet(
     mesh: &Mesh,
     merges: Option<&FacetMerges>,
@@ -272,7 +276,8 @@ impl<'a> Job<'a> {
             is_held[label as usize] |= held;
         }
         let connectivity = self.working.mesh().connectivity();
-        let regions = Regions::new(connectivity, &self.positions, self.labels(faces.labels.iter().copied()), count);
+        let regions =
+            Regions::new(connectivity, &self.positions, self.labels(faces.labels.iter().copied()), count);
         let area: f64 = moments.iter().map(|m| m.area).sum();
         let squares: f64 = moments.iter().map(|m| m.fit().squared_distance).sum();
         let tolerance = (squares / area.max(f64::MIN_POSITIVE)).sqrt().max(constants::FLAT);
@@ -314,8 +319,9 @@ impl<'a> Job<'a> {
         let mut of_faces = vec![-1; mesh.connectivity().n_faces()];
         self.parts.iter().zip(labels).for_each(|(&f, label)| of_faces[f as usize] = label as i32);
         let plane = |facet: &shape::Facet| {
-            let on =
-                self.working.place(add(self.center, scale(facet.plane.normal, facet.plane.offset * self.diagonal)));
+            let on = self
+                .working
+                .place(add(self.center, scale(facet.plane.normal, facet.plane.offset * self.diagonal)));
             let normal = facet.plane.normal;
             [normal[0], normal[1], normal[2], crate::mesh::vector::dot(normal, on)]
         };

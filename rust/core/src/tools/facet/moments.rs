@@ -81,7 +81,8 @@ impl Moments {
             let plane = Plane::through(self.center(), normal);
             Fit { plane, squared_distance, energy: squared_distance + TURN * self.area * turned }
         };
-        let least = eigen3(spread).into_iter().fold((f64::INFINITY, [0.0; 3]), |a, b| if b.0 < a.0 { b } else { a });
+        let least =
+            eigen3(spread).into_iter().fold((f64::INFINITY, [0.0; 3]), |a, b| if b.0 < a.0 { b } else { a });
         let flat = if dot(least.1, self.vector) < 0.0 { scale(least.1, -1.0) } else { least.1 };
         let (first, second) = (fit(flat), fit(unit(self.vector)));
         if first.energy <= second.energy || self.vector == [0.0; 3] {

@@ -9,12 +9,12 @@ use crate::{Error, Result};
 pub struct FacetOptions {
     /// How many facets are wanted.
     pub facets: Option<usize>,
-    /// The root mean square distance of the faces from the facets that is allowed, in the unit of the mesh, where `facets` is
-    /// `None`. Where both are: as many as the faces give evidence for (Bayesian information criterion, Schwarz 1978), at most as
-    /// many as half a percent of the diagonal of the bounding box needs.
+    /// The root mean square distance of the faces from the facets that is allowed, in the unit of the mesh,
+    /// where `facets` is `None`. Where both are: as many as the faces give evidence for (Bayesian information
+    /// criterion, Schwarz 1978), at most as many as half a percent of the diagonal of the bounding box needs.
     pub error: Option<f64>,
-    /// What borders of facets cost along each edge, one row a face, column `i` opposite corner `i`; smaller attracts them. The
-    /// entry of either face counts.
+    /// What borders of facets cost along each edge, one row a face, column `i` opposite corner `i`; smaller
+    /// attracts them. The entry of either face counts.
     pub edge_weights: Option<Vec<[f64; 3]>>,
     /// The faces to make facets of, all where `None`; the others, and all vertices of theirs, stay.
     pub faces: Option<Vec<bool>>,

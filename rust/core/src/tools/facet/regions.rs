@@ -1,5 +1,5 @@
-//! Regions of faces that can be the facets of a polyhedron: every loop has three corners, none meets itself, and the corners that
-//! two regions share lie on one line.
+//! Regions of faces that can be the facets of a polyhedron: every loop has three corners, none meets itself,
+//! and the corners that two regions share lie on one line.
 
 use std::collections::{HashMap, HashSet};
 
@@ -11,8 +11,8 @@ use crate::mesh::{Connectivity, EdgeKind};
 /// What lies behind an edge without a second face.
 pub(super) const OUTSIDE: u32 = u32::MAX;
 
-/// A part of a loop from one corner to the next, against one neighbor. A loop without corners is one ridge from a vertex to
-/// itself.
+/// A part of a loop from one corner to the next, against one neighbor. A loop without corners is one ridge
+/// from a vertex to itself.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ridge {
     pub neighbor: u32,
@@ -96,7 +96,12 @@ pub(super) struct Regions<'a> {
 
 impl<'a> Regions<'a> {
     /// The regions of `labels`, numbered from 0 to `n`; faces with [`OUTSIDE`] are none.
-    pub(super) fn new(connectivity: &'a Connectivity, positions: &'a [Point], labels: Vec<u32>, n: usize) -> Self {
+    pub(super) fn new(
+        connectivity: &'a Connectivity,
+        positions: &'a [Point],
+        labels: Vec<u32>,
+        n: usize,
+    ) -> Self {
         let mut regions = Self {
             connectivity,
             positions,
@@ -141,10 +146,13 @@ impl<'a> Regions<'a> {
 
     /// The regions next to one, each with the halfedges that lead there.
     pub(super) fn neighbors(&self, region: u32) -> Vec<(u32, Vec<u32>)> {
-        let mut all: Vec<(u32, u32)> = self.borders[region as usize].iter().map(|&h| (self.behind(h), h)).collect();
+        let mut all: Vec<(u32, u32)> =
+            self.borders[region as usize].iter().map(|&h| (self.behind(h), h)).collect();
         all.retain(|&(neighbor, _)| neighbor != OUTSIDE);
         all.sort_unstable();
-        all.chunk_by(|a, b| a.0 == b.0).map(|group| (group[0].0, group.iter().map(|pair| pair.1).collect())).collect()
+        all.chunk_by(|a, b| a.0 == b.0)
+            .map(|group| (group[0].0, group.iter().map(|pair| pair.1).collect()))
+            .collect()
     }
 
     /// The halfedges of `p` that have `q` behind them.
@@ -169,8 +177,9 @@ impl<'a> Regions<'a> {
         valence > 2 || self.is_anchored[v as usize]
     }
 
-    /// What `set` has to be joined with so that it can be one facet: regions around it that would be left with two corners or meet
-    /// it off a line, and, where it would have two corners itself, the neighbor with which it costs less. `None` where it cannot, or not with so few.
+    /// What `set` has to be joined with so that it can be one facet: regions around it that would be left
+    /// with two corners or meet it off a line, and, where it would have two corners itself, the neighbor with
+    /// which it costs less. `None` where it cannot, or not with so few.
     pub(super) fn closure(
         &self,
         mut set: Set,
@@ -182,7 +191,8 @@ impl<'a> Regions<'a> {
                 Verdict::Facet => return Some(set),
                 Verdict::Never => return None,
                 Verdict::WithOne(of) => {
-                    let joined = of.into_iter().filter(|&r| r != OUTSIDE && !is_held(r)).filter_map(|r| set.with(r));
+                    let joined =
+                        of.into_iter().filter(|&r| r != OUTSIDE && !is_held(r)).filter_map(|r| set.with(r));
                     set = joined.min_by(|a, b| cost(a).total_cmp(&cost(b)).then(a.cmp(b)))?;
                 }
             }
@@ -202,7 +212,9 @@ impl<'a> Regions<'a> {
             }
         }
         let valence = |v: u32| self.valence[v as usize] - lost.get(&v).copied().unwrap_or(0) / 2;
-        let Some(loops) = self.loops_of(&border, &|r| set.contains(r), &valence) else { return Verdict::Never };
+        let Some(loops) = self.loops_of(&border, &|r| set.contains(r), &valence) else {
+            return Verdict::Never;
+        };
         if loops.is_empty() {
             return Verdict::Never;
         }
@@ -219,7 +231,8 @@ impl<'a> Regions<'a> {
                 }
             }
         }
-        self.met_off_line(&border, &loops, set).map_or(Verdict::Facet, |region| Verdict::WithOne(vec![region]))
+        self.met_off_line(&border, &loops, set)
+            .map_or(Verdict::Facet, |region| Verdict::WithOne(vec![region]))
     }
 
     /// Whether the loop of halfedge `start` has its corners, with `valence` border edges at each vertex.
@@ -334,7 +347,8 @@ impl<'a> Regions<'a> {
     fn is_on_line(&self, vertices: &[(u32, u32)]) -> bool {
         let points: Vec<Point> = vertices.iter().map(|&(_, v)| self.positions[v as usize]).collect();
         let others = |i: usize| points[i + 1..].iter().copied();
-        let pairs = points.iter().enumerate().flat_map(|(i, &a)| others(i).map(move |b| (distance(a, b), a, b)));
+        let pairs =
+            points.iter().enumerate().flat_map(|(i, &a)| others(i).map(move |b| (distance(a, b), a, b)));
         let Some((span, a, b)) = pairs.max_by(|x, y| x.0.total_cmp(&y.0)) else { return true };
         points.iter().all(|&p| norm(cross(sub(p, a), unit(sub(b, a)))) <= BESIDE * span)
     }
@@ -365,7 +379,8 @@ impl<'a> Regions<'a> {
     /// The vertices of a ridge, from its start to its end.
     pub(super) fn run(&self, region: u32, ridge: &Ridge) -> Vec<u32> {
         let border = &self.borders[region as usize];
-        let Some(mut h) = border.iter().copied().find(|&h| self.connectivity.tail(h as usize) == ridge.from) else {
+        let Some(mut h) = border.iter().copied().find(|&h| self.connectivity.tail(h as usize) == ridge.from)
+        else {
             return vec![ridge.from, ridge.to];
         };
         let mut run = vec![ridge.from];

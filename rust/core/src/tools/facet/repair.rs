@@ -1,5 +1,5 @@
-//! What is done about facets that do not come out sound: ridges that turned around become corners, and facets are divided along
-//! a diagonal.
+//! What is done about facets that do not come out sound: ridges that turned around become corners, and facets
+//! are divided along a diagonal.
 
 use std::collections::HashSet;
 
@@ -67,11 +67,13 @@ fn around(shape: &Shape, ends: [u32; 2]) -> Vec<u32> {
     shape.facets.iter().filter(at).flat_map(Facet::corners).collect()
 }
 
-/// Makes one corner of the ends of a ridge, if every facet keeps three corners, but for one that may vanish: returned.
+/// Makes one corner of the ends of a ridge, if every facet keeps three corners,
+/// but for one that may vanish: returned.
 fn contract(shape: &mut Shape, [a, b]: [u32; 2]) -> Option<Option<u32>> {
     let mut vanishing = None;
     for (k, facet) in (0..).zip(&shape.facets) {
-        let n_loops = facet.loops.iter().filter(|corners| corners.contains(&a) || corners.contains(&b)).count();
+        let n_loops =
+            facet.loops.iter().filter(|corners| corners.contains(&a) || corners.contains(&b)).count();
         if n_loops > 1 {
             return None;
         }
@@ -89,8 +91,10 @@ fn contract(shape: &mut Shape, [a, b]: [u32; 2]) -> Option<Option<u32>> {
     }
     if let Some(k) = vanishing {
         // The facets behind its other two sides meet along one ridge then: not if they meet already.
-        let side_of = |[from, to]: [u32; 2]| shape.facets.iter().find(|f| f.sides().any(|side| side == [to, from]));
-        let others = shape.facets[k as usize].sides().filter(|side| !(side.contains(&a) && side.contains(&b)));
+        let side_of =
+            |[from, to]: [u32; 2]| shape.facets.iter().find(|f| f.sides().any(|side| side == [to, from]));
+        let others =
+            shape.facets[k as usize].sides().filter(|side| !(side.contains(&a) && side.contains(&b)));
         let behind: Vec<&Facet> = others.filter_map(side_of).collect();
         if let [p, q] = behind[..] {
             let of_first: HashSet<[u32; 2]> = p.sides().collect();
@@ -99,7 +103,8 @@ fn contract(shape: &mut Shape, [a, b]: [u32; 2]) -> Option<Option<u32>> {
             }
         }
     }
-    // Whatever is next to both ends must be the third corner of a triangle that vanishes: its sides become one otherwise.
+    // Whatever is next to both ends must be the third corner of a triangle that vanishes:
+    // its sides become one otherwise.
     let beside = |c: u32| -> HashSet<u32> {
         let sides = shape.facets.iter().flat_map(Facet::sides).filter(|side| side.contains(&c));
         sides.flatten().filter(|&other| other != c).collect()
@@ -137,14 +142,16 @@ fn remove(shape: &mut Shape, faces: &mut Faces, k: u32) {
     faces.labels.iter_mut().filter(|label| **label == last).for_each(|label| *label = k);
 }
 
-/// A way to divide a facet: whether a part is unsound, and how much the parts are off planes; the parts; of which its faces are.
+/// A way to divide a facet: whether a part is unsound, and how much the parts are off planes; the parts;
+/// of which its faces are.
 struct Cut {
     rank: (bool, f64),
     parts: [Facet; 2],
     is_first: Vec<bool>,
 }
 
-/// Divides a facet without holes in two along the diagonal that leaves the flattest parts, both sound where there is one.
+/// Divides a facet without holes in two along the diagonal that leaves the flattest parts,
+/// both sound where there is one.
 fn divide(shape: &mut Shape, faces: &mut Faces, k: u32) -> bool {
     let facet = shape.facets[k as usize].clone();
     let n = facet.corners().count();
@@ -168,7 +175,8 @@ fn divide(shape: &mut Shape, faces: &mut Faces, k: u32) -> bool {
                 own.iter().map(|&f| dot(sub(faces.centers[f], home.point(a)), wall) > 0.0).collect();
             let part = |range: std::ops::Range<usize>, first: bool| {
                 let loops = vec![range.map(|x| corners[x % n]).collect()];
-                let mut part = Facet { loops, plane: facet.plane, moments: Moments::default(), is_held: false };
+                let mut part =
+                    Facet { loops, plane: facet.plane, moments: Moments::default(), is_held: false };
                 let polygon = home.polygon_moments(&part);
                 part.plane = polygon.fit().plane;
                 let is_sound = triangles(&home, &part).is_some();

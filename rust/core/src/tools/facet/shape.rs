@@ -61,7 +61,8 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    /// The facets that `regions` are, which have `moments`. What lies along the mesh's boundary keeps within `tolerance` of it.
+    /// The facets that `regions` are, which have `moments`.
+    /// What lies along the mesh's boundary keeps within `tolerance` of it.
     pub(super) fn new(
         regions: &Regions<'_>,
         moments: &[Moments],
@@ -116,7 +117,9 @@ impl Shape {
 
     /// The largest distance of a corner from the plane of one of its facets.
     pub(super) fn off_planes(&self) -> f64 {
-        let off = |facet: &Facet| facet.corners().map(|c| facet.plane.height(self.point(c)).abs()).fold(0.0, f64::max);
+        let off = |facet: &Facet| {
+            facet.corners().map(|c| facet.plane.height(self.point(c)).abs()).fold(0.0, f64::max)
+        };
         self.facets.iter().map(off).fold(0.0, f64::max)
     }
 
@@ -127,7 +130,13 @@ impl Shape {
 }
 
 /// The vertices of a loop that become corners.
-fn polygon(regions: &Regions<'_>, region: u32, ridges: &[Ridge], positions: &[Point], tolerance: f64) -> Vec<u32> {
+fn polygon(
+    regions: &Regions<'_>,
+    region: u32,
+    ridges: &[Ridge],
+    positions: &[Point],
+    tolerance: f64,
+) -> Vec<u32> {
     let along = |ridge: &Ridge| {
         let run = regions.run(region, ridge);
         if ridge.neighbor == OUTSIDE {
@@ -144,8 +153,8 @@ fn polygon(regions: &Regions<'_>, region: u32, ridges: &[Ridge], positions: &[Po
     ridges.iter().flat_map(|ridge| regions.run(region, ridge).split_off(1)).collect()
 }
 
-/// The vertices of a run that keep it within `tolerance`, at least three of one that is closed, without the last [Douglas and
-/// Peucker 1973].
+/// The vertices of a run that keep it within `tolerance`, at least three of one that is closed, without the
+/// last [Douglas and Peucker 1973].
 fn simplified(run: &[u32], positions: &[Point], tolerance: f64) -> Vec<u32> {
     let at = |i: usize| positions[run[i] as usize];
     let off = |i: usize, a: usize, b: usize| distance(at(i), closest_on_segment(at(i), at(a), at(b)));
@@ -156,7 +165,8 @@ fn simplified(run: &[u32], positions: &[Point], tolerance: f64) -> Vec<u32> {
     let mut marks = vec![0, last];
     if run[0] == run[last] && last >= 3 {
         let opposite = farthest(1, last, &|i| distance(at(i), at(0))).unwrap_or(1);
-        let third = farthest(1, last, &|i| if i == opposite { -1.0 } else { off(i, 0, opposite) }).unwrap_or(1);
+        let third =
+            farthest(1, last, &|i| if i == opposite { -1.0 } else { off(i, 0, opposite) }).unwrap_or(1);
         marks.extend([opposite, third]);
         marks.sort_unstable();
     }

@@ -1,9 +1,10 @@
 //! Planes that fit their faces while every corner lies on the planes of all its facets.
 //!
-//! Minimizes `Σ_P ∫_P (n_P · x − o_P)² + stay Σ_c a_c ‖x_c − x̄_c‖²` subject to `n_P · x_c = o_P` wherever `c` is a corner of `P`, over planes and
-//! corners together, by Newton's method on the conditions of optimality (sequential quadratic programming, Gauss and Newton's
-//! Hessian: Nocedal and Wright 2006, chapter 18). The Hessian is one block for each plane and each corner, so a step is one sparse
-//! system over the pairs of facet and corner.
+//! Minimizes `Σ_P ∫_P (n_P · x − o_P)² + stay Σ_c a_c ‖x_c − x̄_c‖²` subject to `n_P · x_c = o_P` wherever
+//! `c` is a corner of `P`, over planes and corners together, by Newton's method on the conditions of
+//! optimality (sequential quadratic programming, Gauss and Newton's Hessian: Nocedal and Wright 2006, chapter
+//! 18). The Hessian is one block for each plane and each corner, so a step is one sparse system over the
+//! pairs of facet and corner.
 
 use super::constants::{DAMPING, FARTHEST, FLAT, REGULAR, SLACK, SLOW, STEPS};
 use super::moments::{quadratic, Plane};
@@ -31,7 +32,8 @@ struct Turning {
     gradient: Point,
 }
 
-/// Flattens the facets of `shape`, with corners near `targets`; returns the largest distance of a corner from a plane.
+/// Flattens the facets of `shape`, with corners near `targets`;
+/// returns the largest distance of a corner from a plane.
 pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point]) -> Result<f64, SolveError> {
     set_triangles(shape);
     let of_facet = |(facet, f): (usize, &super::shape::Facet)| {
@@ -46,7 +48,8 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point]) -> Result
         at.0[i.corner].push(k);
         at.1[i.facet].push(k);
     }
-    let weights: Vec<f64> = shape.corners.iter().zip(&share).map(|(c, share)| c.firmness * stay * share).collect();
+    let weights: Vec<f64> =
+        shape.corners.iter().zip(&share).map(|(c, share)| c.firmness * stay * share).collect();
     let mobility: Vec<f64> = shape
         .corners
         .iter()

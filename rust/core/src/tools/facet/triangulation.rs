@@ -11,7 +11,8 @@ use crate::mesh::vector::{cross, dot, unit, Point};
 /// Triangles cover a facet whose area they have to this part.
 const COVERED: f64 = 1e-9;
 
-/// Two unit vectors that span the plane with this normal: seen from its tip, the second is to the left of the first.
+/// Two unit vectors that span the plane with this normal: seen from its tip,
+/// the second is to the left of the first.
 pub(super) fn axes(normal: Point) -> [Point; 2] {
     let least = (0..3).fold(0, |least, i| if normal[i].abs() < normal[least].abs() { i } else { least });
     let mut along = [0.0; 3];
@@ -20,8 +21,8 @@ pub(super) fn axes(normal: Point) -> [Point; 2] {
     [x, cross(normal, x)]
 }
 
-/// The constrained Delaunay triangulation of a facet's loops in its plane; `None` where the loops cross, run the wrong way
-/// around, or enclose nothing.
+/// The constrained Delaunay triangulation of a facet's loops in its plane; `None` where the loops cross, run
+/// the wrong way around, or enclose nothing.
 pub(super) fn triangles(shape: &Shape, facet: &Facet) -> Option<Vec<[u32; 3]>> {
     let [x, y] = axes(facet.plane.normal);
     let flat = |c: u32| [dot(x, shape.point(c)), dot(y, shape.point(c))];
@@ -80,7 +81,8 @@ pub(super) fn triangles(shape: &Shape, facet: &Facet) -> Option<Vec<[u32; 3]>> {
         }
     }
     let within = delaunay.inner_faces().filter(|face| inside[face.fix().index()]);
-    let triangles: Vec<[u32; 3]> = within.map(|face| face.vertices().map(|v| names[v.fix().index()])).collect();
+    let triangles: Vec<[u32; 3]> =
+        within.map(|face| face.vertices().map(|v| names[v.fix().index()])).collect();
     let covered: f64 = triangles.iter().map(|t| twice(t.map(flat))).sum();
     ((covered - area).abs() <= COVERED * area).then_some(triangles)
 }
@@ -136,7 +138,8 @@ fn joined(p: &[u32], q: &[u32]) -> Option<Vec<u32>> {
     let n_shared = sides(&own).filter(|&side| shared(side)).count();
     let (kept, hidden) = own.split_at(n - n_shared + 1);
     let begin = q.iter().position(|&c| c == kept[kept.len() - 1])?;
-    let rest: Vec<u32> = (0..q.len()).map(|i| q[(begin + i) % q.len()]).take(q.len() - n_shared + 1).collect();
+    let rest: Vec<u32> =
+        (0..q.len()).map(|i| q[(begin + i) % q.len()]).take(q.len() - n_shared + 1).collect();
     // Both are runs from end to end: what they have in common otherwise is met twice.
     if rest[rest.len() - 1] != kept[0] || sides(&own).skip(kept.len() - 1).any(|side| !shared(side)) {
         return None;

@@ -12,8 +12,9 @@ use crate::ordered::Ordered;
 
 /// The part of every face of the patch.
 ///
-/// Parts flood the patch from the rim, the face that fits best first (Cohen-Steiner et al. 2004), so that each stays joined to
-/// what it continues; then faces change sides where that makes the borders shorter than it makes the fit worse.
+/// Parts flood the patch from the rim, the face that fits best first (Cohen-Steiner et al. 2004), so that
+/// each stays joined to what it continues; then faces change sides where that makes the borders shorter than
+/// it makes the fit worse.
 pub(super) fn assign(region: &Region, parts: &Parts, edge: f64) -> Vec<u32> {
     let mut labels = vec![NONE; region.mesh.n_faces() - region.n_outer];
     flood(region, parts, edge, &mut labels);
@@ -23,7 +24,8 @@ pub(super) fn assign(region: &Region, parts: &Parts, edge: f64) -> Vec<u32> {
     labels
 }
 
-/// How badly face `f` fits to `part`: squared distance in edge lengths, and direction, where a right angle counts as one edge.
+/// How badly face `f` fits to `part`: squared distance in edge lengths, and direction,
+/// where a right angle counts as one edge.
 fn misfit(region: &Region, parts: &Parts, edge: f64, f: u32, part: u32) -> f64 {
     let Some(face) = region.mesh.face(f) else { return 0.0 };
     let model = &parts.models[part as usize];
@@ -164,7 +166,8 @@ pub(super) fn borders(region: &Region, parts: &Parts, labels: &[u32]) -> Vec<[u3
 /// The parts that meet at every vertex, ascending: of the patch and of the faces around it.
 pub(super) fn parts_at(region: &Region, parts: &Parts, labels: &[u32], v: u32) -> Vec<u32> {
     let faces = region.mesh.faces_of(v).iter();
-    let mut found: Vec<u32> = faces.map(|&f| part_of(region, parts, labels, f)).filter(|&part| part != NONE).collect();
+    let mut found: Vec<u32> =
+        faces.map(|&f| part_of(region, parts, labels, f)).filter(|&part| part != NONE).collect();
     found.sort_unstable();
     found.dedup();
     found

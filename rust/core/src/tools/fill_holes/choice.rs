@@ -16,7 +16,8 @@ pub(super) type Chosen = (Vec<u32>, Option<Refusal>);
 pub(super) fn choose(mesh: &Mesh, options: &FillHolesOptions) -> Result<Vec<Chosen>> {
     let Some(choices) = &options.loops else {
         let wanted = holes_of(mesh)?.into_iter().filter(|hole| {
-            (options.outer || !hole.is_outer_border) && options.max_edges.is_none_or(|most| hole.vertices.len() <= most)
+            (options.outer || !hole.is_outer_border)
+                && options.max_edges.is_none_or(|most| hole.vertices.len() <= most)
         });
         return Ok(wanted.map(|hole| (hole.vertices, hole.refusal)).collect());
     };
@@ -42,8 +43,9 @@ fn refuse_repeats(chosen: &[Chosen]) -> Result<()> {
         for (&a, &b) in vertices.iter().zip(vertices.iter().cycle().skip(1)) {
             let earlier = *first.entry([a.min(b), a.max(b)]).or_insert(entry);
             if earlier != entry {
-                let problem =
-                    format!("entries {earlier} and {entry} are the same hole, or share an edge; give each hole once");
+                let problem = format!(
+                    "entries {earlier} and {entry} are the same hole, or share an edge; give each hole once"
+                );
                 return Err(Error::argument("loops", problem));
             }
         }
@@ -51,8 +53,8 @@ fn refuse_repeats(chosen: &[Chosen]) -> Result<()> {
     Ok(())
 }
 
-/// The patch of every loop, given the faces `at` them; an empty one for those that cannot be filled, which is noted. Vertices that
-/// are no loop at all are an error.
+/// The patch of every loop, given the faces `at` them; an empty one for those that cannot be filled, which is
+/// noted. Vertices that are no loop at all are an error.
 pub(super) fn triangulate(
     mesh: &Mesh,
     chosen: &mut [Chosen],
@@ -60,8 +62,11 @@ pub(super) fn triangulate(
     options: &FillOptions,
     progress: &Progress,
 ) -> Result<Vec<Patch>> {
-    let loops: Vec<Vec<u32>> =
-        chosen.iter().filter(|(_, refusal)| refusal.is_none()).map(|(vertices, _)| vertices.clone()).collect();
+    let loops: Vec<Vec<u32>> = chosen
+        .iter()
+        .filter(|(_, refusal)| refusal.is_none())
+        .map(|(vertices, _)| vertices.clone())
+        .collect();
     let mut patches = fill_loops_at(mesh, &loops, at, options, progress)?.into_iter();
     let mut next = |(_, refusal): &mut Chosen| {
         if refusal.is_some() {

@@ -1,8 +1,9 @@
-//! The cycles that bring ridges back: flow, flips, snapping, remeshing, until the patch rests or the parts around it meet in it.
+//! The cycles that bring ridges back: flow, flips, snapping, remeshing,
+//! until the patch rests or the parts around it meet in it.
 
 use super::constants::{
-    ALIKE, COARSE_FACES, EXTEND_AFTER, FAIR_ROUNDS, FAIR_STEPS, FLIP_SWEEPS, FLOW_STEPS, MOST_BEND, RESAMPLE_EVERY,
-    RESAMPLE_ROUNDS, RIDGE_SHARE, SNAPS, SNAP_FROM, STILL_CYCLE,
+    ALIKE, COARSE_FACES, EXTEND_AFTER, FAIR_ROUNDS, FAIR_STEPS, FLIP_SWEEPS, FLOW_STEPS, MOST_BEND,
+    RESAMPLE_EVERY, RESAMPLE_ROUNDS, RIDGE_SHARE, SNAPS, SNAP_FROM, STILL_CYCLE,
 };
 use super::extend::{extend, Extended};
 use super::fair::fair;
@@ -107,8 +108,8 @@ impl Restoration<'_, '_> {
         Ok(flowed.moved)
     }
 
-    /// The patch in which the parts between the ridges around it have gone on until they meet. Where there are folds besides
-    /// ridges, the parts between ridges alone are tried too.
+    /// The patch in which the parts between the ridges around it have gone on until they meet. Where there
+    /// are folds besides ridges, the parts between ridges alone are tried too.
     fn extended(&self, region: &Region) -> Result<Option<Region>> {
         let Some(ridges) = self.ridges else { return Ok(None) };
         for bend in [ridges.least, ridges.most] {
@@ -128,8 +129,8 @@ impl Restoration<'_, '_> {
         Ok(None)
     }
 
-    /// Makes the parts between ridges smooth. Between the rounds the patch is remeshed: thin triangles would hold the next one
-    /// back.
+    /// Makes the parts between ridges smooth. Between the rounds the patch is remeshed:
+    /// thin triangles would hold the next one back.
     fn smooth_between(&self, region: &mut Region, ridge: f64) -> Result<()> {
         for _ in 0..FAIR_ROUNDS {
             self.resample(region, ridge, COARSE_FACES, RESAMPLE_ROUNDS)?;
@@ -142,8 +143,8 @@ impl Restoration<'_, '_> {
     }
 }
 
-/// Turns the edges of the patch along its ridges and snaps its vertices onto them; returns the longest move, infinite where an
-/// edge was flipped.
+/// Turns the edges of the patch along its ridges and snaps its vertices onto them; returns the longest move,
+/// infinite where an edge was flipped.
 fn align(region: &mut Region, cycle: usize) -> f64 {
     let mut flips = flip_along_ridges(region, FLIP_SWEEPS);
     let mut moved: f64 = 0.0;

@@ -14,11 +14,11 @@ pub(super) struct Ridges {
     pub most: f64,
 }
 
-/// The ridges that reach the hole, if any does: edges at its rim, not of the patch, that are bent by more than 25 degrees and by far
-/// more than edges around the hole commonly are.
+/// The ridges that reach the hole, if any does: edges at its rim, not of the patch, that are bent by more
+/// than 25 degrees and by far more than edges around the hole commonly are.
 ///
-/// What is common is found by adding the edges of the surroundings from the least bent on, until one is [`CONTRAST`] times as bent
-/// as the root mean square (by length) of those before.
+/// What is common is found by adding the edges of the surroundings from the least bent on, until one is
+/// [`CONTRAST`] times as bent as the root mean square (by length) of those before.
 pub(super) fn ridges_around(region: &Region) -> Option<Ridges> {
     let surface = Surface::of(region);
     let mesh = &region.mesh;

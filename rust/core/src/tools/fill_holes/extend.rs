@@ -1,9 +1,10 @@
-//! Patches in which the parts around a hole go on until they meet: planes and gently bent surfaces, joined in their ridges.
+//! Patches in which the parts around a hole go on until they meet: planes and gently bent surfaces,
+//! joined in their ridges.
 
 use super::assign::{assign, borders, parts_at};
 use super::constants::{
-    CLOSE_CORNERS, COARSE_FACES, CUTS, EXTEND_ROUNDS, FLIP_SWEEPS, RESAMPLE_ROUNDS, SETTLE_PASSES, STILL_ROUND,
-    UNTANGLE_FROM,
+    CLOSE_CORNERS, COARSE_FACES, CUTS, EXTEND_ROUNDS, FLIP_SWEEPS, RESAMPLE_ROUNDS, SETTLE_PASSES,
+    STILL_ROUND, UNTANGLE_FROM,
 };
 use super::flips::flip_along_ridges;
 use super::guard::move_guarded;
@@ -44,8 +45,11 @@ pub(super) fn extend(
         progress.check()?;
         if round > 0 {
             let borders = borders(region, &parts, &labels);
-            let kept =
-                Kept { borders: &borders, merges: &merges(region, &parts, &labels, edge), ridge: std::f64::consts::PI };
+            let kept = Kept {
+                borders: &borders,
+                merges: &merges(region, &parts, &labels, edge),
+                ridge: std::f64::consts::PI,
+            };
             resample(region, &kept, &target, progress)?;
         }
         labels = assign(region, &parts, edge);
@@ -74,16 +78,20 @@ pub(super) fn extend(
     })
 }
 
-/// Cuts triangles that cannot lie on their part whatever their free vertices do, because they have none or because all their
-/// vertices are where the part meets another one; and long borders that have no free vertex. Returns whether anything was cut.
+/// Cuts triangles that cannot lie on their part whatever their free vertices do, because they have none or
+/// because all their vertices are where the part meets another one; and long borders that have no free
+/// vertex. Returns whether anything was cut.
 fn cut(region: &mut Region, parts: &Parts, labels: &mut Vec<u32>, edge: f64) -> bool {
     let first = region.n_outer as u32;
     let before = labels.len();
     let is_off = |region: &Region, v: u32, part: u32| {
-        region.is_anchor(v) && !parts.at(region, v).contains(&part) && !parts.has(part, region.mesh.position(v), edge)
+        region.is_anchor(v)
+            && !parts.at(region, v).contains(&part)
+            && !parts.has(part, region.mesh.position(v), edge)
     };
     let split = |region: &mut Region, labels: &mut Vec<u32>, a: u32, b: u32| {
-        let Some(wings) = region.mesh.wings(a, b).filter(|w| w.faces.iter().all(|&f| region.is_patch(f))) else {
+        let Some(wings) = region.mesh.wings(a, b).filter(|w| w.faces.iter().all(|&f| region.is_patch(f)))
+        else {
             return;
         };
         let middle = between(region.mesh.position(a), region.mesh.position(b), 0.5);
@@ -126,7 +134,8 @@ fn cut(region: &mut Region, parts: &Parts, labels: &mut Vec<u32>, edge: f64) -> 
     labels.len() > before
 }
 
-/// Free vertices that belong where a neighbor is, and that neighbor: remeshing does not join two vertices that are both fixed.
+/// Free vertices that belong where a neighbor is, and that neighbor:
+/// remeshing does not join two vertices that are both fixed.
 fn merges(region: &Region, parts: &Parts, labels: &[u32], edge: f64) -> Vec<[u32; 2]> {
     let found = |v: u32| {
         let own = parts_at(region, parts, labels, v);
@@ -147,13 +156,19 @@ fn length(region: &Region, a: u32, b: u32) -> f64 {
     distance(region.mesh.position(a), region.mesh.position(b))
 }
 
-/// Moves free vertices where the surfaces of the parts that meet at them meet, the nearest first, as far as that leaves the faces
-/// around them in order; returns the longest move.
+/// Moves free vertices where the surfaces of the parts that meet at them meet, the nearest first, as far as
+/// that leaves the faces around them in order; returns the longest move.
 ///
 /// First all together, which finds its way where the patch is far from its surfaces, then one by one.
 fn settle(region: &mut Region, parts: &Parts, labels: &[u32]) -> f64 {
     let goals: Vec<Point> = (0..region.mesh.n_vertices() as u32)
-        .map(|v| if region.is_anchor(v) { region.mesh.position(v) } else { meeting_point(region, parts, labels, v) })
+        .map(|v| {
+            if region.is_anchor(v) {
+                region.mesh.position(v)
+            } else {
+                meeting_point(region, parts, labels, v)
+            }
+        })
         .collect();
     let mut longest = move_guarded(region, &goals);
     for _ in 0..SETTLE_PASSES {
@@ -224,14 +239,17 @@ mod tests {
     #[test]
     fn the_rim_of_a_cylinder_bends_on() {
         let shape = shapes::cylinder(48, 12, 1.0, 1.5);
-        let bottom = shape.vertices.iter().zip(0..).filter(|(p, _)| p[2] == 0.0).map(|(_, v)| v).collect::<Vec<u32>>();
+        let bottom =
+            shape.vertices.iter().zip(0..).filter(|(p, _)| p[2] == 0.0).map(|(_, v)| v).collect::<Vec<u32>>();
         let mut capped = shape.clone();
         // Rings toward the center, as wide as the edges of the rim.
         let mut ring = bottom.clone();
         for k in 1..7 {
             let next: Vec<u32> = (0..48).map(|i| capped.vertices.len() as u32 + i).collect();
-            let shrunk: Vec<Point> =
-                bottom.iter().map(|&v| scale(shape.vertices[v as usize], 1.0 - 0.13 * f64::from(k))).collect();
+            let shrunk: Vec<Point> = bottom
+                .iter()
+                .map(|&v| scale(shape.vertices[v as usize], 1.0 - 0.13 * f64::from(k)))
+                .collect();
             capped.vertices.extend(shrunk);
             for i in 0..48 {
                 let j = (i + 1) % 48;

@@ -1,4 +1,5 @@
-//! Smooth parts between sharp ridges: the patch is cut along its ridges, and each part is as smooth as what it continues.
+//! Smooth parts between sharp ridges: the patch is cut along its ridges,
+//! and each part is as smooth as what it continues.
 
 use super::constants::RIDGE_STIFFNESS;
 use super::guard::move_guarded;
@@ -15,12 +16,13 @@ use crate::progress::Progress;
 use crate::solve::{quadratic, Coupling, Problem, Settings};
 use crate::Result;
 
-/// Moves the patch to the minimizer of the L2 Hessian energy of its coordinates on both sides of its ridges, everything around it
-/// fixed; edges bent by more than `ridge` radians are ridges. Returns the longest move.
+/// Moves the patch to the minimizer of the L2 Hessian energy of its coordinates on both sides of its ridges,
+/// everything around it fixed; edges bent by more than `ridge` radians are ridges. Returns the longest move.
 ///
-/// The surface is cut along the ridges and its parts stay joined there: with the natural boundary conditions of the energy (Stein
-/// et al. 2018b) each part goes on as the surface that it continues, a plane as a plane, and the ridge lies where the parts
-/// meet; the squared third derivative along the ridges ([`third_derivatives`]) is added.
+/// The surface is cut along the ridges and its parts stay joined there: with the natural boundary conditions
+/// of the energy (Stein et al. 2018b) each part goes on as the surface that it continues, a plane as a plane,
+/// and the ridge lies where the parts meet; the squared third derivative along the ridges
+/// ([`third_derivatives`]) is added.
 pub(super) fn fair(region: &mut Region, ridge: f64, progress: &Progress) -> Result<f64> {
     let cut = Cut::new(region, ridge);
     let points: Vec<_> = cut.origin.iter().map(|&v| region.mesh.position(v)).collect();
@@ -64,7 +66,8 @@ impl Cut {
         let faces = region.faces();
         // Corners of faces that are one vertex, as a forest: across every edge that is no ridge.
         let mut corners = Partition::new(3 * faces.len());
-        let corner = |f: u32, v: u32| 3 * f + faces[f as usize].iter().position(|&w| w == v).unwrap_or(0) as u32;
+        let corner =
+            |f: u32, v: u32| 3 * f + faces[f as usize].iter().position(|&w| w == v).unwrap_or(0) as u32;
         for [a, b] in mesh.edges() {
             let Some(wings) = mesh.wings(a, b) else { continue };
             let [f, g] = wings.faces;

@@ -65,7 +65,8 @@ pub struct FilledHole {
     pub shape: PatchShape,
     /// The sharpness used; 0 where it is smooth or flat.
     pub sharpness: f64,
-    /// `E_H` of the coordinates of the patch and its surroundings, before and after the flow; zeros if there was none.
+    /// `E_H` of the coordinates of the patch and its surroundings, before and after the flow;
+    /// zeros if there was none.
     pub energy: [f64; 2],
     /// The relative duality gap of the flow's last step.
     pub gap: f64,
@@ -78,7 +79,9 @@ impl FilledHole {
     pub(super) fn of(boundary: Vec<u32>, outcome: Result<Restored, Refusal>) -> Self {
         let (shape, outcome) = match outcome {
             Ok(restored) => (restored.shape, restored),
-            Err(reason) => (PatchShape::Auto, Restored { status: HoleStatus::Refused(reason), ..Restored::smooth() }),
+            Err(reason) => {
+                (PatchShape::Auto, Restored { status: HoleStatus::Refused(reason), ..Restored::smooth() })
+            }
         };
         let Restored { sharpness, status, energy, gap, iterations, .. } = outcome;
         Self { boundary, status, shape, sharpness, energy, gap, iterations }
@@ -98,7 +101,8 @@ pub struct Filled {
     pub holes: Vec<FilledHole>,
     /// How the holes ended: stopped if one was, else finished if one was, else converged.
     pub status: HoleStatus,
-    /// The edges of sharp and flat patches that are bent by more than 30 degrees, smaller vertex first, sorted.
+    /// The edges of sharp and flat patches that are bent by more than 30 degrees,
+    /// smaller vertex first, sorted.
     pub ridges: Vec<[u32; 2]>,
 }
 
@@ -118,7 +122,9 @@ impl Filled {
     /// Once all holes are there: how they ended together, and each ridge once.
     pub(super) fn sum_up(&mut self) {
         let ended = |status| self.holes.iter().any(|hole| hole.status == status);
-        if let Some(status) = [HoleStatus::Stopped, HoleStatus::Finished].into_iter().find(|&status| ended(status)) {
+        if let Some(status) =
+            [HoleStatus::Stopped, HoleStatus::Finished].into_iter().find(|&status| ended(status))
+        {
             self.status = status;
         }
         self.ridges.sort_unstable();

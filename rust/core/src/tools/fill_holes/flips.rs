@@ -8,8 +8,8 @@ use crate::remesh::editable::key;
 use crate::remesh::EditableMesh;
 use crate::shape_guard::is_thinned;
 
-/// Flips edges of the patch while that lowers `Σ length · |dihedral angle|` over the edge and its four neighbors, and
-/// makes no sliver where there was none ([`is_thinned`]). Returns the number of flips.
+/// Flips edges of the patch while that lowers `Σ length · |dihedral angle|` over the edge and its four
+/// neighbors, and makes no sliver where there was none ([`is_thinned`]). Returns the number of flips.
 pub(super) fn flip_along_ridges(region: &mut Region, sweeps: usize) -> usize {
     let mut edges: Vec<[u32; 2]> = (region.n_outer as u32..region.mesh.n_faces() as u32)
         .filter_map(|f| region.mesh.face(f))
@@ -57,8 +57,10 @@ fn lowers(region: &Region, a: u32, b: u32) -> bool {
     let normal = |face: [u32; 3]| area_vector(mesh.corners(face));
     // `new` is [c, a, d] and [d, b, c].
     let (before, after) = (old.map(normal), new.map(normal));
-    let (mut cost, mut cost_after) =
-        (distance(at(a), at(b)) * angle(before[0], before[1]), distance(at(c), at(d)) * angle(after[0], after[1]));
+    let (mut cost, mut cost_after) = (
+        distance(at(a), at(b)) * angle(before[0], before[1]),
+        distance(at(c), at(d)) * angle(after[0], after[1]),
+    );
     for (tail, head, old_side, new_side) in [(b, c, 0, 1), (c, a, 0, 0), (a, d, 1, 0), (d, b, 1, 1)] {
         let Some(outside) = across(mesh, tail, head, wings.faces) else { continue };
         let length = distance(at(tail), at(head));

@@ -9,15 +9,19 @@ pub(super) fn options_on(working: &Working<'_>, options: &FillHolesOptions) -> F
     let n = working.n_original() as u32;
     let on = |choice: &LoopChoice| match choice {
         // Vertices that do not exist are refused later, by their numbers.
-        LoopChoice::Vertices(vertices) => {
-            LoopChoice::Vertices(vertices.iter().map(|&v| if v < n { working.vertex(v) } else { v }).collect())
-        }
+        LoopChoice::Vertices(vertices) => LoopChoice::Vertices(
+            vertices.iter().map(|&v| if v < n { working.vertex(v) } else { v }).collect(),
+        ),
         LoopChoice::Index(index) => LoopChoice::Index(*index),
     };
-    FillHolesOptions { loops: options.loops.as_ref().map(|loops| loops.iter().map(on).collect()), ..options.clone() }
+    FillHolesOptions {
+        loops: options.loops.as_ref().map(|loops| loops.iter().map(on).collect()),
+        ..options.clone()
+    }
 }
 
-/// Patches in vertices and coordinates of the mesh as it was: beside an edge of it in the vertices that this edge has.
+/// Patches in vertices and coordinates of the mesh as it was:
+/// beside an edge of it in the vertices that this edge has.
 pub(super) fn given_back(mut filled: Filled, working: &Working<'_>) -> Filled {
     if working.is_plain() {
         return filled;

@@ -5,13 +5,18 @@ use super::region::Region;
 use crate::mesh::vector::{area_vector, between, cosine, distance, norm, quality, Point};
 use crate::shape_guard::{farthest, is_thinned, is_turned, shorter};
 
-/// Moves the free vertices toward `goal` as far as the faces around them stay in order, and returns the longest move.
+/// Moves the free vertices toward `goal` as far as the faces around them stay in order,
+/// and returns the longest move.
 pub(super) fn move_guarded(region: &mut Region, goal: &[Point]) -> f64 {
     let old = region.mesh.positions().to_vec();
-    let mut part: Vec<f64> = (0..old.len() as u32).map(|v| if region.is_anchor(v) { 0.0 } else { 1.0 }).collect();
+    let mut part: Vec<f64> =
+        (0..old.len() as u32).map(|v| if region.is_anchor(v) { 0.0 } else { 1.0 }).collect();
     let faces: Vec<(u32, [u32; 3])> = region.patch_faces().collect();
-    let before: Vec<(Point, f64)> =
-        faces.iter().map(|&(_, face)| region.mesh.corners(face)).map(|c| (area_vector(c), quality(c))).collect();
+    let before: Vec<(Point, f64)> = faces
+        .iter()
+        .map(|&(_, face)| region.mesh.corners(face))
+        .map(|c| (area_vector(c), quality(c)))
+        .collect();
     loop {
         for v in region.free() {
             let i = v as usize;
@@ -21,7 +26,9 @@ pub(super) fn move_guarded(region: &mut Region, goal: &[Point]) -> f64 {
         let mut any = false;
         for (&(f, face), &(area, shape)) in faces.iter().zip(&before) {
             let sound = is_sound(region.mesh.corners(face), area, shape);
-            let was = |g: u32| region.mesh.face(g).map_or([0.0; 3], |face| area_vector(face.map(|v| old[v as usize])));
+            let was = |g: u32| {
+                region.mesh.face(g).map_or([0.0; 3], |face| area_vector(face.map(|v| old[v as usize])))
+            };
             if (!sound || folds(region, f, face, &was)) && face.iter().any(|&v| part[v as usize] > 0.0) {
                 face.iter().for_each(|&v| bad[v as usize] = true);
                 any = true;
@@ -36,13 +43,17 @@ pub(super) fn move_guarded(region: &mut Region, goal: &[Point]) -> f64 {
     old.iter().zip(region.mesh.positions()).map(moved).fold(0.0, f64::max)
 }
 
-/// Moves one vertex to `goal`, or half or a quarter of the way, if the faces around it stay in order; returns how far.
+/// Moves one vertex to `goal`, or half or a quarter of the way, if the faces around it stay in order;
+/// returns how far.
 pub(super) fn move_one(region: &mut Region, v: u32, goal: Point) -> f64 {
     let start = region.mesh.position(v);
     let around: Vec<(u32, [u32; 3])> =
         region.mesh.faces_of(v).iter().filter_map(|&f| Some((f, region.mesh.face(f)?))).collect();
-    let before: Vec<(Point, f64)> =
-        around.iter().map(|&(_, face)| region.mesh.corners(face)).map(|c| (area_vector(c), quality(c))).collect();
+    let before: Vec<(Point, f64)> = around
+        .iter()
+        .map(|&(_, face)| region.mesh.corners(face))
+        .map(|c| (area_vector(c), quality(c)))
+        .collect();
     let reached = farthest(start, goal, |position| {
         region.mesh.set_position(v, position);
         let was = |g: u32| {
@@ -63,7 +74,8 @@ fn is_sound(corners: [Point; 3], area: Point, shape: f64) -> bool {
     !turned && !is_thinned(quality(corners), KEPT * shape)
 }
 
-/// Whether face `f` and a neighbor bend the surface too much, and more than before; `was` gives the area vectors of then.
+/// Whether face `f` and a neighbor bend the surface too much, and more than before;
+/// `was` gives the area vectors of then.
 fn folds(region: &Region, f: u32, face: [u32; 3], was: &dyn Fn(u32) -> Point) -> bool {
     let mesh = &region.mesh;
     let here = mesh.area_vector(f);

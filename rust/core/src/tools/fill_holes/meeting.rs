@@ -8,7 +8,8 @@ use crate::linear::small::Quadric;
 use crate::mesh::vector::{add, area_vector, centroid, dot, quality, scale, unit, Point};
 use crate::shape_guard::{is_turned, TURNED};
 
-/// How good the worst face at `v` is: its quality, or how much it looks along its part, less what is allowed, if that is not enough.
+/// How good the worst face at `v` is: its quality, or how much it looks along its part,
+/// less what is allowed, if that is not enough.
 pub(super) fn order(region: &Region, parts: &Parts, labels: &[u32], v: u32) -> f64 {
     let faces = region.mesh.faces_of(v).iter();
     let order = |&f: &u32| {

@@ -1,16 +1,21 @@
 //! Hole filling that brings ridges back (Rowe et al. 2024, section 7.4.2, and beyond it).
 //!
-//! Each hole is a problem of its own ([`region`]): the patch and a few rings around it. The passes, in their order:
+//! Each hole is a problem of its own ([`region`]): the patch and a few rings around it. The passes,
+//! in their order:
 //!
-//! 1. Which loops ([`choice`]), on an oriented mesh without seams; what comes out is given back for the mesh as it was ([`give_back`]).
-//! 2. Planar rims that the surface meets steeply all round are closed flat; every other patch is [`restore`]d, and one that came out
-//!    folded gives way to one that did not ([`sound`]).
-//! 3. It starts as the minimizer of a quadratic energy ([`start`]). Where the surface around is smooth ([`decide`]) that is all.
-//! 4. Where it has ridges, [`cycles`] follow: the L1 flow flattens ([`flow`]), edges flip along the ridges ([`flips`]).
-//! 5. Then the smooth parts around the hole ([`parts`]), each a plane or gently bent ([`model`]), are given the faces of the patch
-//!    ([`assign`]) and go on until they meet ([`extend`], [`meeting`]), with folds opened ([`untangle`]).
-//! 6. Where they do not say how, the cycles go on: vertices snap onto the planes around them and their intersections ([`snap`]),
-//!    the patch is remeshed with its ridges kept ([`resample`]).
+//! 1. Which loops ([`choice`]), on an oriented mesh without seams; what comes out is given back for the mesh
+//!    as it was ([`give_back`]).
+//! 2. Planar rims that the surface meets steeply all round are closed flat; every other patch is
+//!    [`restore`]d, and one that came out folded gives way to one that did not ([`sound`]).
+//! 3. It starts as the minimizer of a quadratic energy ([`start`]). Where the surface around is smooth
+//!    ([`decide`]) that is all.
+//! 4. Where it has ridges, [`cycles`] follow: the L1 flow flattens ([`flow`]),
+//!    edges flip along the ridges ([`flips`]).
+//! 5. Then the smooth parts around the hole ([`parts`]), each a plane or gently bent ([`model`]), are given
+//!    the faces of the patch ([`assign`]) and go on until they meet ([`extend`], [`meeting`]), with folds
+//!    opened ([`untangle`]).
+//! 6. Where they do not say how, the cycles go on: vertices snap onto the planes around them and their
+//!    intersections ([`snap`]), the patch is remeshed with its ridges kept ([`resample`]).
 //! 7. In the end bent parts become smooth ([`fair`]) and the ridges go on as those around ([`ridge_curves`]).
 //!
 //! No move folds the surface ([`guard`]).
@@ -66,8 +71,8 @@ use sound::restored_in_order;
 /// Fills holes so that the ridges around them go on.
 ///
 /// # Errors
-/// [`MeshError::NoPositions`], [`MeshError::Unfillable`] for vertices that are no boundary loop, arguments out of range, the errors of
-/// the solver, [`Error::Cancelled`].
+/// [`MeshError::NoPositions`], [`MeshError::Unfillable`] for vertices that are no boundary loop, arguments
+/// out of range, the errors of the solver, [`Error::Cancelled`].
 pub fn fill_holes(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) -> Result<Filled> {
     options.check()?;
     options.solve.settings()?;
@@ -86,7 +91,11 @@ pub fn fill_holes(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) 
     let filled = options.solve.run(|| fill(&working, &options, &progress.in_unit(unit)))?;
     let mut filled = give_back::given_back(filled, &working);
     let around = Surroundings::of(
-        filled.holes.iter().flat_map(|hole| &hole.boundary).filter_map(|&v| Some(&mesh.positions()?[v as usize])),
+        filled
+            .holes
+            .iter()
+            .flat_map(|hole| &hole.boundary)
+            .filter_map(|&v| Some(&mesh.positions()?[v as usize])),
     );
     if !around.hold(&filled.vertices) || filled.holes.iter().any(|hole| !hole.gap.is_finite()) {
         return Err(answer::refused());
@@ -101,15 +110,17 @@ pub fn fill_holes(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) 
     Ok(filled)
 }
 
-/// What filling holes takes of which the longest has `longest` edges, since they follow each other; without it, all of the mesh.
+/// What filling holes takes of which the longest has `longest` edges, since they follow each other;
+/// without it, all of the mesh.
 #[must_use]
 pub fn filling_demand(mesh: &Mesh, longest: Option<usize>) -> Demand {
     let of_all = || boundary_loops(mesh.connectivity()).iter().map(Vec::len).max().unwrap_or(0);
     demand(mesh, longest.unwrap_or_else(of_all))
 }
 
-/// What a patch in a rim of so many edges takes: it has as many faces as a disk with that rim has, up to the bound for all patches.
-/// The mesh itself is only looked through: a flag and a bit of bookkeeping for each face.
+/// What a patch in a rim of so many edges takes: it has as many faces as a disk with that rim has, up to the
+/// bound for all patches. The mesh itself is only looked through: a flag and a bit of bookkeeping for each
+/// face.
 fn demand(mesh: &Mesh, n_rim_edges: usize) -> Demand {
     let disk = n_rim_edges.saturating_mul(n_rim_edges) / 5;
     let most = budget::patch_faces(FillOptions::default().max_faces, n_rim_edges);
@@ -145,7 +156,9 @@ fn fill(working: &Working<'_>, options: &FillHolesOptions, progress: &Progress) 
         let outcome = match refusal {
             Some(reason) => Err(reason),
             None => {
-                let watch = |part: f64, steps, energy| report(progress, done + share * part, "filling", steps, energy);
+                let watch = |part: f64, steps, energy| {
+                    report(progress, done + share * part, "filling", steps, energy)
+                };
                 Ok(filling.one(&patch, from, &mut filled, &watch)?)
             }
         };
@@ -180,12 +193,17 @@ impl Filling<'_> {
         let (mesh, progress) = (self.working.mesh(), self.progress);
         let mut region = Region::new(mesh, &self.near, patch, from, REGION_RINGS, &self.shared)?;
         region.first_new = (mesh.connectivity().n_vertices() + filled.vertices.len()) as u32;
-        let restored =
-            restored_in_order(&mut region, patch, self.options, progress, &mut |region, part, steps, energy| {
+        let restored = restored_in_order(
+            &mut region,
+            patch,
+            self.options,
+            progress,
+            &mut |region, part, steps, energy| {
                 let (vertices, faces, _) = region.patch();
                 progress.set_surface(vertices.into_iter().map(|p| self.working.place(p)).collect(), faces);
                 watch(part, steps, energy);
-            })?;
+            },
+        )?;
         filled.vertices.extend(region.free().map(|v| region.mesh.position(v)));
         filled.faces.extend(region.patch_faces().map(|(_, face)| face.map(|v| region.global(v))));
         filled.patch.resize(filled.faces.len(), filled.holes.len() as u32);

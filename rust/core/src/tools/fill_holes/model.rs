@@ -16,15 +16,16 @@ pub(super) struct Model {
 }
 
 impl Model {
-    /// The fit to weighted points of a surface that looks along the unit `normal`, where edges are about `edge` long; nothing
-    /// where there are fewer than three points with weight.
+    /// The fit to weighted points of a surface that looks along the unit `normal`, where edges are about
+    /// `edge` long; nothing where there are fewer than three points with weight.
     pub(super) fn fit(points: &[(Point, f64)], normal: Point, edge: f64) -> Option<Self> {
         let total: f64 = points.iter().map(|(_, weight)| weight).sum();
         if points.len() < 3 || total <= 0.0 {
             return None;
         }
         let origin = points.iter().fold([0.0; 3], |sum, &(p, weight)| add(sum, scale(p, weight / total)));
-        let spread: f64 = points.iter().map(|&(p, weight)| weight / total * dot(sub(p, origin), sub(p, origin))).sum();
+        let spread: f64 =
+            points.iter().map(|&(p, weight)| weight / total * dot(sub(p, origin), sub(p, origin))).sum();
         let mut flat = Self {
             frame: Frame::new(origin, normal, spread.sqrt().max(f64::MIN_POSITIVE)),
             coefficients: [0.0; TERMS],
@@ -94,13 +95,15 @@ mod tests {
     #[test]
     fn noise_is_no_curvature() {
         let random = std::cell::RefCell::new(Random::new(3));
-        let model = Model::fit(&points(|_, _| 0.03 * random.borrow_mut().symmetric()), unit([1.0, 2.0, -0.5]), 0.1);
+        let model =
+            Model::fit(&points(|_, _| 0.03 * random.borrow_mut().symmetric()), unit([1.0, 2.0, -0.5]), 0.1);
         assert!(model.unwrap().is_flat);
     }
 
     #[test]
     fn a_bent_surface_goes_on_bent() {
-        let model = Model::fit(&points(|x, y| 0.3 * x * x - 0.1 * x * y), unit([1.0, 2.0, -0.5]), 0.1).unwrap();
+        let model =
+            Model::fit(&points(|x, y| 0.3 * x * x - 0.1 * x * y), unit([1.0, 2.0, -0.5]), 0.1).unwrap();
         assert!(!model.is_flat && model.misfit < 1e-3, "{model:?}");
         assert!(points(|x, y| 0.3 * x * x - 0.1 * x * y).iter().all(|&(p, _)| model.at(p).0.abs() < 3e-3));
     }

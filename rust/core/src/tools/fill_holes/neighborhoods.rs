@@ -28,8 +28,8 @@ impl<'a> Neighborhoods<'a> {
 
     /// The faces of `seeds`, which are on loops, and `rings - 1` rings around those, ascending.
     ///
-    /// Rings grow about every vertex through the edges with two faces. Of surfaces that touch in a vertex or an edge away
-    /// from the seeds, only those belong to it that one reaches otherwise.
+    /// Rings grow about every vertex through the edges with two faces. Of surfaces that touch in a vertex or
+    /// an edge away from the seeds, only those belong to it that one reaches otherwise.
     pub(super) fn within(&self, seeds: &[u32], rings: usize) -> Vec<u32> {
         let mut front: Vec<u32> = seeds.iter().flat_map(|&v| self.at(v)).collect();
         front.sort_unstable();
@@ -53,7 +53,8 @@ impl<'a> Neighborhoods<'a> {
         faces
     }
 
-    /// Visits the faces of the fan about the vertex at `corner`, unless one of its corners was `turned` before.
+    /// Visits the faces of the fan about the vertex at `corner`,
+    /// unless one of its corners was `turned` before.
     fn turn(&self, corner: u32, turned: &mut HashSet<u32>, mut visit: impl FnMut(u32)) {
         let faces = self.connectivity.faces();
         let vertex = faces[corner as usize / 3][corner as usize % 3];
@@ -87,8 +88,9 @@ mod tests {
         let mut vertices: HashSet<u32> = seeds.iter().copied().collect();
         let mut found = Vec::new();
         for _ in 0..rings {
-            found =
-                (0..faces.len() as u32).filter(|&f| faces[f as usize].iter().any(|v| vertices.contains(v))).collect();
+            found = (0..faces.len() as u32)
+                .filter(|&f| faces[f as usize].iter().any(|v| vertices.contains(v)))
+                .collect();
             vertices.extend(found.iter().flat_map(|&f| faces[f as usize]));
         }
         found
@@ -101,7 +103,9 @@ mod tests {
             let mesh = shape.mesh().unwrap();
             let loops = boundary_loops(mesh.connectivity());
             let near = Neighborhoods::new(mesh.connectivity(), &faces_at(&mesh, &loops).unwrap());
-            for (vertices, rings) in loops.iter().flat_map(|vertices| [1, 2, 5].map(|rings| (vertices, rings))) {
+            for (vertices, rings) in
+                loops.iter().flat_map(|vertices| [1, 2, 5].map(|rings| (vertices, rings)))
+            {
                 let expected = by_passes(mesh.connectivity().faces(), vertices, rings);
                 assert_eq!(near.within(vertices, rings), expected);
             }

@@ -28,7 +28,8 @@ pub enum Sharpness {
 /// What patches look like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum PatchShape {
-    /// Per hole: flat where a planar rim is met steeply all round, sharp where there are ridges around the hole, else smooth.
+    /// Per hole: flat where a planar rim is met steeply all round,
+    /// sharp where there are ridges around the hole, else smooth.
     #[default]
     Auto,
     /// In the mean plane of the rim; as `Auto` where that would overlap itself.

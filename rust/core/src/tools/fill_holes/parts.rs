@@ -1,4 +1,5 @@
-//! The smooth parts that the surface around a hole falls into along its ridges, each with the surface that it goes on as.
+//! The smooth parts that the surface around a hole falls into along its ridges,
+//! each with the surface that it goes on as.
 
 use super::constants::{NEAR_PART, PART_WIDTH, WORST_FIT};
 use super::model::Model;
@@ -19,8 +20,9 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    /// The parts around the patch of `region`, between edges bent by more than `ridge` radians. Nothing if a ridge at the hole
-    /// has the same part on both sides, or a part is not smooth enough: then they do not say how the surface goes on.
+    /// The parts around the patch of `region`, between edges bent by more than `ridge` radians. Nothing if a
+    /// ridge at the hole has the same part on both sides, or a part is not smooth enough: then they do not
+    /// say how the surface goes on.
     pub(super) fn around(region: &Region, ridge: f64, edge: f64) -> Option<Self> {
         let mesh = &region.mesh;
         let surface = Surface::of(region);
@@ -54,7 +56,8 @@ impl Parts {
         let of_face: Vec<u32> =
             roots.iter().map(|r| reached.binary_search(r).map_or(NONE, |part| part as u32)).collect();
         let rings = rings(region, &on_rim);
-        let models = (0..reached.len() as u32).map(|part| model(region, &surface, &of_face, &rings, part, edge));
+        let models =
+            (0..reached.len() as u32).map(|part| model(region, &surface, &of_face, &rings, part, edge));
         let models = models.collect::<Option<Vec<_>>>()?;
         Some(Self { of_face, models })
     }
@@ -91,7 +94,14 @@ fn rings(region: &Region, on_rim: &[bool]) -> Vec<u32> {
     rings
 }
 
-fn model(region: &Region, surface: &Surface, of_face: &[u32], rings: &[u32], part: u32, edge: f64) -> Option<Model> {
+fn model(
+    region: &Region,
+    surface: &Surface,
+    of_face: &[u32],
+    rings: &[u32],
+    part: u32,
+    edge: f64,
+) -> Option<Model> {
     let mut weights = vec![0.0; region.anchors.len()];
     let mut normal = [0.0; 3];
     for (f, face) in region.mesh.faces().take(region.n_outer) {

@@ -12,8 +12,8 @@ use crate::remesh::EditableMesh;
 
 /// A patch and its surroundings as a small mesh of its own.
 ///
-/// Vertices that stay (those of the mesh) come first, then those of the patch; faces around the patch come first, then those
-/// of the patch. Only patch faces are ever changed.
+/// Vertices that stay (those of the mesh) come first, then those of the patch; faces around the patch come
+/// first, then those of the patch. Only patch faces are ever changed.
 #[derive(Debug, Clone)]
 pub(super) struct Region {
     /// Positions and faces, as they are now.
@@ -29,8 +29,8 @@ pub(super) struct Region {
 }
 
 impl Region {
-    /// The patch, whose new vertices begin at the number `first_new`, and `rings` rings around it. No edge is made between
-    /// two vertices of `shared`.
+    /// The patch, whose new vertices begin at the number `first_new`, and `rings` rings around it. No edge is
+    /// made between two vertices of `shared`.
     pub(super) fn new(
         mesh: &Mesh,
         near: &Neighborhoods<'_>,
@@ -55,14 +55,24 @@ impl Region {
         anchors.dedup();
         let number: HashMap<u32, u32> = anchors.iter().copied().zip(0..).collect();
         let n_anchors = anchors.len() as u32;
-        let local = |v: u32| number.get(&v).copied().unwrap_or_else(|| n_anchors + v.saturating_sub(first_new));
-        let points = anchors.iter().map(|&v| positions[v as usize]).chain(patch.vertices.iter().copied()).collect();
+        let local =
+            |v: u32| number.get(&v).copied().unwrap_or_else(|| n_anchors + v.saturating_sub(first_new));
+        let points =
+            anchors.iter().map(|&v| positions[v as usize]).chain(patch.vertices.iter().copied()).collect();
         let n_outer = outer.len();
-        let faces = outer.into_iter().chain(patch.faces.iter().copied()).map(|face| face.map(local)).collect();
-        let shared: Vec<u32> = (0..).zip(&anchors).filter(|(_, v)| shared.contains(v)).map(|(v, _)| v).collect();
-        let pairs = shared.iter().enumerate().flat_map(|(i, &a)| shared[i + 1..].iter().map(move |&b| key(a, b)));
-        let mut region =
-            Self { mesh: EditableMesh::new(points, faces)?, n_outer, anchors, first_new, forbidden: pairs.collect() };
+        let faces =
+            outer.into_iter().chain(patch.faces.iter().copied()).map(|face| face.map(local)).collect();
+        let shared: Vec<u32> =
+            (0..).zip(&anchors).filter(|(_, v)| shared.contains(v)).map(|(v, _)| v).collect();
+        let pairs =
+            shared.iter().enumerate().flat_map(|(i, &a)| shared[i + 1..].iter().map(move |&b| key(a, b)));
+        let mut region = Self {
+            mesh: EditableMesh::new(points, faces)?,
+            n_outer,
+            anchors,
+            first_new,
+            forbidden: pairs.collect(),
+        };
         region.forbid();
         Ok(region)
     }
@@ -115,9 +125,11 @@ impl Region {
         self.anchors.get(v as usize).copied().unwrap_or_else(|| self.first_new + (v - n))
     }
 
-    /// The patch alone: its vertices, those on the rim first, its faces, and the number here of each vertex on the rim.
+    /// The patch alone: its vertices, those on the rim first, its faces,
+    /// and the number here of each vertex on the rim.
     pub(super) fn patch(&self) -> (Vec<Point>, Vec<[u32; 3]>, Vec<u32>) {
-        let mut rim: Vec<u32> = self.patch_faces().flat_map(|(_, face)| face).filter(|&v| self.is_anchor(v)).collect();
+        let mut rim: Vec<u32> =
+            self.patch_faces().flat_map(|(_, face)| face).filter(|&v| self.is_anchor(v)).collect();
         rim.sort_unstable();
         rim.dedup();
         let number: HashMap<u32, u32> = rim.iter().copied().zip(0..).collect();
@@ -128,7 +140,12 @@ impl Region {
     }
 
     /// Puts another patch in the place of the present one: like [`Region::patch`], with the same rim.
-    pub(super) fn replace_patch(&mut self, points: &[Point], faces: &[[u32; 3]], rim: &[u32]) -> Result<(), MeshError> {
+    pub(super) fn replace_patch(
+        &mut self,
+        points: &[Point],
+        faces: &[[u32; 3]],
+        rim: &[u32],
+    ) -> Result<(), MeshError> {
         let n = self.anchors.len();
         let shift = n as u32 - rim.len() as u32;
         let number = |v: u32| rim.get(v as usize).copied().unwrap_or(v + shift);
@@ -150,7 +167,8 @@ pub(super) mod tests {
     use crate::shapes::Shape;
     use crate::Progress;
 
-    /// The region of the hole that is left where the faces of a closed shape within `radius` of `place` are taken away.
+    /// The region of the hole that is left where the faces of a closed shape within `radius` of `place` are
+    /// taken away.
     pub(crate) fn around_hole(shape: &Shape, place: Point, radius: f64) -> Region {
         let away = |f: usize| distance(centroid(shape.faces[f].map(|v| shape.vertices[v as usize])), place);
         let mesh = shape.clone().without_faces(|f| away(f) < radius).mesh().unwrap();

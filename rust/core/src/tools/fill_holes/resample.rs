@@ -35,15 +35,21 @@ impl Kept<'_> {
 pub(super) struct Target {
     /// The edge length; that of the patch where `None`.
     pub edge_length: Option<f64>,
-    /// About how many faces the patch may have: where it would have more, edges grow with their distance from the rim.
+    /// About how many faces the patch may have: where it would have more,
+    /// edges grow with their distance from the rim.
     pub max_faces: usize,
     /// Rounds of all passes.
     pub rounds: usize,
 }
 
-/// Remeshes the patch [Botsch and Kobbelt 2004]: where vertices have met on a ridge edges collapse, where the ridge has stretched
-/// the patch they split.
-pub(super) fn resample(region: &mut Region, kept: &Kept<'_>, target: &Target, progress: &Progress) -> Result<()> {
+/// Remeshes the patch [Botsch and Kobbelt 2004]: where vertices have met on a ridge edges collapse, where the
+/// ridge has stretched the patch they split.
+pub(super) fn resample(
+    region: &mut Region,
+    kept: &Kept<'_>,
+    target: &Target,
+    progress: &Progress,
+) -> Result<()> {
     let &Target { edge_length, max_faces, rounds } = target;
     let (points, faces, rim) = region.patch();
     let n = rim.len();
@@ -82,11 +88,20 @@ pub(super) fn resample(region: &mut Region, kept: &Kept<'_>, target: &Target, pr
         }
     }
     let number = |v: u32| number(v).map(|v| merged.get(&v).copied().unwrap_or(v));
-    let features: HashSet<[u32; 2]> =
-        kept.borders.iter().filter_map(|&[a, b]| Some(key(number(a)?, number(b)?))).filter(|[a, b]| a != b).collect();
+    let features: HashSet<[u32; 2]> = kept
+        .borders
+        .iter()
+        .filter_map(|&[a, b]| Some(key(number(a)?, number(b)?)))
+        .filter(|[a, b]| a != b)
+        .collect();
     let surface = Surface::of(&mesh);
     let fixed: Vec<bool> = (0..mesh.n_vertices()).map(|v| v < n).collect();
-    let keep = Keep { fixed: &fixed, fixed_faces: false, feature_cosine: kept.ridge.cos(), features: Some(&features) };
+    let keep = Keep {
+        fixed: &fixed,
+        fixed_faces: false,
+        feature_cosine: kept.ridge.cos(),
+        features: Some(&features),
+    };
     let typical = typical_edge(&mesh);
     let (growth, rim_edge) = growth_from_rim(&mesh, edge_length, max_faces);
     let mut remesher = Remesher::new(mesh, &surface, &keep, |mesh, curves| match edge_length {
@@ -99,7 +114,8 @@ pub(super) fn resample(region: &mut Region, kept: &Kept<'_>, target: &Target, pr
     Ok(region.replace_patch(&points, &faces, &rim)?)
 }
 
-/// By how much edges of the patch `mesh` must grow for every unit of distance from its rim, and how long those at the rim are.
+/// By how much edges of the patch `mesh` must grow for every unit of distance from its rim,
+/// and how long those at the rim are.
 fn growth_from_rim(mesh: &EditableMesh, edge_length: Option<f64>, max_faces: usize) -> (f64, f64) {
     let is_border = |&[a, b]: &[u32; 2]| matches!(mesh.edge(a, b), Edge::Border(..));
     let length = |[a, b]: [u32; 2]| distance(mesh.position(a), mesh.position(b));
@@ -131,7 +147,8 @@ mod tests {
     fn the_patch_of_a_wide_hole_stays_coarse_until_it_may_be_fine() {
         let inside = |f: usize| (2..62).contains(&(f / 2 % 64)) && (2..62).contains(&(f / 128));
         let mesh = grid(64, 64).without_faces(inside).mesh().unwrap();
-        let hole = find_holes(&mesh).unwrap().into_iter().find(|hole| !hole.is_outer_border).unwrap().vertices;
+        let hole =
+            find_holes(&mesh).unwrap().into_iter().find(|hole| !hole.is_outer_border).unwrap().vertices;
         let (progress, coarse) = (Progress::new(), FillOptions { max_faces: 1500, ..FillOptions::default() });
         let patch = fill_loop(&mesh, &hole, &coarse, &progress).unwrap();
         let at = faces_at(&mesh, std::slice::from_ref(&hole)).unwrap();

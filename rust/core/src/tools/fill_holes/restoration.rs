@@ -29,7 +29,13 @@ impl Restoration<'_, '_> {
     }
 
     /// Remeshes the patch; edges bent by more than `ridge` radians stay.
-    pub(super) fn resample(&self, region: &mut Region, ridge: f64, max_faces: usize, rounds: usize) -> Result<()> {
+    pub(super) fn resample(
+        &self,
+        region: &mut Region,
+        ridge: f64,
+        max_faces: usize,
+        rounds: usize,
+    ) -> Result<()> {
         let target = Target { edge_length: self.options.edge_length, max_faces, rounds };
         resample(region, &Kept::ridges(ridge), &target, self.progress)
     }

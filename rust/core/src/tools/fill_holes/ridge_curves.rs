@@ -5,14 +5,17 @@ use super::surface::Surface;
 use crate::mesh::vector::{distance, dot, norm, sub};
 use crate::remesh::curves::CORNER_COSINE;
 
-/// Rows of the third derivative along the ridges: vertices, their coefficients, and the length that each row stands for.
+/// Rows of the third derivative along the ridges: vertices, their coefficients,
+/// and the length that each row stands for.
 ///
-/// Every edge of a ridge that goes on at both ends has one: the third divided difference, by chord length, over its four
-/// vertices. It vanishes on straight lines and nearly so on arcs of circles. Edges bent by more than `ridge` radians are ridges.
+/// Every edge of a ridge that goes on at both ends has one: the third divided difference, by chord length,
+/// over its four vertices. It vanishes on straight lines and nearly so on arcs of circles. Edges bent by more
+/// than `ridge` radians are ridges.
 pub(super) fn third_derivatives(region: &Region, ridge: f64) -> Vec<([u32; 4], [f64; 4], f64)> {
     let mesh = &region.mesh;
     let surface = Surface::of(region);
-    let is_ridge = |&[a, b]: &[u32; 2]| mesh.wings(a, b).is_some_and(|wings| surface.dihedral(wings.faces) > ridge);
+    let is_ridge =
+        |&[a, b]: &[u32; 2]| mesh.wings(a, b).is_some_and(|wings| surface.dihedral(wings.faces) > ridge);
     let edges: Vec<[u32; 2]> = mesh.edges().into_iter().filter(is_ridge).collect();
     let mut ends: Vec<Vec<u32>> = vec![Vec::new(); mesh.n_vertices()];
     for &[a, b] in &edges {
@@ -38,7 +41,8 @@ pub(super) fn third_derivatives(region: &Region, ridge: f64) -> Vec<([u32; 4], [
             places[i + 1] = places[i] + distance(at(vertices[i]), at(vertices[i + 1]));
         }
         let others = |i: usize| (0..4).filter(move |&j| j != i);
-        let coefficients = [0, 1, 2, 3].map(|i| 6.0 / others(i).map(|j| places[i] - places[j]).product::<f64>());
+        let coefficients =
+            [0, 1, 2, 3].map(|i| 6.0 / others(i).map(|j| places[i] - places[j]).product::<f64>());
         coefficients.iter().all(|c| c.is_finite()).then_some((vertices, coefficients, places[2] - places[1]))
     };
     edges.iter().filter_map(row).collect()

@@ -33,8 +33,9 @@ pub(super) struct Snapping {
 }
 
 impl Snapping {
-    /// Over five rings: faces that lie on their planes already pull in those that do not yet. The faces around the patch are
-    /// known to be right: without their weight a cut corner, whose chamfer is a plane as well, would stay.
+    /// Over five rings: faces that lie on their planes already pull in those that do not yet. The faces
+    /// around the patch are known to be right: without their weight a cut corner, whose chamfer is a plane as
+    /// well, would stay.
     pub(super) const DEFAULT: Self = Self {
         threshold: 0.1,
         near: 2,
@@ -48,12 +49,13 @@ impl Snapping {
     };
 }
 
-/// Moves every free vertex where the planes around it say where, and to the middle of its neighbors where they do not;
-/// returns the longest move.
+/// Moves every free vertex where the planes around it say where, and to the middle of its neighbors where
+/// they do not; returns the longest move.
 ///
-/// Where an edge nearby is bent by more than the threshold, the pseudo-inverse of the quadric (Garland and Heckbert 1997) of
-/// the planes takes it onto a plane, onto the line of two, into the corner of three. In the directions that the planes
-/// leave free, it goes to the centroid of its neighbors: ridges and plane parts keep their triangles in shape.
+/// Where an edge nearby is bent by more than the threshold, the pseudo-inverse of the quadric (Garland and
+/// Heckbert 1997) of the planes takes it onto a plane, onto the line of two, into the corner of three. In the
+/// directions that the planes leave free, it goes to the centroid of its neighbors: ridges and plane parts
+/// keep their triangles in shape.
 pub(super) fn snap(region: &mut Region, how: &Snapping) -> f64 {
     let surface = Surface::of(region);
     let bent = near_bends(region, &surface, how);
@@ -89,7 +91,14 @@ fn near_bends(region: &Region, surface: &Surface, how: &Snapping) -> Vec<bool> {
     bent
 }
 
-fn step(region: &Region, surface: &Surface, bent: &[bool], around: &mut Rings<'_>, v: u32, how: &Snapping) -> Point {
+fn step(
+    region: &Region,
+    surface: &Surface,
+    bent: &[bool],
+    around: &mut Rings<'_>,
+    v: u32,
+    how: &Snapping,
+) -> Point {
     let mesh = &region.mesh;
     let at = mesh.position(v);
     let neighbors = mesh.neighbors(v);

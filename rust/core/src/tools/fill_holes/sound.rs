@@ -12,8 +12,8 @@ use crate::remesh::guard::worst_bend_of;
 use crate::shape_guard::{FOLDED, TURNED};
 use crate::Result;
 
-/// [`restore`], and if that leaves a patch folded or facing inwards, the smooth patch, or the triangulation that it started from:
-/// the first that is in order, or else the least folded.
+/// [`restore`], and if that leaves a patch folded or facing inwards, the smooth patch, or the triangulation
+/// that it started from: the first that is in order, or else the least folded.
 pub(super) fn restored_in_order(
     region: &mut Region,
     patch: &Patch,
@@ -54,8 +54,9 @@ pub(super) fn restored_in_order(
     Ok(restored)
 }
 
-/// By how much the worst bend of the patch, or its face that looks inwards most, is within the limits; negative if not. A face looks
-/// inwards that looks against the lid to [`TURNED`]: the flanks of a smooth patch, which go on with the surface around, look across it.
+/// By how much the worst bend of the patch, or its face that looks inwards most, is within the limits;
+/// negative if not. A face looks inwards that looks against the lid to [`TURNED`]: the flanks of a smooth
+/// patch, which go on with the surface around, look across it.
 fn order(region: &Region, lid: Option<Point>) -> f64 {
     let bend = worst_bend_of(&region.mesh, region.patch_faces().map(|(f, _)| f));
     let looks = |(f, _): (u32, [u32; 3])| {

@@ -7,8 +7,8 @@ use crate::progress::Progress;
 use crate::solve::{quadratic, Coupling, Problem, Settings};
 use crate::Result;
 
-/// Moves the patch to the minimizer of a quadratic energy of its coordinates, everything around it fixed, `rounds` times:
-/// the energy is that of the surface before each round.
+/// Moves the patch to the minimizer of a quadratic energy of its coordinates, everything around it fixed,
+/// `rounds` times: the energy is that of the surface before each round.
 pub(super) fn smooth(region: &mut Region, energy: Energy, rounds: usize, progress: &Progress) -> Result<()> {
     let settings = Settings { announce: false, ..Settings::default() };
     for _ in 0..rounds {

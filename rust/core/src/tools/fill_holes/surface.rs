@@ -63,13 +63,15 @@ pub(super) fn total_bend(region: &Region) -> f64 {
     mesh.edges().into_iter().filter_map(bend).sum()
 }
 
-/// The edges at the patch that are bent by more than `least` radians, by vertices of the whole mesh, smaller first.
+/// The edges at the patch that are bent by more than `least` radians, by vertices of the whole mesh,
+/// smaller first.
 pub(super) fn ridges(region: &Region, least: f64) -> Vec<[u32; 2]> {
     let surface = Surface::of(region);
     let mesh = &region.mesh;
     let bent = |&[a, b]: &[u32; 2]| {
         let faces = mesh.wings(a, b).map(|wings| wings.faces);
-        faces.is_some_and(|faces| faces.iter().any(|&f| region.is_patch(f)) && surface.dihedral(faces) > least)
+        faces
+            .is_some_and(|faces| faces.iter().any(|&f| region.is_patch(f)) && surface.dihedral(faces) > least)
     };
     mesh.edges().into_iter().filter(bent).map(|[a, b]| key(region.global(a), region.global(b))).collect()
 }

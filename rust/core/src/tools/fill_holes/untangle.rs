@@ -1,4 +1,5 @@
-//! Folds of a patch that already lies on its surfaces: faces that look backwards, in a plane with their neighbors.
+//! Folds of a patch that already lies on its surfaces: faces that look backwards,
+//! in a plane with their neighbors.
 
 use super::constants::{UNTANGLE_PASSES, UNTANGLE_RINGS};
 use super::meeting::{meeting_point, turned};
@@ -6,8 +7,9 @@ use super::parts::Parts;
 use super::region::Region;
 use crate::mesh::vector::{add, scale, Point};
 
-/// Moves vertices around faces that are turned away from their part to the mean of their neighbors, as in an embedding with fixed
-/// surroundings, which has no folds (Tutte 1963), and back onto their surfaces. Nothing changes if as many faces are turned after that.
+/// Moves vertices around faces that are turned away from their part to the mean of their neighbors, as in an
+/// embedding with fixed surroundings, which has no folds (Tutte 1963), and back onto their surfaces. Nothing
+/// changes if as many faces are turned after that.
 pub(super) fn untangle(region: &mut Region, parts: &Parts, labels: &[u32]) {
     let before = turned(region, parts, labels);
     if before.is_empty() {
@@ -26,7 +28,8 @@ pub(super) fn untangle(region: &mut Region, parts: &Parts, labels: &[u32]) {
         for &v in &near {
             let around = region.mesh.neighbors(v);
             let share = 1.0 / around.len().max(1) as f64;
-            let mean = around.iter().fold([0.0; 3], |sum, &w| add(sum, scale(region.mesh.position(w), share)));
+            let mean =
+                around.iter().fold([0.0; 3], |sum, &w| add(sum, scale(region.mesh.position(w), share)));
             region.mesh.set_position(v, mean);
             let goal = meeting_point(region, parts, labels, v);
             region.mesh.set_position(v, goal);

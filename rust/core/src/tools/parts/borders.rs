@@ -13,9 +13,9 @@ use crate::Result;
 pub(super) struct Drawn {
     /// The part of every face, from 0.
     pub labels: Vec<u32>,
-    /// For each division the part that was divided, the part that came of it, and what the cut costs, or the one
-    /// before if that is more. Borders between clusters are longer than those between faces, by their corners: with
-    /// the costs of the faces every density has the same.
+    /// For each division the part that was divided, the part that came of it, and what the cut costs, or the
+    /// one before if that is more. Borders between clusters are longer than those between faces, by their
+    /// corners: with the costs of the faces every density has the same.
     pub divisions: Vec<([u32; 2], f64)>,
 }
 
@@ -47,7 +47,9 @@ pub(super) fn drawn(
         let owner = |f: u32| owners[clusters[f as usize] as usize];
         let rough = spread_out(&part, faces.iter().map(|&f| owner(f)), [division.part, number]);
         let fine = if n_clusters < graph.n_nodes() { moved(&part, &rough, width) } else { None };
-        let Some(side) = fine.into_iter().chain([rough]).find_map(|side| whole_parts(&part, side)) else { continue };
+        let Some(side) = fine.into_iter().chain([rough]).find_map(|side| whole_parts(&part, side)) else {
+            continue;
+        };
         let fresh = kept.len() as u32 + 1;
         names[number as usize] = fresh;
         let before = kept.last().map_or(0.0, |(_, cost)| *cost);

@@ -2,8 +2,8 @@
 
 use super::constants::PLAY;
 
-/// The number of parts at a limit: of all divisions, by ascending costs, that cost less, but not between two that cost
-/// about the same.
+/// The number of parts at a limit: of all divisions, by ascending costs, that cost less, but not between two
+/// that cost about the same.
 pub(super) fn count(costs: &[f64], limit: f64) -> usize {
     let [least, most] = [limit / PLAY, limit * PLAY];
     let first = costs.partition_point(|cost| *cost <= least);

@@ -97,8 +97,8 @@ pub(super) const MOST_PARTS: usize = 40;
 pub(super) const AREA_POWER: f64 = 0.7;
 
 /// A cut costs a third where the smaller side is thinner than the rest by this on the mean, in logarithms: a
-/// wing and a body are two parts however softly they meet. A side that is thicker is none for that: the end of
-/// a limb is, seen from its tip.
+/// wing and a body are two parts however softly they meet. A side that is thicker is none for that: the end
+/// of a limb is, seen from its tip.
 pub(super) const STEP: f64 = 1.0;
 
 /// Eigenfunctions that are swept: more find no better cuts at a part's first division, and later ones have
@@ -136,6 +136,6 @@ pub(super) const CLUSTERS_WIDE: f64 = 2.0;
 /// are alike then come and go together, and a little noise or another density changes no count.
 pub(super) const PLAY: f64 = 1.15;
 
-/// A cut may cost so much at a coarseness of 1: `length / area^0.7` of a shape of area 1. As found, 1.0, 1.25,
-/// 1.5, and 1.8 give 9.9, 9.9, 10.9, and 11.2, and 12.7, 11.8, 11.7, and 12.8 on 32 other shapes.
+/// A cut may cost so much at a coarseness of 1: `length / area^0.7` of a shape of area 1. As found, 1.0,
+/// 1.25, 1.5, and 1.8 give 9.9, 9.9, 10.9, and 11.2, and 12.7, 11.8, 11.7, and 12.8 on 32 other shapes.
 pub(super) const COST: f64 = 1.25;

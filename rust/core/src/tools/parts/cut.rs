@@ -3,8 +3,8 @@
 use std::cmp::Ordering;
 
 use super::constants::{
-    AREA_POWER, BAND, FUNCTIONS, FUNCTION_ACCURACY, LEAST_PART, LEAST_PATCHES, LEVELS, LEVELS_APART, SAME_CUT, STEP,
-    TIGHTENED, TIGHTENINGS,
+    AREA_POWER, BAND, FUNCTIONS, FUNCTION_ACCURACY, LEAST_PART, LEAST_PATCHES, LEVELS, LEVELS_APART,
+    SAME_CUT, STEP, TIGHTENED, TIGHTENINGS,
 };
 use super::graph::Graph;
 use super::tighten::moved;
@@ -92,7 +92,9 @@ pub(super) fn cheapest(graph: &Graph, progress: &Progress) -> Result<Option<Cut>
         if looked_at.len() == TIGHTENED {
             break;
         }
-        if !is_whole(graph, &side) || looked_at.iter().any(|other| differ(graph, &side, other) < SAME_CUT * whole) {
+        if !is_whole(graph, &side)
+            || looked_at.iter().any(|other| differ(graph, &side, other) < SAME_CUT * whole)
+        {
             continue;
         }
         looked_at.push(side.clone());
@@ -117,7 +119,9 @@ fn tightened(graph: &Graph, mut side: Vec<bool>) -> Vec<bool> {
     let width = BAND * area.min(graph.area() - area).max(0.0).sqrt();
     for _ in 0..TIGHTENINGS {
         match moved(graph, &side, width) {
-            Some(better) if is_whole(graph, &better) && cost(graph, &better) < cost(graph, &side) => side = better,
+            Some(better) if is_whole(graph, &better) && cost(graph, &better) < cost(graph, &side) => {
+                side = better
+            }
             _ => break,
         }
     }
@@ -183,7 +187,10 @@ fn sweep(graph: &Graph, function: &[f64], found: &mut Vec<Cut>) {
         let Some(level) = cheapest.filter(|&i| levels[i].0.is_finite()) else { return };
         let at = levels[level].1;
         let apart = LEVELS_APART * at.min(whole - at) + 0.01 * whole;
-        levels.iter_mut().filter(|(_, area)| (area - at).abs() < apart).for_each(|(price, _)| *price = f64::INFINITY);
+        levels
+            .iter_mut()
+            .filter(|(_, area)| (area - at).abs() < apart)
+            .for_each(|(price, _)| *price = f64::INFINITY);
         let below = |end: u32| rank[end as usize] as usize <= level;
         let (pieces, count) = graph.pieces(|e| below(e.ends[0]) == below(e.ends[1]));
         // With two pieces each is the other's rest.

@@ -30,6 +30,7 @@ pub(super) fn diffused<const K: usize>(
             }
         }
     };
-    let precondition = |x: &mut [[f64; K]]| x.iter_mut().zip(&diagonal).for_each(|(x, d)| *x = x.map(|x| x / d));
+    let precondition =
+        |x: &mut [[f64; K]]| x.iter_mut().zip(&diagonal).for_each(|(x, d)| *x = x.map(|x| x / d));
     conjugate_gradients(matrix, precondition, right, DIFFUSION_RESIDUAL, MOST_ITERATIONS).solution
 }

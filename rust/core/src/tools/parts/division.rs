@@ -58,8 +58,10 @@ pub(super) fn divisions(graph: &Graph, wanted: Option<usize>, progress: &Progres
             iteration: divisions.len() + 1,
             ..Report::default()
         });
-        let (a, b) =
-            rayon::join(|| candidate(graph, part, stay, progress), || candidate(graph, number, gone, progress));
+        let (a, b) = rayon::join(
+            || candidate(graph, part, stay, progress),
+            || candidate(graph, number, gone, progress),
+        );
         fresh = vec![a?, b?];
     }
     Ok(divisions)

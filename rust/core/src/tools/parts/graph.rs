@@ -132,8 +132,12 @@ impl Graph {
             }
         }
         let apart = |[a, b]: [u32; 2]| distance(centers[a as usize], centers[b as usize]);
-        let edges =
-            borders.into_iter().map(|(ends, [length, cost])| Edge { ends, length, cost, distance: apart(ends) });
+        let edges = borders.into_iter().map(|(ends, [length, cost])| Edge {
+            ends,
+            length,
+            cost,
+            distance: apart(ends),
+        });
         let edges = edges.collect();
         Self::new(areas, centers, edges).with_thickness(thickness)
     }
@@ -161,7 +165,12 @@ impl Graph {
 
     /// For each node the distance to the nearest of `seeds` along edges as long as `length` says, and
     /// which seed that is: up to `limit`, beyond it infinity and [`NONE`] (Dijkstra 1959).
-    pub(super) fn nearest(&self, seeds: &[u32], limit: f64, length: impl Fn(&Edge) -> f64) -> (Vec<f64>, Vec<u32>) {
+    pub(super) fn nearest(
+        &self,
+        seeds: &[u32],
+        limit: f64,
+        length: impl Fn(&Edge) -> f64,
+    ) -> (Vec<f64>, Vec<u32>) {
         let mut distances = vec![f64::INFINITY; self.n_nodes()];
         let mut nearest = vec![NONE; self.n_nodes()];
         let mut heap = BinaryHeap::new();

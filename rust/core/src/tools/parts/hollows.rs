@@ -5,7 +5,9 @@
 
 use rayon::prelude::*;
 
-use super::constants::{BEND_OF_A_THIRD, BEND_SCALE, CHANGE_OF_A_THIRD, HOLLOW, LEAST_SHARE, THICKNESS_SCALE};
+use super::constants::{
+    BEND_OF_A_THIRD, BEND_SCALE, CHANGE_OF_A_THIRD, HOLLOW, LEAST_SHARE, THICKNESS_SCALE,
+};
 use super::diffusion::{diffused, Link};
 use super::graph::{Edge, Graph};
 use super::surface::Surface;
@@ -30,11 +32,13 @@ pub(super) fn border_graph(surface: &Surface, progress: &Progress) -> Result<Gra
         let across = sub(surface.centers[g], surface.centers[f]);
         let squared = dot(across, across);
         // The curvature across the edge, hollow positive, times the scale.
-        let turn = if squared > 0.0 { -dot(sub(normals[g], normals[f]), across) / squared.sqrt() } else { 0.0 };
+        let turn =
+            if squared > 0.0 { -dot(sub(normals[g], normals[f]), across) / squared.sqrt() } else { 0.0 };
         let bend = turn.max(0.0) * (BEND_SCALE / squared.sqrt()).max(LEAST_SHARE);
         let slope = (thickness[g] - thickness[f]).abs() / joint.distance.max(f64::MIN_POSITIVE);
         let change = slope * THICKNESS_SCALE.max(joint.distance);
-        let part = (-(bend / BEND_OF_A_THIRD).powi(2) - (change / CHANGE_OF_A_THIRD).powi(2)).exp().max(HOLLOW);
+        let part =
+            (-(bend / BEND_OF_A_THIRD).powi(2) - (change / CHANGE_OF_A_THIRD).powi(2)).exp().max(HOLLOW);
         Edge {
             ends: joint.faces,
             length: joint.length,

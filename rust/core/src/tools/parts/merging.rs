@@ -1,10 +1,10 @@
 //! In which order the finest parts become one: nested divisions of every count.
 //!
 //! The cheapest cuts say what is a part, but not which part to give up where fewer are wanted: hands are cut
-//! off more cheaply than arms. Two parts that touch are two for people the more surely the cheaper the cut is,
-//! as surely as not at the limit: the logarithm of limit over price is the evidence. The Rand index says what a
-//! merge is worth: it joins as many pairs of points as the product of both areas, which is right or wrong for
-//! all of them. The merge with the least evidence against it, times those pairs, comes next.
+//! off more cheaply than arms. Two parts that touch are two for people the more surely the cheaper the cut
+//! is, as surely as not at the limit: the logarithm of limit over price is the evidence. The Rand index says
+//! what a merge is worth: it joins as many pairs of points as the product of both areas, which is right or
+//! wrong for all of them. The merge with the least evidence against it, times those pairs, comes next.
 
 use std::collections::BTreeMap;
 
@@ -25,8 +25,8 @@ pub(super) struct Merging {
 }
 
 impl Merging {
-    /// The parts by `labels`, from 0, of a graph whose nodes lie in `pieces` that only gaps join; which part each
-    /// comes from that was `found`, and up to which price cuts are made.
+    /// The parts by `labels`, from 0, of a graph whose nodes lie in `pieces` that only gaps join; which part
+    /// each comes from that was `found`, and up to which price cuts are made.
     pub(super) fn new(graph: &Graph, pieces: &[u32], labels: &[u32], found: Vec<u32>, limit: f64) -> Self {
         let parts = graph.quotient(labels, found.len());
         let sides = (0..parts.n_nodes()).map(|i| Side::of(&parts, |node| node == i)).collect();
@@ -42,8 +42,8 @@ impl Merging {
         Self { sides, borders, found, pieces, limit }
     }
 
-    /// The pairs that merge, the second into the first, with the price of the cut that goes, until one part is
-    /// left.
+    /// The pairs that merge, the second into the first, with the price of the cut that goes,
+    /// until one part is left.
     pub(super) fn merges(mut self) -> Vec<([u32; 2], f64)> {
         let mut merges = Vec::with_capacity(self.sides.len());
         loop {
@@ -86,8 +86,8 @@ impl Merging {
     }
 }
 
-/// What speaks against one part instead of two: the evidence for the cut, whose price is in units of the limit,
-/// times the pairs of points that it parts, over the square of the whole area.
+/// What speaks against one part instead of two: the evidence for the cut, whose price is in units of the
+/// limit, times the pairs of points that it parts, over the square of the whole area.
 fn loss(a: Side, b: Side, price: f64) -> f64 {
     -a.area * b.area * price.clamp(f64::MIN_POSITIVE, f64::MAX).ln()
 }

@@ -44,8 +44,8 @@ pub struct Parts {
     pub n_parts: usize,
     /// The vertices of the edges between parts.
     pub boundary_edges: Vec<[u32; 2]>,
-    /// Coarser and finer divisions, nested, in the order of what they are worth; the strength of a border is one
-    /// over what its cut costs.
+    /// Coarser and finer divisions, nested, in the order of what they are worth; the strength of a border is
+    /// one over what its cut costs.
     pub hierarchy: Hierarchy,
     /// `Solved`, or `Stopped` if the caller asked to finish early: then with fewer parts at most.
     pub status: Status,
@@ -98,7 +98,8 @@ fn nested(graph: &Graph, pieces: &[u32], drawn: Drawn, found: usize, limit: f64)
     let mut origin: Vec<u32> = (0..found as u32).collect();
     drawn.divisions.iter().skip(found - 1).for_each(|([part, _], _)| origin.push(origin[*part as usize]));
     let merging = merging::Merging::new(graph, pieces, &drawn.labels, origin, limit);
-    let strengths = merging.merges().into_iter().map(|(pair, price)| (pair, 1.0 / price.max(f64::MIN_POSITIVE)));
+    let strengths =
+        merging.merges().into_iter().map(|(pair, price)| (pair, 1.0 / price.max(f64::MIN_POSITIVE)));
     Hierarchy::new(drawn.labels, count, strengths)
 }
 

@@ -10,9 +10,9 @@ use crate::{Error, Result};
 pub struct PartsOptions {
     /// How many parts are wanted; as many as the coarseness makes where `None`.
     pub n_parts: Option<usize>,
-    /// How much cheaper cuts must be than is usual, 1: larger finds fewer parts. A cut costs the length of its
-    /// border, in hollows down to a tenth of it, over the 0.7th power of the area that it cuts off, both in
-    /// units of the whole area; up to 1.25 over the coarseness it is made.
+    /// How much cheaper cuts must be than is usual, 1: larger finds fewer parts. A cut costs the length of
+    /// its border, in hollows down to a tenth of it, over the 0.7th power of the area that it cuts off, both
+    /// in units of the whole area; up to 1.25 over the coarseness it is made.
     pub coarseness: f64,
     /// What borders cost in each face, 1 neutral, smaller where they are welcome.
     pub face_weights: Option<Vec<f64>>,
@@ -27,7 +27,14 @@ pub struct PartsOptions {
 
 impl Default for PartsOptions {
     fn default() -> Self {
-        Self { n_parts: None, coarseness: 1.0, face_weights: None, edge_weights: None, faces: None, threads: None }
+        Self {
+            n_parts: None,
+            coarseness: 1.0,
+            face_weights: None,
+            edge_weights: None,
+            faces: None,
+            threads: None,
+        }
     }
 }
 
@@ -35,7 +42,10 @@ impl PartsOptions {
     pub(super) fn check(&self, mesh: &Mesh) -> Result<()> {
         let m = mesh.connectivity().n_faces();
         if !(self.coarseness > 0.0 && self.coarseness.is_finite()) {
-            return Err(Error::argument("coarseness", format!("is {}; it must be positive", self.coarseness)));
+            return Err(Error::argument(
+                "coarseness",
+                format!("is {}; it must be positive", self.coarseness),
+            ));
         }
         if self.n_parts == Some(0) {
             return Err(Error::argument("n_parts", "is 0; ask for at least one part"));

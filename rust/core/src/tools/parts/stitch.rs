@@ -1,7 +1,7 @@
 //! Joints across gaps: pieces that nothing joins belong to what lies nearest.
 //!
-//! A piece large enough to be a part is joined by less than any hollow, so that it comes off before all limbs.
-//! Smaller ones, down to loose triangles, are joined along their open edges as if the surface went on.
+//! A piece large enough to be a part is joined by less than any hollow, so that it comes off before all
+//! limbs. Smaller ones, down to loose triangles, are joined along their open edges as if the surface went on.
 
 use super::constants::{HOLLOW, LEAST_PART, LOOKOUTS};
 use super::graph::{Edge, Graph};
@@ -40,7 +40,12 @@ pub(super) fn stitched(surface: &Surface, graph: Graph) -> (Graph, Vec<u32>) {
         let areas = piece_areas(&graph, &pieces, count);
         for (ends, area) in nearest_pairs(surface, &graph, &pieces, &areas, &tree) {
             let length = area.sqrt();
-            edges.push(Edge { ends, length, cost: HOLLOW * HOLLOW * length, distance: distance_of(&graph, ends) });
+            edges.push(Edge {
+                ends,
+                length,
+                cost: HOLLOW * HOLLOW * length,
+                distance: distance_of(&graph, ends),
+            });
         }
         graph = graph.with_edges(edges.clone());
         (pieces, count) = graph.pieces(|_| true);

@@ -64,7 +64,12 @@ fn sampled(areas: &[f64]) -> Vec<u32> {
 
 /// The median length of rays from `from` against `normal` that leave the shape: hit a triangle `turned`
 /// along them.
-fn diameter(tree: &ClosestPoint, from: Point, normal: Point, turned: impl Fn(u32, Point) -> bool) -> Option<f64> {
+fn diameter(
+    tree: &ClosestPoint,
+    from: Point,
+    normal: Point,
+    turned: impl Fn(u32, Point) -> bool,
+) -> Option<f64> {
     let side = if normal[0].abs() < 0.9 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
     let first = unit(cross(normal, side));
     let second = cross(normal, first);

@@ -1,17 +1,19 @@
 //! The thresholds of restoring, with their reasons.
 
-/// Coordinates are off by this part of the shape's size in files of six digits and in single precision: there is no less noise
-/// than that, and vertices that are nearer to where they should be stay bit by bit.
+/// Coordinates are off by this part of the shape's size in files of six digits and in single precision: there
+/// is no less noise than that, and vertices that are nearer to where they should be stay bit by bit.
 pub(super) const ROUNDING: f64 = 1e-6;
 
-/// How far a vertex may move: so many standard deviations of the noise, which it is off by once in sixteen thousand times in
-/// each coordinate,
+/// How far a vertex may move: so many standard deviations of the noise, which it is off by once in sixteen
+/// thousand times in each coordinate,
 pub(super) const MOST_NOISE_MOVE: f64 = 4.0;
 
-/// and this part of a mean edge, as borders that run along the mesh are off the curve where the surfaces meet.
+/// and this part of a mean edge, as borders that run along the mesh are off the curve where the surfaces
+/// meet.
 pub(super) const FREE_MOVE: f64 = 0.5;
 
-/// Vertices nearer to each other than this part of a mean edge would make a triangle vanish: one of them takes the corner.
+/// Vertices nearer to each other than this part of a mean edge would make a triangle vanish:
+/// one of them takes the corner.
 pub(super) const SAME_PLACE: f64 = 0.1;
 
 /// Rounds of relaxing at most. Folds of noise up to 0.3 of an edge are gone after five to thirty.
@@ -20,5 +22,6 @@ pub(super) const MOST_ROUNDS: usize = 200;
 /// Steps of the flow for free pieces at most; each doubles the time of the flow, so ten are a thousandfold.
 pub(super) const FLOW_STEPS: usize = 12;
 
-/// The fidelity of its first step, on a surface of area 1: it moves a scan of ten thousand vertices by a fraction of its noise.
+/// The fidelity of its first step, on a surface of area 1:
+/// it moves a scan of ten thousand vertices by a fraction of its noise.
 pub(super) const FLOW_FIDELITY: f64 = 1e7;

@@ -1,9 +1,9 @@
 //! Restoring: a noisy part put onto the planes, spheres, cylinders, cones and tori that it was made of.
 //!
-//! Segments ([`mod@super::segment`]) are labeled with surfaces by one energy ([`crate::labelling`]), which can be made parallel,
-//! orthogonal and equal ([`regularize`]); every vertex goes onto the surface of its faces, the curve of two, the corner of three
-//! ([`place`]); what no surface explains is denoised by the flow ([`free`]); then vertices move within surfaces and curves until
-//! no triangle is folded ([`relax`]).
+//! Segments ([`mod@super::segment`]) are labeled with surfaces by one energy ([`crate::labelling`]), which
+//! can be made parallel, orthogonal and equal ([`regularize`]); every vertex goes onto the surface of its
+//! faces, the curve of two, the corner of three ([`place`]); what no surface explains is denoised by the flow
+//! ([`free`]); then vertices move within surfaces and curves until no triangle is folded ([`relax`]).
 
 mod constants;
 mod free;
@@ -32,8 +32,8 @@ use place::Placement;
 /// Moves the vertices of `mesh` onto the surfaces that its faces were sampled from. Connectivity stays.
 ///
 /// # Errors
-/// [`MeshError::NoPositions`], [`MeshError::NoFaces`], arguments of the wrong shape or range, [`crate::Error::Cancelled`], and the
-/// errors of the solver.
+/// [`MeshError::NoPositions`], [`MeshError::NoFaces`], arguments of the wrong shape or range,
+/// [`crate::Error::Cancelled`], and the errors of the solver.
 pub fn restore(mesh: &Mesh, options: &RestoreOptions, progress: &Progress) -> Result<Restored> {
     options.check(mesh)?;
     let original = mesh.positions().ok_or(MeshError::NoPositions)?;
@@ -49,7 +49,8 @@ pub fn restore(mesh: &Mesh, options: &RestoreOptions, progress: &Progress) -> Re
     unit.restore_points(&mut found.vertices, start, original);
     let origin = working.place([0.0; 3]);
     for piece in &mut found.surfaces {
-        piece.surface = piece.surface.map(|surface| surface.placed(1.0, origin).placed(unit.restore(1.0), [0.0; 3]));
+        piece.surface =
+            piece.surface.map(|surface| surface.placed(1.0, origin).placed(unit.restore(1.0), [0.0; 3]));
         piece.rms = unit.restore(piece.rms);
     }
     found.noise = unit.restore(found.noise);
@@ -63,7 +64,11 @@ fn on(working: &Working<'_>, unit: Unit, options: &RestoreOptions, progress: &Pr
     let segments = segment(
         mesh,
         None,
-        &SegmentOptions { faces: options.faces.clone(), solve: options.segment_solve(), ..SegmentOptions::default() },
+        &SegmentOptions {
+            faces: options.faces.clone(),
+            solve: options.segment_solve(),
+            ..SegmentOptions::default()
+        },
         progress,
     )?;
     say(progress, 0.5, "surfaces");

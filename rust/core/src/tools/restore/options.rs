@@ -9,13 +9,14 @@ use crate::{Error, Result};
 /// How to restore.
 #[derive(Debug, Clone)]
 pub struct RestoreOptions {
-    /// How far a vertex may move at most, in the mesh's unit; where `None` four standard deviations of the noise and half a mean
-    /// edge. Vertices that would have to move farther go onto fewer of their surfaces, or stay.
+    /// How far a vertex may move at most, in the mesh's unit; where `None` four standard deviations of the
+    /// noise and half a mean edge. Vertices that would have to move farther go onto fewer of their surfaces,
+    /// or stay.
     pub max_move: Option<f64>,
     /// Standard deviation of the noise along the normal, in the mesh's unit; found in the mesh where `None`.
     pub noise: Option<f64>,
-    /// Degrees up to which directions count as parallel or orthogonal and are made so, and radii as equal in proportion. `None`:
-    /// surfaces stay as they were fitted.
+    /// Degrees up to which directions count as parallel or orthogonal and are made so, and radii as equal in
+    /// proportion. `None`: surfaces stay as they were fitted.
     pub regularize: Option<f64>,
     /// Whether pieces of no known kind are denoised by the flow; otherwise they stay.
     pub free: bool,
@@ -90,7 +91,8 @@ pub struct Restored {
     pub noise: f64,
     /// What was made parallel, orthogonal or equal, in words.
     pub relations: Vec<String>,
-    /// Vertices that would have had to move too far and are on fewer surfaces than their faces are, or where they were.
+    /// Vertices that would have had to move too far and are on fewer surfaces than their faces are,
+    /// or where they were.
     pub n_held: usize,
     /// Faces that are still folded over their surface.
     pub n_folded: usize,
@@ -103,7 +105,10 @@ impl RestoreOptions {
         let (n, m) = (mesh.connectivity().n_vertices(), mesh.connectivity().n_faces());
         for (name, value) in [("max_move", self.max_move), ("noise", self.noise)] {
             if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
-                return Err(Error::argument(name, format!("is {value}; it must be a positive length, or None")));
+                return Err(Error::argument(
+                    name,
+                    format!("is {value}; it must be a positive length, or None"),
+                ));
             }
         }
         if let Some(degrees) = self.regularize {
@@ -112,9 +117,10 @@ impl RestoreOptions {
         check_faces(self.faces.as_deref(), m)?;
         self.solve.settings()?;
         match &self.fixed {
-            Some(fixed) if fixed.len() != n => {
-                Err(Error::argument("fixed", format!("has {} entries, expected one per vertex: {n}", fixed.len())))
-            }
+            Some(fixed) if fixed.len() != n => Err(Error::argument(
+                "fixed",
+                format!("has {} entries, expected one per vertex: {n}", fixed.len()),
+            )),
             _ => Ok(()),
         }
     }

@@ -43,10 +43,17 @@ impl Placement {
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
-    pub(super) fn place(&mut self, domain: &Domain<'_>, state: &Labelling, progress: &Progress) -> Result<()> {
+    pub(super) fn place(
+        &mut self,
+        domain: &Domain<'_>,
+        state: &Labelling,
+        progress: &Progress,
+    ) -> Result<()> {
         progress.check()?;
-        let placed: Vec<(Point, usize)> =
-            (0..self.points.len()).into_par_iter().map(|v| self.nearest(domain, state, v, usize::MAX)).collect();
+        let placed: Vec<(Point, usize)> = (0..self.points.len())
+            .into_par_iter()
+            .map(|v| self.nearest(domain, state, v, usize::MAX))
+            .collect();
         let mut taken: HashMap<Vec<u32>, Vec<usize>> = HashMap::new();
         for (v, (point, kept)) in placed.into_iter().enumerate() {
             if !self.moves[v] {
@@ -69,7 +76,8 @@ impl Placement {
         Ok(())
     }
 
-    /// Leaves a corner that several vertices would share to the nearest, the others to the curves that lead there.
+    /// Leaves a corner that several vertices would share to the nearest,
+    /// the others to the curves that lead there.
     fn part(&mut self, domain: &Domain<'_>, state: &Labelling, mut vertices: Vec<usize>) {
         vertices.sort_by(|&v, &w| {
             let way = |v: usize| distance(self.points[v], domain.positions[v]);
@@ -89,7 +97,8 @@ impl Placement {
         }
     }
 
-    /// Where vertex `v` goes, on so many of its surfaces at most, and on how many: as many as are within reach.
+    /// Where vertex `v` goes, on so many of its surfaces at most, and on how many:
+    /// as many as are within reach.
     fn nearest(&self, domain: &Domain<'_>, state: &Labelling, v: usize, most: usize) -> (Point, usize) {
         let start = domain.positions[v];
         if !self.moves[v] {

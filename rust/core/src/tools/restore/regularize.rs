@@ -12,8 +12,8 @@ struct Direction {
     pieces: Vec<usize>,
 }
 
-/// Makes directions parallel and orthogonal that are so up to `tolerance` radians, and radii equal that differ by no more than
-/// that part; offsets and centers are fitted again. Returns what was done, in words.
+/// Makes directions parallel and orthogonal that are so up to `tolerance` radians, and radii equal that
+/// differ by no more than that part; offsets and centers are fitted again. Returns what was done, in words.
 pub(super) fn regularize(domain: &Domain<'_>, state: &mut Labelling, tolerance: f64) -> Vec<String> {
     let mut said = Vec::new();
     let mut directions = parallel(state, tolerance);
@@ -60,7 +60,8 @@ fn parallel(state: &Labelling, tolerance: f64) -> Vec<Direction> {
         match directions.iter_mut().find(|d| dot(d.axis, axis).abs() >= cosine) {
             Some(direction) => {
                 let along = if dot(direction.axis, axis) < 0.0 { -1.0 } else { 1.0 };
-                direction.axis = unit(add(scale(direction.axis, direction.weight), scale(axis, along * weight)));
+                direction.axis =
+                    unit(add(scale(direction.axis, direction.weight), scale(axis, along * weight)));
                 direction.weight += weight;
                 direction.pieces.push(k);
             }
@@ -70,8 +71,8 @@ fn parallel(state: &Labelling, tolerance: f64) -> Vec<Direction> {
     directions
 }
 
-/// Makes directions orthogonal: frames of three or two first, as near to all of them as can be, then what is orthogonal to a
-/// direction of a frame. Returns how many pairs are.
+/// Makes directions orthogonal: frames of three or two first, as near to all of them as can be, then what is
+/// orthogonal to a direction of a frame. Returns how many pairs are.
 fn orthogonal(directions: &mut [Direction], tolerance: f64) -> usize {
     let is_right = |a: Point, b: Point| dot(a, b).abs() <= tolerance.sin();
     let mut done: Vec<usize> = Vec::new();
@@ -88,16 +89,21 @@ fn orthogonal(directions: &mut [Direction], tolerance: f64) -> usize {
             }
         }
         // What was made orthogonal before stays: this frame's first direction gives way.
-        let held: Vec<Point> =
-            done.iter().map(|&j| directions[j].axis).filter(|&a| is_right(a, directions[first].axis)).collect();
+        let held: Vec<Point> = done
+            .iter()
+            .map(|&j| directions[j].axis)
+            .filter(|&a| is_right(a, directions[first].axis))
+            .collect();
         if held.is_empty() && frame.len() > 1 {
-            let axes: Vec<(Point, f64)> = frame.iter().map(|&k| (directions[k].axis, directions[k].weight)).collect();
+            let axes: Vec<(Point, f64)> =
+                frame.iter().map(|&k| (directions[k].axis, directions[k].weight)).collect();
             let new = nearest_frame(&axes);
             frame.iter().zip(new).for_each(|(&k, axis)| directions[k].axis = axis);
             pairs += frame.len() * (frame.len() - 1) / 2;
             done.extend(frame);
         } else if !held.is_empty() {
-            let axis = held.iter().take(2).fold(directions[first].axis, |a, &h| unit(sub(a, scale(h, dot(a, h)))));
+            let axis =
+                held.iter().take(2).fold(directions[first].axis, |a, &h| unit(sub(a, scale(h, dot(a, h)))));
             if norm(axis) > 0.5 {
                 directions[first].axis = axis;
                 pairs += held.len().min(2);
@@ -110,7 +116,8 @@ fn orthogonal(directions: &mut [Direction], tolerance: f64) -> usize {
     pairs
 }
 
-/// The orthonormal vectors nearest to two or three nearly orthogonal ones by weighted squares (Horn 1987, by small turns).
+/// The orthonormal vectors nearest to two or three nearly orthogonal ones by weighted squares (Horn 1987, by
+/// small turns).
 fn nearest_frame(axes: &[(Point, f64)]) -> Vec<Point> {
     let mut frame: Vec<Point> = Vec::new();
     for (axis, _) in axes {
@@ -191,7 +198,8 @@ fn slid(mut surface: Surface, samples: &Samples) -> Surface {
     surface
 }
 
-/// Radii of cylinders and spheres, weighted by faces, made equal where they differ by less than that part. Returns how many.
+/// Radii of cylinders and spheres, weighted by faces, made equal where they differ by less than that part.
+/// Returns how many.
 fn equal_radii(state: &mut Labelling, tolerance: f64) -> usize {
     let mut radii: Vec<(f64, f64, usize)> = Vec::new();
     for (k, piece) in state.pieces.iter().enumerate() {

@@ -1,4 +1,5 @@
-//! Vertices move within their surfaces and curves until no triangle is folded: noise along a surface folds triangles that lie on it.
+//! Vertices move within their surfaces and curves until no triangle is folded: noise along a surface folds
+//! triangles that lie on it.
 
 use super::constants::MOST_ROUNDS;
 use super::place::{surfaces, Placement};
@@ -28,11 +29,13 @@ pub(super) fn relax(
             is_rim[domain.connectivity.head(h) as usize] = true;
         }
     }
-    let slides = |v: usize, placement: &Placement| placement.moves[v] && !is_rim[v] && !placement.on[v].is_empty();
+    let slides =
+        |v: usize, placement: &Placement| placement.moves[v] && !is_rim[v] && !placement.on[v].is_empty();
     let mut active = vec![false; n];
     for _ in 0..MOST_ROUNDS {
         progress.check()?;
-        let bad: Vec<usize> = (0..state.labels.len()).filter(|&f| is_bad(domain, state, placement, f)).collect();
+        let bad: Vec<usize> =
+            (0..state.labels.len()).filter(|&f| is_bad(domain, state, placement, f)).collect();
         if bad.is_empty() || progress.is_finishing() {
             break;
         }

@@ -178,22 +178,23 @@ pub(super) const STRAIGHTEN_PASSES: usize = 2;
 
 // Regions between clear ridges.
 
-/// Noise of more than this part of a mean edge hides which edges are ridges: up to it the reveals of windows one edge deep are found to
-/// the face (of four walls and houses, 0.075 comes out as 0.08 to 0.09), and with 0.1 faces at blunt ridges go astray (dodecahedron).
+/// Noise of more than this part of a mean edge hides which edges are ridges: up to it the reveals of windows
+/// one edge deep are found to the face (of four walls and houses, 0.075 comes out as 0.08 to 0.09), and with
+/// 0.1 faces at blunt ridges go astray (dodecahedron).
 pub(super) const MOST_REGION_NOISE: f64 = 0.09;
 
-/// Normals are averaged over neighbors whose normals differ by about this, in so many rounds: noise of 0.05 of an edge turns
-/// neighbors by 0.15, and a quarter of that is left.
+/// Normals are averaged over neighbors whose normals differ by about this, in so many rounds: noise of 0.05
+/// of an edge turns neighbors by 0.15, and a quarter of that is left.
 pub(super) const ALIKE_NORMALS: f64 = 0.35;
 pub(super) const NORMAL_ROUNDS: usize = 3;
 
 /// Faces are of one region if their averaged normals differ by less.
 pub(super) const ONE_SIDE: f64 = 0.2;
 
-/// Regions are joined where the averaged normals turn by less than this along their border: the sides of prisms that stand for
-/// cylinders are no regions, from ten sides on.
+/// Regions are joined where the averaged normals turn by less than this along their border: the sides of
+/// prisms that stand for cylinders are no regions, from ten sides on.
 pub(super) const CLEAR_RIDGE: f64 = 0.6;
 
-/// At most this part of the length of clear ridges lies inside regions, which does not close: of eight built shapes under noise of up to
-/// 0.075 it was 0.011 at most, of seven characters 0.22 at least.
+/// At most this part of the length of clear ridges lies inside regions, which does not close: of eight built
+/// shapes under noise of up to 0.075 it was 0.011 at most, of seven characters 0.22 at least.
 pub(super) const MOST_OPEN_RIDGES: f64 = 0.05;

@@ -1,5 +1,5 @@
-//! Faces that lie on others with the same three vertices, as second lids do: segmented once, so that edges with three faces are no
-//! borders there.
+//! Faces that lie on others with the same three vertices, as second lids do: segmented once, so that edges
+//! with three faces are no borders there.
 
 use super::segmentation::Segmentation;
 use crate::mesh::{Connectivity, EdgeKind};

@@ -1,5 +1,5 @@
-//! How sharp the borders between segments are: the bend across each border edge, measured on both sides of it and corrected for
-//! the curvature inside the segments.
+//! How sharp the borders between segments are: the bend across each border edge, measured on both sides of it
+//! and corrected for the curvature inside the segments.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,8 @@ use super::walk::{Bend, Marks, Walk};
 pub(super) struct Border {
     pub labels: [u32; 2],
     pub length: f64,
-    /// The mean bend (the jump of the gradient, radians for positions) over the cost of a border there; more for a short contact.
+    /// The mean bend (the jump of the gradient, radians for positions) over the cost of a border there;
+    /// more for a short contact.
     pub strength: f64,
 }
 
@@ -32,8 +33,11 @@ impl Slopes {
         let n = surface.n_faces();
         let at_border: Vec<bool> = (0..n).into_par_iter().map(|f| surface.is_at_border(labels, f)).collect();
         let walk = Walk { slopes: self, surface, labels, at_border: &at_border };
-        let mut bends: Vec<Bend> =
-            edges.par_iter().with_min_len(64).map_init(|| Marks::new(n), |marks, &h| walk.bend(h, marks)).collect();
+        let mut bends: Vec<Bend> = edges
+            .par_iter()
+            .with_min_len(64)
+            .map_init(|| Marks::new(n), |marks, &h| walk.bend(h, marks))
+            .collect();
         bends.sort_by_key(|bend| bend.labels);
         let mut borders: Vec<Border> = bends.chunk_by(|a, b| a.labels == b.labels).map(Border::of).collect();
         let mut perimeters: BTreeMap<u32, f64> = BTreeMap::new();
@@ -44,7 +48,8 @@ impl Slopes {
         }
         for border in &mut borders {
             let perimeter = perimeters[&border.labels[0]].min(perimeters[&border.labels[1]]);
-            border.strength *= (self.least_contact * perimeter / border.length.max(f64::MIN_POSITIVE)).max(1.0);
+            border.strength *=
+                (self.least_contact * perimeter / border.length.max(f64::MIN_POSITIVE)).max(1.0);
         }
         borders
     }

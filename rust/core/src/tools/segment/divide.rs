@@ -1,8 +1,9 @@
 //! Dividing segments that lie across a ridge: where noise hides a ridge, basins of the indicator run over it.
 //!
-//! Two planes, or two curved patches, are fitted in turns with the assignment of faces to them, as variational shape approximation
-//! does (Cohen-Steiner et al. 2004), and must explain the segment better than one patch does, by the ratio of their likelihoods. So
-//! the strips of a cylinder, which one patch explains, stay together however coarse and noisy they are.
+//! Two planes, or two curved patches, are fitted in turns with the assignment of faces to them, as
+//! variational shape approximation does (Cohen-Steiner et al. 2004), and must explain the segment better than
+//! one patch does, by the ratio of their likelihoods. So the strips of a cylinder, which one patch explains,
+//! stay together however coarse and noisy they are.
 
 use std::collections::BTreeSet;
 
@@ -41,8 +42,8 @@ impl Model {
 }
 
 impl Divide<'_> {
-    /// Divides every segment that two sides explain better than one. Pieces that are not connected become segments of their own;
-    /// labels are contiguous then.
+    /// Divides every segment that two sides explain better than one. Pieces that are not connected become
+    /// segments of their own; labels are contiguous then.
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
@@ -82,9 +83,9 @@ impl Divide<'_> {
         })
     }
 
-    /// The second of two sides, planes or `curved`, that follow from how faces lean: those with positive `leanings` to it. Nothing
-    /// where they do not fit within the noise, bend little where they meet, or explain no more than the one patch that misses the
-    /// corners by `squares`.
+    /// The second of two sides, planes or `curved`, that follow from how faces lean: those with positive
+    /// `leanings` to it. Nothing where they do not fit within the noise, bend little where they meet, or
+    /// explain no more than the one patch that misses the corners by `squares`.
     fn halves(&self, faces: &[u32], leanings: &mut [f64], squares: f64, curved: bool) -> Option<Vec<u32>> {
         let kind = usize::from(curved);
         let mut turn = 0;
@@ -108,7 +109,8 @@ impl Divide<'_> {
             let left = [0, 1].map(|i| self.squares(&models[i], &sides[i]));
             let fits = (0..2).all(|i| left[i] <= (3 * sides[i].len()) as f64 * self.flat * self.flat);
             let stands = fits
-                && log_likelihood_ratio(squares - left[0] - left[1], self.deviation) > EVIDENCE_TO_DIVIDE[kind]
+                && log_likelihood_ratio(squares - left[0] - left[1], self.deviation)
+                    > EVIDENCE_TO_DIVIDE[kind]
                 && self.bend_between(&models, &sides) > self.bend;
             let [_, second] = sides;
             return stands.then_some(second);
@@ -155,8 +157,8 @@ impl Divide<'_> {
     }
 }
 
-/// The logarithm of the ratio of likelihoods of two models under noise of that deviation, where the squared distances of the corners
-/// of faces differ by `squares` in sum: a vertex is a corner of six faces.
+/// The logarithm of the ratio of likelihoods of two models under noise of that deviation, where the squared
+/// distances of the corners of faces differ by `squares` in sum: a vertex is a corner of six faces.
 pub(super) fn log_likelihood_ratio(squares: f64, deviation: f64) -> f64 {
     squares / (6.0 * 2.0 * deviation * deviation)
 }

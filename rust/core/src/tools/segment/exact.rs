@@ -1,10 +1,12 @@
-//! Shapes that were modeled, not measured: every vertex lies where it should, and a side may be two triangles.
+//! Shapes that were modeled, not measured: every vertex lies where it should,
+//! and a side may be two triangles.
 //!
-//! The Hessian needs some rows of faces to tell a side from noise. Where the shape is exact there is no noise: faces in one plane are
-//! one side, and the angle between two planes is known from one edge.
+//! The Hessian needs some rows of faces to tell a side from noise. Where the shape is exact there is no
+//! noise: faces in one plane are one side, and the angle between two planes is known from one edge.
 
 use super::constants::{
-    COORDINATE_ROUNDING, FEW_FACES, FLAT_SHARE, LEAST_INSIDE, MOST_TURN_IN_A_PLANE, SINGLE_PRECISION, SLIVER_ROUNDINGS,
+    COORDINATE_ROUNDING, FEW_FACES, FLAT_SHARE, LEAST_INSIDE, MOST_TURN_IN_A_PLANE, SINGLE_PRECISION,
+    SLIVER_ROUNDINGS,
 };
 use super::surface::{contiguous, Surface};
 use crate::mesh::partition::Partition;
@@ -18,8 +20,8 @@ pub(super) struct Planes {
     pub normals: Vec<Point>,
 }
 
-/// The planes of a shape that is exact and has sides too coarse for the Hessian, where borders are none if the unit normals
-/// differ by less than `bend`; nothing for any other shape.
+/// The planes of a shape that is exact and has sides too coarse for the Hessian, where borders are none if
+/// the unit normals differ by less than `bend`; nothing for any other shape.
 pub(super) fn coarse_planes(surface: &Surface<'_>, bend: f64) -> Option<Planes> {
     let facets = Facets::new(surface);
     let edges = facets.turns();
@@ -85,7 +87,9 @@ impl<'a> Facets<'a> {
             let [a, b] = [1, 2].map(|k| self.surface.positions[face[(i + k) % 3] as usize]);
             (distance(a, b), 3 * f + i)
         };
-        [length(1), length(2)].into_iter().fold(length(0), |most, held| if held.0 > most.0 { held } else { most })
+        [length(1), length(2)]
+            .into_iter()
+            .fold(length(0), |most, held| if held.0 > most.0 { held } else { most })
     }
 
     /// All edges between faces that have normals.
@@ -100,7 +104,11 @@ impl<'a> Facets<'a> {
             let turn = distance(self.normals[f], self.normals[g]);
             // Rounding turns a face by as much over its height.
             let rounded = self.rounding * (1.0 / self.height(h) + 1.0 / self.height(twin));
-            Some(Turn { faces: [f as u32, g as u32], turn, is_flat: turn < (4.0 * rounded).min(MOST_TURN_IN_A_PLANE) })
+            Some(Turn {
+                faces: [f as u32, g as u32],
+                turn,
+                is_flat: turn < (4.0 * rounded).min(MOST_TURN_IN_A_PLANE),
+            })
         };
         connectivity.edges().filter_map(turn).collect()
     }
@@ -113,7 +121,8 @@ impl<'a> Facets<'a> {
         (2.0 * norm(self.surface.vector_area(h / 3)) / length).max(f64::MIN_POSITIVE)
     }
 
-    /// The faces joined over the edges that `joins`, slivers with the neighbor at their longest edge: a label for each, from 0.
+    /// The faces joined over the edges that `joins`, slivers with the neighbor at their longest edge:
+    /// a label for each, from 0.
     fn joined(&self, edges: &[Turn], joins: impl Fn(&Turn) -> bool) -> Vec<u32> {
         let n = self.surface.n_faces();
         let mut partition = Partition::new(n);
@@ -125,7 +134,8 @@ impl<'a> Facets<'a> {
         contiguous(&roots).0
     }
 
-    /// Joins each sliver with the neighbor at its longest edge, or where that leads to slivers only, at another one.
+    /// Joins each sliver with the neighbor at its longest edge, or where that leads to slivers only,
+    /// at another one.
     fn place_slivers(&self, partition: &mut Partition) {
         let mut placed: Vec<bool> = self.slivers.iter().map(|sliver| !sliver).collect();
         let mut left: Vec<usize> = (0..placed.len()).filter(|&f| !placed[f]).collect();
@@ -164,7 +174,11 @@ mod tests {
     #[test]
     fn coarse_exact_sides_are_planes() {
         for n in 1..=3 {
-            assert_eq!(planes(&shapes::cube(n).rotated([0.3, -1.0, 0.7], 0.8).mesh().unwrap()), Some(6), "{n}");
+            assert_eq!(
+                planes(&shapes::cube(n).rotated([0.3, -1.0, 0.7], 0.8).mesh().unwrap()),
+                Some(6),
+                "{n}"
+            );
         }
         assert_eq!(planes(&shapes::tetrahedron().mesh().unwrap()), Some(4));
     }

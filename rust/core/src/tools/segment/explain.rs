@@ -36,7 +36,8 @@ struct Segments {
 }
 
 impl Explain<'_> {
-    /// Gives segments to the larger neighbors that explain them, the smallest first. Labels are contiguous then.
+    /// Gives segments to the larger neighbors that explain them, the smallest first.
+    /// Labels are contiguous then.
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
@@ -73,7 +74,8 @@ impl Explain<'_> {
         let surface = self.surface;
         let members = members(labels);
         let area = |faces: &Vec<u32>| faces.iter().map(|&f| surface.areas[f as usize]).sum();
-        let plane = |faces: &Vec<u32>| Plane::through(surface, faces).filter(|plane| plane.spread <= self.flat);
+        let plane =
+            |faces: &Vec<u32>| Plane::through(surface, faces).filter(|plane| plane.spread <= self.flat);
         let mut borders: BTreeMap<(u32, u32), f64> = BTreeMap::new();
         for f in 0..labels.len() {
             let may = |g: usize| self.regions.is_none_or(|regions| regions[g] == regions[f]);
@@ -91,8 +93,11 @@ impl Explain<'_> {
 
     /// The larger neighbor that explains the segment `own`, that with the longest border of several.
     fn home(&self, labels: &[u32], segments: &Segments, own: u32) -> Option<u32> {
-        let around: Vec<(u32, f64)> =
-            segments.borders.range((own, 0)..=(own, u32::MAX)).map(|(&(_, to), &length)| (to, length)).collect();
+        let around: Vec<(u32, f64)> = segments
+            .borders
+            .range((own, 0)..=(own, u32::MAX))
+            .map(|(&(_, to), &length)| (to, length))
+            .collect();
         let (faces, area) = (&segments.members[own as usize], segments.areas[own as usize]);
         let is_small = faces.len() <= self.most_faces;
         let explains = |to: u32| match &segments.planes[to as usize] {
@@ -104,14 +109,16 @@ impl Explain<'_> {
         home.map(|(to, _)| *to)
     }
 
-    /// Whether `faces` lie on the plane of a neighbor, on the side that it shows; if `enclosed` by it, on any.
+    /// Whether `faces` lie on the plane of a neighbor, on the side that it shows; if `enclosed` by it,
+    /// on any.
     fn lies_on(&self, plane: &Plane, faces: &[u32], area: f64, enclosed: bool) -> bool {
         let surface = self.surface;
         let (mut vector, mut squares) = ([0.0; 3], 0.0);
         for &f in faces {
             vector = add(vector, surface.vector_area(f as usize));
             for v in surface.connectivity.faces()[f as usize] {
-                squares += surface.areas[f as usize] / 3.0 * plane.distance(surface.positions[v as usize]).powi(2);
+                squares +=
+                    surface.areas[f as usize] / 3.0 * plane.distance(surface.positions[v as usize]).powi(2);
             }
         }
         let tolerance =
@@ -119,12 +126,15 @@ impl Explain<'_> {
         (enclosed || dot(vector, plane.normal()) > 0.0) && squares <= area * tolerance * tolerance
     }
 
-    /// Whether `faces` and those of the segment `to` around them are one curved patch as well as they are two.
+    /// Whether `faces` and those of the segment `to` around them are one curved patch as well as they are
+    /// two.
     fn continues(&self, labels: &[u32], faces: &[u32], to: u32) -> bool {
         let around = self.around(labels, faces, to);
         let joint: Vec<u32> = faces.iter().chain(&around).copied().collect();
         match [&joint, faces, &around].map(|faces| self.squares_off_patch(faces)) {
-            [Some(one), Some(a), Some(b)] => log_likelihood_ratio(one - a - b, self.deviation) < EVIDENCE_TO_KEEP,
+            [Some(one), Some(a), Some(b)] => {
+                log_likelihood_ratio(one - a - b, self.deviation) < EVIDENCE_TO_KEEP
+            }
             _ => true,
         }
     }

@@ -35,7 +35,8 @@ impl Hierarchy {
         self
     }
 
-    /// The same for a mesh of which only some faces took part: face `i` of this hierarchy is face `faces[i]` there, of `n_faces`.
+    /// The same for a mesh of which only some faces took part:
+    /// face `i` of this hierarchy is face `faces[i]` there, of `n_faces`.
     pub(in crate::tools) fn spread(mut self, faces: &[u32], n_faces: usize) -> Self {
         let mut leaves = vec![u32::MAX; n_faces];
         for (&face, leaf) in faces.iter().zip(&self.leaves) {
@@ -48,7 +49,8 @@ impl Hierarchy {
     /// The same for faces that are each one of those here, `faces[i]`. Segments without a face are none.
     pub(in crate::tools) fn picked(&self, faces: &[u32]) -> Self {
         let picked: Vec<u32> = faces.iter().map(|&f| self.leaves[f as usize]).collect();
-        // The fresh name of each segment that is there, which moves on to the segment that it becomes part of.
+        // The fresh name of each segment that is there,
+        // which moves on to the segment that it becomes part of.
         let mut name = vec![u32::MAX; self.n_leaves];
         let mut count = 0;
         let leaves: Vec<u32> = picked
@@ -75,7 +77,8 @@ impl Hierarchy {
         there
     }
 
-    /// Most and fewest segments that there can be: those of the finest segmentation, and one for each connected part.
+    /// Most and fewest segments that there can be: those of the finest segmentation,
+    /// and one for each connected part.
     #[must_use]
     pub fn range(&self) -> [usize; 2] {
         [self.n_leaves, self.n_leaves - self.merges.len()]
@@ -87,8 +90,9 @@ impl Hierarchy {
         &self.strengths
     }
 
-    /// The segmentation with `n_segments` segments, or the nearest number that there is: a label for every face, from 0 in the order
-    /// of their first faces, −1 for faces that took no part. Nested: with fewer segments, borders only vanish.
+    /// The segmentation with `n_segments` segments, or the nearest number that there is: a label for every
+    /// face, from 0 in the order of their first faces, −1 for faces that took no part. Nested: with fewer
+    /// segments, borders only vanish.
     ///
     /// # Errors
     /// [`Error::Argument`] for no segments at all.
@@ -101,9 +105,11 @@ impl Hierarchy {
         for &[kept, gone] in self.merges[..count].iter().rev() {
             name[gone as usize] = name[kept as usize];
         }
-        let used: Vec<u32> = self.leaves.iter().filter(|l| **l != u32::MAX).map(|&l| name[l as usize]).collect();
+        let used: Vec<u32> =
+            self.leaves.iter().filter(|l| **l != u32::MAX).map(|&l| name[l as usize]).collect();
         let mut renamed = contiguous(&used).0.into_iter();
-        let label = |leaf: &u32| if *leaf == u32::MAX { -1 } else { renamed.next().map_or(-1, u32::cast_signed) };
+        let label =
+            |leaf: &u32| if *leaf == u32::MAX { -1 } else { renamed.next().map_or(-1, u32::cast_signed) };
         Ok(self.leaves.iter().map(label).collect())
     }
 }

@@ -1,4 +1,5 @@
-//! The alternating minimization of the Ambrosio-Tortorelli functional with the L1 Hessian (Rowe et al. 2024, eq. (41)).
+//! The alternating minimization of the Ambrosio-Tortorelli functional with the L1 Hessian (Rowe et al. 2024,
+//! eq. (41)).
 
 use super::constants::{LEAST_WEIGHT, MOST_ALTERNATIONS, NOISE_ATTEMPTS, NOISE_POWER, NOISE_TOLERANCE};
 use super::indicator_step::IndicatorStep;
@@ -21,7 +22,8 @@ pub(super) struct Functional<'a> {
     pub face_costs: &'a [f64],
     /// `α` to start with.
     pub fidelity: f64,
-    /// The noise that the fidelity follows: it falls until `u` differs from `u₀` by as much. `None` keeps the fidelity.
+    /// The noise that the fidelity follows: it falls until `u` differs from `u₀` by as much.
+    /// `None` keeps the fidelity.
     pub noise: Option<f64>,
     /// The values of `ε`, one after the other.
     pub epsilons: Vec<f64>,
@@ -46,7 +48,8 @@ pub(super) struct Minimizer {
 }
 
 impl Functional<'_> {
-    /// Minimizes Rowe et al. 2024, eq. (25), in matrices eq. (41), for every `ε` in turn, starting each from the last.
+    /// Minimizes Rowe et al. 2024, eq. (25), in matrices eq. (41), for every `ε` in turn,
+    /// starting each from the last.
     ///
     /// # Errors
     /// A failed factorization, or [`crate::Error::Cancelled`].
@@ -89,7 +92,8 @@ impl Functional<'_> {
         Ok(HessianPattern::new(connectivity).assemble(connectivity, lengths, Dual::Barycentric)?)
     }
 
-    /// The minimizer over `v` alone, for the last `ε` and the values as they are: where nothing is to be smoothed.
+    /// The minimizer over `v` alone, for the last `ε` and the values as they are:
+    /// where nothing is to be smoothed.
     ///
     /// # Errors
     /// A failed factorization, or [`crate::Error::Cancelled`].
@@ -124,8 +128,8 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Lowers the fidelity, still without any border, until `u` differs from `u₀` by the noise (Morozov's principle). Without
-    /// it the first `v` would take the noise for borders and keep it.
+    /// Lowers the fidelity, still without any border, until `u` differs from `u₀` by the noise (Morozov's
+    /// principle). Without it the first `v` would take the noise for borders and keep it.
     fn follow_noise(&mut self) -> Result<()> {
         let Some(noise) = self.functional.noise else { return Ok(()) };
         for attempt in 0..NOISE_ATTEMPTS {
@@ -181,8 +185,12 @@ impl Run<'_> {
 
     fn mean_squared_change(&self, v: &[f64]) -> f64 {
         let areas = &self.functional.surface.areas;
-        let sum: f64 =
-            v.iter().zip(&self.reached.indicator).zip(areas).map(|((a, b), area)| area * (a - b) * (a - b)).sum();
+        let sum: f64 = v
+            .iter()
+            .zip(&self.reached.indicator)
+            .zip(areas)
+            .map(|((a, b), area)| area * (a - b) * (a - b))
+            .sum();
         sum / self.total.max(f64::MIN_POSITIVE)
     }
 

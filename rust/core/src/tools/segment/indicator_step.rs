@@ -6,8 +6,8 @@ use crate::linear::pattern::LowerPattern;
 use crate::operators::face_laplacian_weights;
 use crate::Result;
 
-/// `v ← argmin vᵀ (diag ‖(H u)_f‖ + λ ε L + λ/(4ε) M_F) v − λ/(2ε) 1ᵀ M_F v` (Rowe et al. 2024, supplement E), for one `ε`
-/// after the other. `λ` is times a cost for each face, and for each edge the mean of both.
+/// `v ← argmin vᵀ (diag ‖(H u)_f‖ + λ ε L + λ/(4ε) M_F) v − λ/(2ε) 1ᵀ M_F v` (Rowe et al. 2024, supplement
+/// E), for one `ε` after the other. `λ` is times a cost for each face, and for each edge the mean of both.
 pub(super) struct IndicatorStep {
     cholesky: Cholesky,
     /// `λ` times the cost and the area of each face.

@@ -30,8 +30,8 @@ pub(super) struct Merging<'a> {
 }
 
 impl Merging<'_> {
-    /// Merges across borders weaker than `threshold`, weakest first, and measures them again as segments grow. `labels` become the
-    /// names of the segments that are kept.
+    /// Merges across borders weaker than `threshold`, weakest first, and measures them again as segments
+    /// grow. `labels` become the names of the segments that are kept.
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
@@ -82,7 +82,8 @@ impl Merging<'_> {
         Ok(borders)
     }
 
-    /// Gives every segment of fewer than `least` faces to the neighbor behind its weakest border, smallest first.
+    /// Gives every segment of fewer than `least` faces to the neighbor behind its weakest border,
+    /// smallest first.
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
@@ -142,8 +143,8 @@ pub(super) fn rename(labels: &mut [u32], merges: &[Merge]) {
     }
 }
 
-/// Removes borders weaker than `threshold`, weakest first; borders that two segments had with a third become one, with their
-/// mean strength by length.
+/// Removes borders weaker than `threshold`, weakest first; borders that two segments had with a third become
+/// one, with their mean strength by length.
 pub(super) fn greedy(borders: &[Border], threshold: f64) -> Vec<Merge> {
     let mut around: BTreeMap<u32, BTreeMap<u32, (f64, f64)>> = BTreeMap::new();
     let mut heap = BinaryHeap::new();

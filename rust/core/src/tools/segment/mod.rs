@@ -1,12 +1,13 @@
 //! Segmentation: the faces that a person would name, with clean borders (Rowe et al. 2024, section 7.5).
 //!
-//! [`indicator`] minimizes the functional (41), whose `v` is low at borders. From there on the paper's way is [`threshold`]; the
-//! other one ([`passes`]) is [`watershed`], then merging across borders that bend little ([`crease`], [`merge`]), dividing what lies across a
-//! ridge ([`divide`]), joining what a neighbor explains ([`explain`]), and moving faces at borders
-//! to the segment that they fit best ([`relabel`]), or, between curved segments, along creases ([`straighten`]). Sides of a few
-//! triangles, which the Hessian cannot see, are told by their planes ([`exact`]), those of a few rows under little noise by the clear
-//! ridges around them ([`regions`]). In any case a [`hierarchy`] of nested segmentations comes with it. Faces split at T-junctions
-//! ([`split`]) and [`copies`] of faces are given back as the mesh has them.
+//! [`indicator`] minimizes the functional (41), whose `v` is low at borders. From there on the paper's way is
+//! [`threshold`]; the other one ([`passes`]) is [`watershed`], then merging across borders that bend little
+//! ([`crease`], [`merge`]), dividing what lies across a ridge ([`divide`]), joining what a neighbor explains
+//! ([`explain`]), and moving faces at borders to the segment that they fit best ([`relabel`]), or, between
+//! curved segments, along creases ([`straighten`]). Sides of a few triangles, which the Hessian cannot see,
+//! are told by their planes ([`exact`]), those of a few rows under little noise by the clear ridges around
+//! them ([`regions`]). In any case a [`hierarchy`] of nested segmentations comes with it. Faces split at
+//! T-junctions ([`split`]) and [`copies`] of faces are given back as the mesh has them.
 
 mod constants;
 mod copies;
@@ -58,16 +59,18 @@ use normalized::Normalized;
 use passes::Passes;
 use surface::{contiguous, Surface};
 
-/// Divides the faces of `mesh` into segments on which `values`, or without them the vertex positions, are nearly affine.
+/// Divides the faces of `mesh` into segments on which `values`, or without them the vertex positions,
+/// are nearly affine.
 ///
-/// Minimizes `α ‖u − u₀‖²_M + Σ_f v_f² ‖(H u)_f‖ + λ ε vᵀ L v + λ/(4ε) ‖1 − v‖²_{M_F}` (Rowe et al. 2024, eq. (41)) in turns over `u` and
-/// `v`, with `ε` halved down, and makes segments from `v`: see [`SegmentMethod`].
+/// Minimizes `α ‖u − u₀‖²_M + Σ_f v_f² ‖(H u)_f‖ + λ ε vᵀ L v + λ/(4ε) ‖1 − v‖²_{M_F}` (Rowe et al. 2024, eq.
+/// (41)) in turns over `u` and `v`, with `ε` halved down, and makes segments from `v`: see [`SegmentMethod`].
 ///
-/// Faces are oriented first, and for a shape its seams joined ([`Working`]), T-junctions too ([`TJunctions`]).
+/// Faces are oriented first, and for a shape its seams joined ([`Working`]),
+/// T-junctions too ([`TJunctions`]).
 ///
 /// # Errors
-/// [`MeshError::NoPositions`], [`MeshError::NoFaces`], arguments of the wrong shape or range, [`crate::Error::Cancelled`], and the errors of
-/// the solver.
+/// [`MeshError::NoPositions`], [`MeshError::NoFaces`], arguments of the wrong shape or range,
+/// [`crate::Error::Cancelled`], and the errors of the solver.
 pub fn segment(
     mesh: &Mesh,
     values: Option<&Columns>,
@@ -125,7 +128,12 @@ fn given_back(working: &Working<'_>, values: Option<&Columns>, found: Segmentati
 }
 
 /// Segments a mesh as it is.
-fn on(mesh: &Mesh, values: Option<&Columns>, options: &SegmentOptions, progress: &Progress) -> Result<Segmentation> {
+fn on(
+    mesh: &Mesh,
+    values: Option<&Columns>,
+    options: &SegmentOptions,
+    progress: &Progress,
+) -> Result<Segmentation> {
     let settings = Settings { announce: false, ..options.solve.settings()? };
     let n_columns = values.map_or(3, |values| values.n_columns);
     let length = mesh.unit();
@@ -140,9 +148,11 @@ fn on(mesh: &Mesh, values: Option<&Columns>, options: &SegmentOptions, progress:
             .admit(options.solve.memory_limit)?;
         match without.as_ref().or(options.faces.as_ref()) {
             None => whole(&mesh, values.as_deref(), options, &settings, progress),
-            Some(faces) => part::segment_part(&mesh, values.as_deref(), faces, options, |mesh, values, options| {
-                whole(mesh, values, options, &settings, progress)
-            }),
+            Some(faces) => {
+                part::segment_part(&mesh, values.as_deref(), faces, options, |mesh, values, options| {
+                    whole(mesh, values, options, &settings, progress)
+                })
+            }
         }
     })?;
     if let Some(copies) = &copies {
@@ -174,7 +184,8 @@ fn whole(
         return Err(MeshError::NoFaces.into());
     }
     let signal = values.map(Normalized::of);
-    let start = signal.as_ref().map_or_else(|| Columns::from_points(&surface.positions), |s| s.values.clone());
+    let start =
+        signal.as_ref().map_or_else(|| Columns::from_points(&surface.positions), |s| s.values.clone());
     let plain = values.is_none() && options.fidelity.is_none() && options.method == SegmentMethod::Fitted;
     let exact = if plain { coarse_planes(&surface, BEND * options.length_weight) } else { None };
     let is_exact = exact.is_some();

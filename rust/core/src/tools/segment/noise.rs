@@ -4,16 +4,16 @@ use super::surface::Surface;
 use crate::linear::Columns;
 use crate::operators::Hinge;
 
-/// The median of the length of a standard normal vector, by its number of entries (1 to 4; the square root of the median of a
-/// chi-squared variable).
+/// The median of the length of a standard normal vector, by its number of entries (1 to 4; the square root of
+/// the median of a chi-squared variable).
 const MEDIAN_LENGTH: [f64; 4] = [0.674_490, 1.177_410, 1.538_172, 1.832_125];
 
-/// The standard deviation of the noise on `values`, with `degrees` independent directions of it: the noise of positions shows
-/// along the normal only, 1.
+/// The standard deviation of the noise on `values`, with `degrees` independent directions of it: the noise of
+/// positions shows along the normal only, 1.
 ///
-/// Across an edge the gradient of an affine function does not jump; independent noise makes it jump by the noise times the
-/// norm of the four coefficients. The median over all edges does not see borders (Rousseeuw and Croux 1993). Smooth curvature
-/// counts as noise where the mesh resolves it no better.
+/// Across an edge the gradient of an affine function does not jump; independent noise makes it jump by the
+/// noise times the norm of the four coefficients. The median over all edges does not see borders (Rousseeuw
+/// and Croux 1993). Smooth curvature counts as noise where the mesh resolves it no better.
 pub(super) fn noise_level(surface: &Surface<'_>, values: &Columns, degrees: usize) -> f64 {
     let connectivity = surface.connectivity;
     let mut ratios = Vec::new();
@@ -23,8 +23,12 @@ pub(super) fn noise_level(surface: &Surface<'_>, values: &Columns, degrees: usiz
             continue;
         }
         let jump = Hinge::new(&surface.lengths, &surface.areas, h, twin).jump();
-        let vertices =
-            [connectivity.tail(h), connectivity.head(h), connectivity.opposite(h), connectivity.opposite(twin)];
+        let vertices = [
+            connectivity.tail(h),
+            connectivity.head(h),
+            connectivity.opposite(h),
+            connectivity.opposite(twin),
+        ];
         let squared: f64 = (0..values.n_columns)
             .map(|c| {
                 let column = values.column(c);

@@ -2,7 +2,8 @@
 
 use crate::linear::Columns;
 
-/// A signal shifted and scaled so that its widest column has a range of 1: weights then mean the same for every signal.
+/// A signal shifted and scaled so that its widest column has a range of 1:
+/// weights then mean the same for every signal.
 pub(super) struct Normalized {
     pub values: Columns,
     low: Vec<f64>,

@@ -12,8 +12,8 @@ use crate::{Error, Result};
 /// How segments are made from the indicator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SegmentMethod {
-    /// Watershed by persistence, merging across borders that bend by less than the length weight, and border faces moved to
-    /// the segment that they fit best.
+    /// Watershed by persistence, merging across borders that bend by less than the length weight, and border
+    /// faces moved to the segment that they fit best.
     #[default]
     Fitted,
     /// Cuts below a threshold, and small pieces merged by majority (Rowe et al. 2024, supplement E).
@@ -25,11 +25,11 @@ pub enum SegmentMethod {
 pub struct SegmentOptions {
     /// How segments are made from the indicator.
     pub method: SegmentMethod,
-    /// `λ`, what a border costs per length. A crease that bends by more (radians; for other signals the jump of the slope, with the
-    /// signal's range and the shape's size as 1) is worth a border.
+    /// `λ`, what a border costs per length. A crease that bends by more (radians; for other signals the jump
+    /// of the slope, with the signal's range and the shape's size as 1) is worth a border.
     pub length_weight: f64,
-    /// `α`. Without it as the noise found in the signal wants it; for [`SegmentMethod::Paper`] 1000. With it even modeled shapes of a
-    /// few faces a side are smoothed, which otherwise go by their planes.
+    /// `α`. Without it as the noise found in the signal wants it; for [`SegmentMethod::Paper`] 1000. With it
+    /// even modeled shapes of a few faces a side are smoothed, which otherwise go by their planes.
     pub fidelity: Option<f64>,
     /// `ε` at the start.
     pub epsilon_start: f64,
@@ -39,8 +39,8 @@ pub struct SegmentOptions {
     pub inner_tolerance: f64,
     /// For [`SegmentMethod::Paper`]: edges with a lower indicator are cut.
     pub cut_threshold: f64,
-    /// Segments of fewer faces are merged. Without it 20, or where [`SegmentMethod::Fitted`] finds less noise down to
-    /// 4; none for modeled shapes of a few faces a side.
+    /// Segments of fewer faces are merged. Without it 20, or where [`SegmentMethod::Fitted`] finds less noise
+    /// down to 4; none for modeled shapes of a few faces a side.
     pub min_faces: Option<usize>,
     /// How many segments are wanted; as many as the length weight makes where `None`.
     pub n_segments: Option<usize>,
@@ -48,7 +48,8 @@ pub struct SegmentOptions {
     pub scale: Scale,
     /// What borders cost in each face, 1 neutral, smaller where they are welcome.
     pub face_weights: Option<Vec<f64>>,
-    /// What borders cost along each edge, one row a face, column `i` opposite corner `i`; the mean of both faces' entries counts.
+    /// What borders cost along each edge, one row a face, column `i` opposite corner `i`;
+    /// the mean of both faces' entries counts.
     pub edge_weights: Option<Vec<[f64; 3]>>,
     /// The faces to segment; all where `None`.
     pub faces: Option<Vec<bool>>,
@@ -106,7 +107,8 @@ impl SegmentOptions {
         let Some(values) = values else { return Ok(()) };
         values.check("values", n)?;
         if values.n_columns > MAX_JOINT_COLUMNS {
-            let problem = format!("has {} columns, at most {MAX_JOINT_COLUMNS} are possible", values.n_columns);
+            let problem =
+                format!("has {} columns, at most {MAX_JOINT_COLUMNS} are possible", values.n_columns);
             return Err(Error::argument("values", problem));
         }
         Ok(())

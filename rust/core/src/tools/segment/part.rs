@@ -7,8 +7,8 @@ use crate::linear::Columns;
 use crate::mesh::Mesh;
 use crate::Result;
 
-/// Runs `segment` on the mesh of the faces in `mask` and puts its result into the whole one: other faces have the label −1 and
-/// the indicator 1, other vertices keep their values.
+/// Runs `segment` on the mesh of the faces in `mask` and puts its result into the whole one: other faces have
+/// the label −1 and the indicator 1, other vertices keep their values.
 ///
 /// # Errors
 /// [`MeshError::NoPositions`], and what `segment` returns.

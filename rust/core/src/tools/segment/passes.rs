@@ -1,4 +1,5 @@
-//! The passes from the indicator to segments and their hierarchy, each with what it takes from the options and the noise.
+//! The passes from the indicator to segments and their hierarchy,
+//! each with what it takes from the options and the noise.
 
 use super::constants::{BEND, BEND_SHARES, MOST_LEAST_FACES, NOISY, PERSISTENCE, PLANE_EDGE, PLANE_NOISE};
 use super::divide::Divide;
@@ -52,7 +53,8 @@ impl<'a> Passes<'a> {
         Merging { surface: self.surface, slopes, groups: None, progress: self.progress }
     }
 
-    /// The segments to begin with: planes, or pieces between low indicators, divided where a ridge runs through them.
+    /// The segments to begin with: planes, or pieces between low indicators,
+    /// divided where a ridge runs through them.
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
@@ -99,10 +101,12 @@ impl<'a> Passes<'a> {
         Ok(labels)
     }
 
-    /// How many faces a segment must have: twenty where the noise is a tenth of an edge, down to a fifth of that where there is less.
+    /// How many faces a segment must have: twenty where the noise is a tenth of an edge, down to a fifth of
+    /// that where there is less.
     fn least_faces(&self) -> usize {
         let noise = self.noise / self.surface.mean_edge;
-        let share = if self.options.method == SegmentMethod::Paper { 1.0 } else { (noise / NOISY).clamp(0.2, 1.0) };
+        let share =
+            if self.options.method == SegmentMethod::Paper { 1.0 } else { (noise / NOISY).clamp(0.2, 1.0) };
         self.options.min_faces.unwrap_or((share * MOST_LEAST_FACES).round() as usize)
     }
 
@@ -112,7 +116,8 @@ impl<'a> Passes<'a> {
         [self.noise.max(least), (PLANE_NOISE * self.noise).max(least)]
     }
 
-    /// The regions between clear ridges of a shape; none of shapes that are planes already, and of other signals.
+    /// The regions between clear ridges of a shape; none of shapes that are planes already,
+    /// and of other signals.
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
@@ -144,7 +149,15 @@ impl<'a> Passes<'a> {
     fn explanation(&self, curved: bool, regions: Option<&'a [u32]>) -> Explain<'a> {
         let [deviation, flat] = self.deviations();
         let most_faces = patch_size(self.noise / self.surface.mean_edge);
-        Explain { surface: self.surface, deviation, flat, most_faces, curved, regions, progress: self.progress }
+        Explain {
+            surface: self.surface,
+            deviation,
+            flat,
+            most_faces,
+            curved,
+            regions,
+            progress: self.progress,
+        }
     }
 
     fn groups(&self) -> Option<&'a [u32]> {
@@ -175,7 +188,8 @@ impl<'a> Passes<'a> {
             }
         }
         let [_, flat] = self.deviations();
-        let straighten = self.is_shape.then(|| Straighten::new(self.surface, flat, self.groups(), self.progress));
+        let straighten =
+            self.is_shape.then(|| Straighten::new(self.surface, flat, self.groups(), self.progress));
         if let Some(straighten) = &straighten {
             straighten.run(labels)?;
             relabel.rejoin(labels);
@@ -202,9 +216,14 @@ impl<'a> Passes<'a> {
         Ok(())
     }
 
-    /// The finest segments are the pieces of `leaves` inside the segments `labels`; they merge to those, and those to one for each
-    /// connected part.
-    pub(super) fn hierarchy(&self, merging: &Merging<'_>, leaves: &[u32], labels: &[u32]) -> Result<Hierarchy> {
+    /// The finest segments are the pieces of `leaves` inside the segments `labels`; they merge to those, and
+    /// those to one for each connected part.
+    pub(super) fn hierarchy(
+        &self,
+        merging: &Merging<'_>,
+        leaves: &[u32],
+        labels: &[u32],
+    ) -> Result<Hierarchy> {
         self.report(0.98, "hierarchy");
         let (finest, n_leaves) = self.nested_leaves(leaves, labels);
         let mut current = finest.clone();
@@ -219,7 +238,8 @@ impl<'a> Passes<'a> {
         Ok(Hierarchy::new(finest, n_leaves, merges).ascending())
     }
 
-    /// Each leaf belongs to the segment that has most of its faces; faces elsewhere go to the nearest leaf of their own segment.
+    /// Each leaf belongs to the segment that has most of its faces;
+    /// faces elsewhere go to the nearest leaf of their own segment.
     fn nested_leaves(&self, leaves: &[u32], labels: &[u32]) -> (Vec<u32>, usize) {
         let n_leaves = leaves.iter().map(|l| *l as usize + 1).max().unwrap_or(0);
         let mut pairs: Vec<(u32, u32)> = leaves.iter().copied().zip(labels.iter().copied()).collect();

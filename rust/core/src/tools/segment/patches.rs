@@ -1,4 +1,5 @@
-//! What a segment would look like at a face if it went on there: a plane, or a quadratic function fitted to its faces nearby.
+//! What a segment would look like at a face if it went on there: a plane,
+//! or a quadratic function fitted to its faces nearby.
 
 use super::constants::{MOST_NEARBY, NEARBY, NEARBY_OF_NOISE, PATCH_STIFFNESS};
 use super::surface::Surface;
@@ -62,7 +63,8 @@ impl Plane {
     }
 }
 
-/// A function `1, s, t, s², st, t²` over the tangent plane of a patch: its height, or the columns of a signal.
+/// A function `1, s, t, s², st, t²` over the tangent plane of a patch: its height,
+/// or the columns of a signal.
 pub(super) struct Patch {
     frame: Frame,
     /// For each column of the signal the coefficients; for the height one.
@@ -70,7 +72,8 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// The fit to the corners of `faces`; without `signal` of their height, else of the signal. `None` where there is no area.
+    /// The fit to the corners of `faces`; without `signal` of their height, else of the signal.
+    /// `None` where there is no area.
     pub(super) fn fit(surface: &Surface<'_>, faces: &[u32], signal: Option<&Columns>) -> Option<Self> {
         let mut normal = [0.0; 3];
         let mut origin = [0.0; 3];
@@ -98,7 +101,8 @@ impl Patch {
         Some(Self { frame, coefficients: squares.solve(1e-9, PATCH_STIFFNESS) })
     }
 
-    /// How far vertex `v` lies off the continued patch: a distance, or the norm over the columns of the signal.
+    /// How far vertex `v` lies off the continued patch: a distance,
+    /// or the norm over the columns of the signal.
     pub(super) fn misfit(&self, surface: &Surface<'_>, v: usize, signal: Option<&Columns>) -> f64 {
         match signal {
             None => self.frame.distance(&self.coefficients[0], surface.positions[v]).abs(),
@@ -131,8 +135,9 @@ impl Patch {
     }
 }
 
-/// The `count` faces of the segment of `start` that are nearest to it in steps over edges. Those at the border may be in the wrong
-/// segment and are left out, unless they are most of those nearby. `seen` marks faces by `stamp`.
+/// The `count` faces of the segment of `start` that are nearest to it in steps over edges. Those at the
+/// border may be in the wrong segment and are left out, unless they are most of those nearby. `seen` marks
+/// faces by `stamp`.
 pub(super) fn nearby(
     surface: &Surface<'_>,
     labels: &[u32],

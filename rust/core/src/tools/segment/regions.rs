@@ -1,12 +1,14 @@
-//! Regions between clear ridges: sides of a few rows of faces, as the reveals of windows, which the Hessian cannot see and which hold
-//! parallel sides apart.
+//! Regions between clear ridges: sides of a few rows of faces, as the reveals of windows, which the Hessian
+//! cannot see and which hold parallel sides apart.
 //!
-//! Where the noise is a small part of an edge, the normals of faces, averaged over neighbors that are alike, tell on which edges the
-//! surface turns sharply. What closed lines of such edges enclose is segmented by itself: a plane, a curved side, or more of them.
-//! That a shape is made of such sides is a hypothesis, and is tested for each connected part: its clear ridges must close. Those of
-//! characters end in smooth places.
+//! Where the noise is a small part of an edge, the normals of faces, averaged over neighbors that are alike,
+//! tell on which edges the surface turns sharply. What closed lines of such edges enclose is segmented by
+//! itself: a plane, a curved side, or more of them. That a shape is made of such sides is a hypothesis, and
+//! is tested for each connected part: its clear ridges must close. Those of characters end in smooth places.
 
-use super::constants::{ALIKE_NORMALS, CLEAR_RIDGE, MOST_OPEN_RIDGES, MOST_REGION_NOISE, NORMAL_ROUNDS, ONE_SIDE};
+use super::constants::{
+    ALIKE_NORMALS, CLEAR_RIDGE, MOST_OPEN_RIDGES, MOST_REGION_NOISE, NORMAL_ROUNDS, ONE_SIDE,
+};
 use super::crease::Border;
 use super::explain::Explain;
 use super::merge::{greedy, rename};
@@ -24,8 +26,8 @@ pub(super) struct Regions {
 }
 
 impl Regions {
-    /// The regions of a shape whose noise has this standard deviation; nothing where that hides ridges, or where there is only one
-    /// region for each connected part. `explain` says which are noise on a neighbor.
+    /// The regions of a shape whose noise has this standard deviation; nothing where that hides ridges, or
+    /// where there is only one region for each connected part. `explain` says which are noise on a neighbor.
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
@@ -40,7 +42,9 @@ impl Regions {
         let normals = averaged(surface);
         let mut partition = Partition::new(surface.n_faces());
         for f in 0..surface.n_faces() {
-            for (_, g) in surface.around(f).filter(|&(_, g)| g > f && distance(normals[f], normals[g]) < ONE_SIDE) {
+            for (_, g) in
+                surface.around(f).filter(|&(_, g)| g > f && distance(normals[f], normals[g]) < ONE_SIDE)
+            {
                 partition.unite(f as u32, g as u32);
             }
         }
@@ -62,7 +66,13 @@ impl Regions {
     }
 
     /// Of each connected part whether nearly all of its clear ridges are borders of regions.
-    fn closed_parts(&self, surface: &Surface<'_>, labels: &[u32], parts: &[u32], n_parts: usize) -> Vec<bool> {
+    fn closed_parts(
+        &self,
+        surface: &Surface<'_>,
+        labels: &[u32],
+        parts: &[u32],
+        n_parts: usize,
+    ) -> Vec<bool> {
         let (mut open, mut total) = (vec![0.0; n_parts], vec![0.0; n_parts]);
         for f in 0..labels.len() {
             for (h, g) in surface.around(f).filter(|&(_, g)| g > f) {
@@ -76,7 +86,8 @@ impl Regions {
         open.iter().zip(&total).map(|(open, total)| *open <= MOST_OPEN_RIDGES * total).collect()
     }
 
-    /// Joins segments where the surface turns by less than `bend` on average along their border, the least turn first.
+    /// Joins segments where the surface turns by less than `bend` on average along their border,
+    /// the least turn first.
     pub(super) fn join(&self, surface: &Surface<'_>, labels: &mut [u32], bend: f64) {
         let merges = greedy(&self.borders(surface, labels), bend);
         rename(labels, &merges);
@@ -102,7 +113,8 @@ impl Regions {
     }
 }
 
-/// Unit normals averaged over neighbors, by areas and by how alike they are: bilateral filtering (Zheng et al. 2011).
+/// Unit normals averaged over neighbors, by areas and by how alike they are:
+/// bilateral filtering (Zheng et al. 2011).
 fn averaged(surface: &Surface<'_>) -> Vec<Point> {
     let mut normals: Vec<Point> = (0..surface.n_faces()).map(|f| unit(surface.vector_area(f))).collect();
     for _ in 0..NORMAL_ROUNDS {

@@ -1,13 +1,14 @@
 //! Moving faces at borders to the segment that they fit best, with straight borders.
 //!
-//! Minimizes `Σ_f misfit(f, label) + Σ_border edges length` over the labels of the faces at borders, face by face, as variational
-//! shape approximation does (Cohen-Steiner et al. 2004) with the length of the borders added (Potts 1952, Besag 1986).
+//! Minimizes `Σ_f misfit(f, label) + Σ_border edges length` over the labels of the faces at borders, face by
+//! face, as variational shape approximation does (Cohen-Steiner et al. 2004) with the length of the borders
+//! added (Potts 1952, Besag 1986).
 
 use std::collections::BTreeMap;
 
 use super::constants::{
-    EDGE_COST, LEAST_NOISE, LEAST_NOISE_OF_VALUES, LEAST_TURN, MOST_MISFIT, PLANE_EDGE, PLANE_NOISE, RELABEL_ROUNDS,
-    RELABEL_SWEEPS, STRAY_OF_NOISE,
+    EDGE_COST, LEAST_NOISE, LEAST_NOISE_OF_VALUES, LEAST_TURN, MOST_MISFIT, PLANE_EDGE, PLANE_NOISE,
+    RELABEL_ROUNDS, RELABEL_SWEEPS, STRAY_OF_NOISE,
 };
 use super::patches::{nearby, patch_size, Patch, Plane};
 use super::surface::{pieces, Surface};
@@ -46,7 +47,8 @@ struct Round<'a, 'b> {
 }
 
 impl Relabel<'_> {
-    /// Moves faces until none wants to move. Segments may vanish, and fall into pieces that are segments then.
+    /// Moves faces until none wants to move. Segments may vanish,
+    /// and fall into pieces that are segments then.
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
@@ -101,12 +103,13 @@ impl Relabel<'_> {
 
     fn border_cost(&self, labels: &[u32], f: usize, label: u32) -> f64 {
         let edges = self.surface.around(f).filter(|&(_, g)| labels[g] != label);
-        let cost: f64 = edges.map(|(h, _)| self.surface.lengths[f][h % 3] * self.surface.costs[f][h % 3]).sum();
+        let cost: f64 =
+            edges.map(|(h, _)| self.surface.lengths[f][h % 3] * self.surface.costs[f][h % 3]).sum();
         EDGE_COST * cost / self.surface.mean_edge.max(f64::MIN_POSITIVE)
     }
 
-    /// Gives every small piece of a segment but its largest to the neighbor with which it has the longest border; other pieces
-    /// become segments of their own.
+    /// Gives every small piece of a segment but its largest to the neighbor with which it has the longest
+    /// border; other pieces become segments of their own.
     pub(super) fn rejoin(&self, labels: &mut [u32]) {
         loop {
             let (piece, count) = pieces(self.surface, labels);
@@ -183,7 +186,8 @@ impl<'a, 'b> Round<'a, 'b> {
                 }
             }
         }
-        let least = if relabel.signal.is_none() { LEAST_NOISE * surface.mean_edge } else { LEAST_NOISE_OF_VALUES };
+        let least =
+            if relabel.signal.is_none() { LEAST_NOISE * surface.mean_edge } else { LEAST_NOISE_OF_VALUES };
         Self {
             relabel,
             labels,
@@ -232,7 +236,8 @@ impl<'a, 'b> Round<'a, 'b> {
             if let Some(&start) = ring.iter().find(|&&g| self.labels[g] == label) {
                 return Some(start);
             }
-            let next: Vec<usize> = ring.iter().flat_map(|&g| self.relabel.surface.around(g).map(|(_, g)| g)).collect();
+            let next: Vec<usize> =
+                ring.iter().flat_map(|&g| self.relabel.surface.around(g).map(|(_, g)| g)).collect();
             ring = next;
         }
         None

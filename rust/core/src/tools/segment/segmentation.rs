@@ -14,7 +14,8 @@ pub struct Segmentation {
     pub n_segments: usize,
     /// `v`: near 1 inside segments, near 0 at borders, one for each face; 1 for faces that took no part.
     pub indicator: Vec<f64>,
-    /// `u`: the signal with borders sharpened, in the units of the input; for positions the sharpened surface.
+    /// `u`: the signal with borders sharpened, in the units of the input;
+    /// for positions the sharpened surface.
     pub values: Columns,
     /// The vertices of the edges between segments.
     pub boundary_edges: Vec<[u32; 2]>,
@@ -41,5 +42,9 @@ pub(in crate::tools) fn boundary_edges(mesh: &Mesh, labels: &[i32]) -> Vec<[u32;
             a != b && a >= 0 && b >= 0
         })
     };
-    connectivity.edges().filter(|&h| between(h)).map(|h| [connectivity.tail(h), connectivity.head(h)]).collect()
+    connectivity
+        .edges()
+        .filter(|&h| between(h))
+        .map(|h| [connectivity.tail(h), connectivity.head(h)])
+        .collect()
 }

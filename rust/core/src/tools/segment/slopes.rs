@@ -8,12 +8,13 @@ use crate::mesh::vector::Point;
 
 /// What bends across borders, face by face: the gradients of a function, or the normals of the surface.
 ///
-/// Normals of a shape and gradients of its coordinates jump by the same length, but vector areas add up to what their outline has
-/// and forget the noise inside; unfolded gradients do not know a fold from its mirror image.
+/// Normals of a shape and gradients of its coordinates jump by the same length, but vector areas add up to
+/// what their outline has and forget the noise inside; unfolded gradients do not know a fold from its mirror
+/// image.
 pub(super) struct Slopes {
     pub n_columns: usize,
-    /// For each face and column, the gradient in the frame of [`triangle::layout`]; for a shape the normal, as two rows that do not
-    /// turn with frames.
+    /// For each face and column, the gradient in the frame of [`triangle::layout`]; for a shape the normal,
+    /// as two rows that do not turn with frames.
     pub gradients: Vec<[f64; 2]>,
     pub is_shape: bool,
     /// Means over the faces.
@@ -49,7 +50,8 @@ impl Slopes {
         }
     }
 
-    /// An exact shape whose faces have the normals of their planes: one edge tells the angle between two of them.
+    /// An exact shape whose faces have the normals of their planes:
+    /// one edge tells the angle between two of them.
     pub(super) fn of_planes(surface: &Surface<'_>, normals: &[Point]) -> Self {
         let gradients = normals.iter().flat_map(|&[x, y, z]| [[x, y], [z, 0.0]]).collect();
         Self { gradients, reach: 0.0, least_contact: 0.0, ..Self::of_shape(surface, 0.0) }

@@ -5,8 +5,8 @@ use super::segmentation::{boundary_edges, Segmentation};
 use super::surface::contiguous;
 use crate::mesh::{triangle, Mesh, SplitFaces};
 
-/// The options for the parts of faces: what was asked for a face holds for its parts, and for an edge too; a border through a face costs
-/// as much as its edges do on average.
+/// The options for the parts of faces: what was asked for a face holds for its parts, and for an edge too; a
+/// border through a face costs as much as its edges do on average.
 pub(super) fn options_of_parts(split: &SplitFaces, options: &SegmentOptions) -> SegmentOptions {
     let of_edge = |weights: &Vec<[f64; 3]>, f: usize| {
         let own = weights[split.parent[f] as usize];
@@ -14,8 +14,14 @@ pub(super) fn options_of_parts(split: &SplitFaces, options: &SegmentOptions) -> 
         split.edge[f].map(|h| h.map_or(mean, |h| own[h as usize % 3]))
     };
     SegmentOptions {
-        face_weights: options.face_weights.as_ref().map(|w| split.parent.iter().map(|&f| w[f as usize]).collect()),
-        edge_weights: options.edge_weights.as_ref().map(|w| (0..split.parent.len()).map(|f| of_edge(w, f)).collect()),
+        face_weights: options
+            .face_weights
+            .as_ref()
+            .map(|w| split.parent.iter().map(|&f| w[f as usize]).collect()),
+        edge_weights: options
+            .edge_weights
+            .as_ref()
+            .map(|w| (0..split.parent.len()).map(|f| of_edge(w, f)).collect()),
         faces: options.faces.as_ref().map(|mask| split.parent.iter().map(|&f| mask[f as usize]).collect()),
         ..options.clone()
     }
@@ -34,11 +40,14 @@ pub(super) fn of_whole_faces(split: &SplitFaces, mesh: &Mesh, found: Segmentatio
     }
     let hierarchy = found.hierarchy.picked(&largest);
     let picked: Vec<i32> = largest.iter().map(|&f| found.labels[f as usize]).collect();
-    let used: Vec<u32> = picked.iter().filter(|label| **label >= 0).map(|label| label.cast_unsigned()).collect();
+    let used: Vec<u32> =
+        picked.iter().filter(|label| **label >= 0).map(|label| label.cast_unsigned()).collect();
     let (renamed, n_segments) = contiguous(&used);
     let mut renamed = renamed.into_iter();
-    let labels: Vec<i32> =
-        picked.iter().map(|&label| if label < 0 { -1 } else { renamed.next().map_or(-1, u32::cast_signed) }).collect();
+    let labels: Vec<i32> = picked
+        .iter()
+        .map(|&label| if label < 0 { -1 } else { renamed.next().map_or(-1, u32::cast_signed) })
+        .collect();
     Segmentation {
         boundary_edges: boundary_edges(mesh, &labels),
         labels,

@@ -1,7 +1,9 @@
-//! Short borders along creases: the minimum cut of a band around each border (the fuzzy cuts of Katz and Tal 2003).
+//! Short borders along creases: the minimum cut of a band around each border (the fuzzy cuts of Katz and Tal
+//! 2003).
 //!
-//! Fits say little about where smoothly curved segments part, and leave teeth. There a border is worth its length, less where the
-//! surface bends, and least where it is hollow (the minima rule, Hoffman and Richards 1984).
+//! Fits say little about where smoothly curved segments part, and leave teeth. There a border is worth its
+//! length, less where the surface bends, and least where it is hollow (the minima rule, Hoffman and Richards
+//! 1984).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,11 +28,21 @@ pub(super) struct Straighten<'a> {
 }
 
 impl<'a> Straighten<'a> {
-    /// Measures all edges. Normals are those of a face and its neighbors together, so that noise does not count as creases.
-    pub(super) fn new(surface: &'a Surface<'a>, flat: f64, regions: Option<&'a [u32]>, progress: &'a Progress) -> Self {
+    /// Measures all edges. Normals are those of a face and its neighbors together,
+    /// so that noise does not count as creases.
+    pub(super) fn new(
+        surface: &'a Surface<'a>,
+        flat: f64,
+        regions: Option<&'a [u32]>,
+        progress: &'a Progress,
+    ) -> Self {
         let normals: Vec<Point> = (0..surface.n_faces())
             .map(|f| {
-                unit(surface.around(f).fold(surface.vector_area(f), |sum, (_, g)| add(sum, surface.vector_area(g))))
+                unit(
+                    surface
+                        .around(f)
+                        .fold(surface.vector_area(f), |sum, (_, g)| add(sum, surface.vector_area(g))),
+                )
             })
             .collect();
         let bend = |f: usize, g: usize| {
@@ -54,14 +66,15 @@ impl<'a> Straighten<'a> {
         Self { surface, flat, costs, regions, progress }
     }
 
-    /// Moves the borders between segments that are no planes; those of planes are where the planes meet. No segment vanishes, but
-    /// some may fall apart. Labels are contiguous then.
+    /// Moves the borders between segments that are no planes; those of planes are where the planes meet. No
+    /// segment vanishes, but some may fall apart. Labels are contiguous then.
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
     pub(super) fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
-        let is_curved =
-            |faces: &Vec<u32>| Plane::through(self.surface, faces).is_none_or(|plane| plane.spread > self.flat);
+        let is_curved = |faces: &Vec<u32>| {
+            Plane::through(self.surface, faces).is_none_or(|plane| plane.spread > self.flat)
+        };
         let curved: Vec<bool> = members(labels).iter().map(is_curved).collect();
         for _ in 0..STRAIGHTEN_PASSES {
             let mut borders: BTreeMap<[u32; 2], Vec<u32>> = BTreeMap::new();
@@ -120,12 +133,16 @@ impl<'a> Straighten<'a> {
 
     /// The faces of two segments around their border, each with its row, from 0 at the border.
     fn band(&self, labels: &[u32], pair: [u32; 2], faces: &[u32]) -> BTreeMap<u32, usize> {
-        let mut row: BTreeSet<u32> = faces.iter().copied().filter(|f| pair.contains(&labels[*f as usize])).collect();
+        let mut row: BTreeSet<u32> =
+            faces.iter().copied().filter(|f| pair.contains(&labels[*f as usize])).collect();
         let mut rows: BTreeMap<u32, usize> = row.iter().map(|f| (*f, 0)).collect();
         for depth in 1..=BAND_ROWS {
             let beside = |f: &u32| {
                 let label = labels[*f as usize];
-                self.surface.around(*f as usize).map(|(_, g)| g as u32).filter(move |g| labels[*g as usize] == label)
+                self.surface
+                    .around(*f as usize)
+                    .map(|(_, g)| g as u32)
+                    .filter(move |g| labels[*g as usize] == label)
             };
             row = row.iter().flat_map(beside).filter(|g| !rows.contains_key(g)).collect();
             rows.extend(row.iter().map(|f| (*f, depth)));
@@ -150,7 +167,9 @@ mod tests {
         let mut labels: Vec<u32> =
             (0..surface.n_faces()).map(|f| side(f, if f % 3 == 0 { 0.15 } else { 0.0 })).collect();
         let length = |labels: &[u32]| -> usize {
-            (0..labels.len()).map(|f| surface.around(f).filter(|(_, g)| labels[*g] != labels[f]).count()).sum()
+            (0..labels.len())
+                .map(|f| surface.around(f).filter(|(_, g)| labels[*g] != labels[f]).count())
+                .sum()
         };
         let before = length(&labels);
         Straighten::new(&surface, 0.0, None, &Progress::new()).run(&mut labels).unwrap();

@@ -28,7 +28,12 @@ pub(super) struct Surface<'a> {
 
 impl<'a> Surface<'a> {
     /// The surface with all lengths divided by `unit`.
-    pub(super) fn new(connectivity: &'a Connectivity, positions: &[[f64; 3]], unit: f64, costs: Vec<[f64; 3]>) -> Self {
+    pub(super) fn new(
+        connectivity: &'a Connectivity,
+        positions: &[[f64; 3]],
+        unit: f64,
+        costs: Vec<[f64; 3]>,
+    ) -> Self {
         let positions: Vec<[f64; 3]> = positions.iter().map(|p| p.map(|x| x / unit)).collect();
         let mut lengths = edge_lengths(connectivity.faces(), &positions);
         mollify(connectivity, &mut lengths);
@@ -39,8 +44,9 @@ impl<'a> Surface<'a> {
         let neighbors = (0..connectivity.n_faces())
             .map(|f| [0, 1, 2].map(|i| connectivity.twin(3 * f + i).map_or(NONE, |twin| (twin / 3) as u32)))
             .collect();
-        let (sum, count) =
-            connectivity.edges().fold((0.0, 0_usize), |(sum, count), h| (sum + lengths[h / 3][h % 3], count + 1));
+        let (sum, count) = connectivity
+            .edges()
+            .fold((0.0, 0_usize), |(sum, count), h| (sum + lengths[h / 3][h % 3], count + 1));
         Self {
             centroids: connectivity.faces().iter().map(centroid).collect(),
             connectivity,
@@ -60,7 +66,11 @@ impl<'a> Surface<'a> {
 
     /// The faces next to `f`, each with the halfedge of `f` that leads there.
     pub(super) fn around(&self, f: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
-        self.neighbors[f].iter().enumerate().filter(|(_, g)| **g != NONE).map(move |(i, g)| (3 * f + i, *g as usize))
+        self.neighbors[f]
+            .iter()
+            .enumerate()
+            .filter(|(_, g)| **g != NONE)
+            .map(move |(i, g)| (3 * f + i, *g as usize))
     }
 
     /// Whether a neighbor of `f` has another label.

@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::surface::{contiguous, Surface};
 
-/// Cuts the mesh along the edges where the mean of the indicator over both faces is below `threshold`, and merges the pieces of
-/// fewer than `min_faces` faces into the neighbor with which they share most edges, smallest first. Returns contiguous labels
-/// and how many there are.
+/// Cuts the mesh along the edges where the mean of the indicator over both faces is below `threshold`, and
+/// merges the pieces of fewer than `min_faces` faces into the neighbor with which they share most edges,
+/// smallest first. Returns contiguous labels and how many there are.
 ///
 /// Source: Rowe et al. 2024, supplement E.
 pub(super) fn cut_and_merge(

@@ -1,4 +1,5 @@
-//! Averages on both sides of a border edge: walking away from it over the faces of a segment, unfolded into the plane.
+//! Averages on both sides of a border edge: walking away from it over the faces of a segment,
+//! unfolded into the plane.
 
 use super::constants::{MOST_SLOPE_ERROR, STEP_DOUBT, STRAY_OF_NOISE};
 use super::slopes::Slopes;
@@ -93,13 +94,14 @@ impl Walk<'_> {
         let p = self.slopes.layouts[f];
         let (tail, head) = (p[(h + 1) % 3], p[(h + 2) % 3]);
         let length = surface.lengths[f][h % 3].max(f64::MIN_POSITIVE);
-        // The frame of the edge: its middle at the origin, y along it, x out of the face f, to the right of the halfedge.
+        // The frame of the edge: its middle at the origin, y along it, x out of the face f,
+        // to the right of the halfedge.
         let along = [(head[0] - tail[0]) / length, (head[1] - tail[1]) / length];
         let rotation = times([0.0, 1.0], [along[0], -along[1]]);
         let middle = times(rotation, [0.5 * (tail[0] + head[0]), 0.5 * (tail[1] + head[1])]);
         let home = Motion { rotation, shift: [-middle[0], -middle[1]] };
-        let [from, to] =
-            [surface.connectivity.tail(h), surface.connectivity.head(h)].map(|v| surface.positions[v as usize]);
+        let [from, to] = [surface.connectivity.tail(h), surface.connectivity.head(h)]
+            .map(|v| surface.positions[v as usize]);
         let place = [0, 1, 2].map(|c| 0.5 * (from[c] + to[c]));
         let inner = self.side(f, home, place, marks);
         let outer = self.side(g, self.across(h, home), place, marks);
@@ -128,8 +130,8 @@ impl Walk<'_> {
         Motion { rotation, shift: [to[0] - from[0], to[1] - from[1]] }
     }
 
-    /// Averages over the faces with the label of `start` near the origin. The faces at the border itself may lie on the wrong side
-    /// of it: they count only where there is nothing else.
+    /// Averages over the faces with the label of `start` near the origin. The faces at the border itself may
+    /// lie on the wrong side of it: they count only where there is nothing else.
     fn side(&self, start: usize, motion: Motion, place: [f64; 3], marks: &mut Marks) -> Side {
         let mut side = Side::EMPTY;
         let reach = self.slopes.reach;
@@ -168,8 +170,8 @@ impl Walk<'_> {
         }
     }
 
-    /// What makes a mean of the sum over a side: its area, or for shapes the length of the vector area, so that rough sides, where
-    /// normals cancel, have unit normals too.
+    /// What makes a mean of the sum over a side: its area, or for shapes the length of the vector area, so
+    /// that rough sides, where normals cancel, have unit normals too.
     fn weight(&self, side: &Side) -> f64 {
         if !self.slopes.is_shape {
             return side.area;
@@ -178,15 +180,16 @@ impl Walk<'_> {
         squared.sqrt().max(0.1 * side.area)
     }
 
-    /// How large a step noise may feign: the means of the sides are those of as many values as they have faces.
+    /// How large a step noise may feign: the means of the sides are those of as many values as they have
+    /// faces.
     fn doubt(&self, inner: &Side, outer: &Side) -> f64 {
         let face = self.surface.mean_edge * self.surface.mean_edge;
         let columns = (self.slopes.n_columns as f64).sqrt();
         STEP_DOUBT * columns * self.slopes.noise * (face / inner.area + face / outer.area).sqrt()
     }
 
-    /// Where the centroid of face `f` is in the frame of the edge; for shapes its distance in space from the middle of the edge,
-    /// `place`, since unfolded noise makes ways longer.
+    /// Where the centroid of face `f` is in the frame of the edge; for shapes its distance in space from the
+    /// middle of the edge, `place`, since unfolded noise makes ways longer.
     fn center(&self, f: usize, motion: Motion, place: [f64; 3]) -> [f64; 2] {
         if self.slopes.is_shape {
             return [distance(self.surface.centroids[f], place), 0.0];
@@ -222,8 +225,8 @@ impl Walk<'_> {
         }
     }
 
-    /// The jump of the gradient from one side to the other, less what the curvature of the sides explains, and the step of the
-    /// values where they may have one.
+    /// The jump of the gradient from one side to the other, less what the curvature of the sides explains,
+    /// and the step of the values where they may have one.
     fn jump(&self, inner: &Side, outer: &Side) -> f64 {
         if inner.area <= 0.0 || outer.area <= 0.0 {
             return 0.0;
@@ -255,8 +258,9 @@ struct AtBorder {
 }
 
 impl Side {
-    /// Whether the regression of the gradient on the distance says anything, where gradients of single faces stray by `stray`: a side
-    /// of one row of faces does not, and the slope of a few noisy faces explains any jump.
+    /// Whether the regression of the gradient on the distance says anything, where gradients of single faces
+    /// stray by `stray`: a side of one row of faces does not, and the slope of a few noisy faces explains any
+    /// jump.
     fn knows_slope(&self, stray: f64) -> bool {
         let mean_x = self.far_x / self.far_area;
         let variance = self.far_xx / self.far_area - mean_x * mean_x;

@@ -1,10 +1,12 @@
-//! Watershed by persistence on the dual graph (Edelsbrunner, Letscher and Zomorodian 2002; Couprie and Bertrand 1997).
+//! Watershed by persistence on the dual graph (Edelsbrunner, Letscher and Zomorodian 2002; Couprie and
+//! Bertrand 1997).
 
 use super::surface::{contiguous, Surface};
 use crate::mesh::partition::Partition;
 
-/// Floods the faces from the maxima of `indicator` downwards; two basins stay apart only if the pass between them lies deeper than
-/// `persistence` under the lower of their maxima. Returns a label for every face, from 0, and how many there are.
+/// Floods the faces from the maxima of `indicator` downwards; two basins stay apart only if the pass between
+/// them lies deeper than `persistence` under the lower of their maxima. Returns a label for every face, from
+/// 0, and how many there are.
 pub(super) fn watershed(surface: &Surface<'_>, indicator: &[f64], persistence: f64) -> (Vec<u32>, usize) {
     let m = surface.n_faces();
     let mut order: Vec<u32> = (0..m as u32).collect();

@@ -11,7 +11,8 @@ const FLAT: f64 = 2.0 / 180.0 * std::f64::consts::PI;
 /// Edges with less than this angle are soft to the eye, whatever the shading (radians; 20 degrees).
 const SOFT: f64 = 20.0 / 180.0 * std::f64::consts::PI;
 
-/// The least part of the area that a facet has which one would count: a sixtieth of the width of a square picture, squared.
+/// The least part of the area that a facet has which one would count:
+/// a sixtieth of the width of a square picture, squared.
 const SEEN: f64 = 3e-4;
 
 /// What the angles at the edges of a shape say about it.
@@ -21,9 +22,11 @@ pub struct Flatness {
     pub flat_share: f64,
     /// The part of the bend `Σ length · angle` that lies in edges of less than twenty degrees.
     pub soft_share: f64,
-    /// The part of the area in planes of two and more faces, that is, whose faces meet at less than two degrees.
+    /// The part of the area in planes of two and more faces, that is,
+    /// whose faces meet at less than two degrees.
     pub plane_share: f64,
-    /// Parts whose faces meet at less than two degrees and that have at least 3e-4 of the area: facets that one would count.
+    /// Parts whose faces meet at less than two degrees and that have at least 3e-4 of the area:
+    /// facets that one would count.
     pub n_facets: usize,
 }
 
@@ -33,7 +36,8 @@ impl Flatness {
     pub fn of(connectivity: &Connectivity, points: &[[f64; 3]]) -> Self {
         let faces = connectivity.faces();
         let corners = |f: usize| faces[f].map(|v| points[v as usize]);
-        let vectors: Vec<_> = (0..faces.len()).into_par_iter().map(|f| vector::area_vector(corners(f))).collect();
+        let vectors: Vec<_> =
+            (0..faces.len()).into_par_iter().map(|f| vector::area_vector(corners(f))).collect();
         let areas: Vec<f64> = vectors.iter().map(|&n| vector::norm(n)).collect();
         let total: f64 = areas.iter().sum();
         let mut is_flat = vec![true; faces.len()];
@@ -45,7 +49,8 @@ impl Flatness {
             if areas[f] <= 0.0 || areas[g] <= 0.0 {
                 continue;
             }
-            let angle = angle_between(vectors[f], vectors[g], connectivity.tail(h) == connectivity.tail(mate));
+            let angle =
+                angle_between(vectors[f], vectors[g], connectivity.tail(h) == connectivity.tail(mate));
             let [a, b] = [connectivity.tail(h), connectivity.head(h)].map(|v| points[v as usize]);
             let bent = vector::distance(a, b) * angle;
             bend += bent;
@@ -66,7 +71,8 @@ impl Flatness {
             sizes[root] += area;
             counts[root] += 1;
         }
-        let planes: f64 = sizes.iter().zip(&counts).filter(|(_, count)| **count > 1).map(|(size, _)| size).sum();
+        let planes: f64 =
+            sizes.iter().zip(&counts).filter(|(_, count)| **count > 1).map(|(size, _)| size).sum();
         let flat: f64 = areas.iter().zip(&is_flat).filter(|(_, is)| **is).map(|(area, _)| area).sum();
         let part = |of: f64, whole: f64| if whole > 0.0 { of / whole } else { 0.0 };
         Self {
@@ -78,8 +84,8 @@ impl Flatness {
     }
 }
 
-/// The angle between two normals of any length, exact for tiny ones; `reversed` where their faces run along their edge the
-/// same way, so that one of the normals points to the other side.
+/// The angle between two normals of any length, exact for tiny ones; `reversed` where their faces run along
+/// their edge the same way, so that one of the normals points to the other side.
 fn angle_between(a: vector::Point, b: vector::Point, reversed: bool) -> f64 {
     let b = if reversed { vector::scale(b, -1.0) } else { b };
     vector::norm(vector::cross(a, b)).atan2(vector::dot(a, b))

@@ -24,23 +24,25 @@ use crate::solve::{solve, Coupling, Problem, Session, Settings, Solution, Solver
 use crate::unit::Unit;
 use crate::Result;
 
-/// A step that moves the vertices by less than this part of the shape's size (root mean square) moves nothing.
+/// A step that moves the vertices by less than this part of the shape's size (root mean square) moves
+/// nothing.
 const STILL: f64 = 1e-7;
 
-/// A shape has collapsed when its size has fallen below this part of what it was, or its area below the tenth of that.
+/// A shape has collapsed when its size has fallen below this part of what it was,
+/// or its area below the tenth of that.
 const COLLAPSED: f64 = 1e-2;
 
 /// Moves the vertices of `mesh` toward piecewise flat patches with crisp ridges.
 ///
-/// Each step minimizes `Σ_f w_f A_f ‖H_f x‖ + η ‖x − x⁽ⁱ⁾‖²_M` over the coordinates `x`, with operator and mass of the
-/// mesh as it is then. Rowe et al. 2024, eq. (24); the weights are those of [`sharpened_weights`], the sizes of the steps
-/// those of [`Pace`].
+/// Each step minimizes `Σ_f w_f A_f ‖H_f x‖ + η ‖x − x⁽ⁱ⁾‖²_M` over the coordinates `x`, with operator and
+/// mass of the mesh as it is then. Rowe et al. 2024, eq. (24); the weights are those of
+/// [`sharpened_weights`], the sizes of the steps those of [`Pace`].
 ///
 /// Faces are oriented and seams joined first ([`Working`]): the sides of a seam stay together.
 ///
 /// # Errors
-/// [`MeshError::NoPositions`], [`MeshError::NoFaces`], arguments of the wrong shape or range, and the errors of the
-/// solver. Never a result that is not finite.
+/// [`MeshError::NoPositions`], [`MeshError::NoFaces`], arguments of the wrong shape or range, and the errors
+/// of the solver. Never a result that is not finite.
 pub fn stylize(mesh: &Mesh, options: &StylizeOptions, progress: &Progress) -> Result<Stylized> {
     let original = mesh.positions().ok_or(MeshError::NoPositions)?;
     check(mesh, options)?;
@@ -264,7 +266,8 @@ impl<'a> Flow<'a> {
         let mut base = self.base.clone();
         let (connectivity, pattern) = if self.options.delaunay {
             mollify(self.connectivity, &mut lengths);
-            let (connectivity, flipped_lengths, _) = delaunay_flips_carrying(self.connectivity, &lengths, &mut base);
+            let (connectivity, flipped_lengths, _) =
+                delaunay_flips_carrying(self.connectivity, &lengths, &mut base);
             lengths = flipped_lengths;
             let pattern = HessianPattern::new(&connectivity);
             flipped = (connectivity, pattern);
@@ -290,7 +293,9 @@ impl<'a> Flow<'a> {
             operator: &step.operator,
             weights: sharpened_weights(&step.norms, &step.areas, &step.base, self.options.sharpness),
             fidelity: (0..n)
-                .map(|i| if fixed[i] { 0.0 } else { fidelity * step.mass[i] / strength.map_or(1.0, |s| s[i]) })
+                .map(
+                    |i| if fixed[i] { 0.0 } else { fidelity * step.mass[i] / strength.map_or(1.0, |s| s[i]) },
+                )
                 .collect(),
             target: Columns::from_points(&self.points),
             fixed,
@@ -312,7 +317,8 @@ impl Step {
 
 /// Root mean square distance of two point lists, with a weight for each point.
 fn weighted_distance(a: &[[f64; 3]], b: &[[f64; 3]], weights: &[f64]) -> f64 {
-    let square = |(p, q): (&[f64; 3], &[f64; 3])| p.iter().zip(q).map(|(x, y)| (x - y) * (x - y)).sum::<f64>();
+    let square =
+        |(p, q): (&[f64; 3], &[f64; 3])| p.iter().zip(q).map(|(x, y)| (x - y) * (x - y)).sum::<f64>();
     let sum: f64 = a.iter().zip(b).map(square).zip(weights).map(|(d, w)| w * d).sum();
     let total: f64 = weights.iter().sum();
     if total > 0.0 {

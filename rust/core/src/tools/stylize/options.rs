@@ -15,12 +15,12 @@ pub struct StylizeOptions {
     pub iterations: usize,
     /// `η`: a larger one moves less per step. Where there is an end to reach, that of the first step.
     pub fidelity: f64,
-    /// How far the shape may move: the root mean square distance of its free vertices from where they began, by area, in
-    /// parts of the square root of the surface's area. Steps grow until it is reached or the planes have settled. `None`:
-    /// all steps have the same fidelity, and all are done.
+    /// How far the shape may move: the root mean square distance of its free vertices from where they began,
+    /// by area, in parts of the square root of the surface's area. Steps grow until it is reached or the
+    /// planes have settled. `None`: all steps have the same fidelity, and all are done.
     pub movement: Option<f64>,
-    /// The part of the area that shall lie in flat faces ([`Flatness::flat_share`]): steps grow until it does and facets have
-    /// formed. With a `movement`, whichever is reached first. `None`: no such end.
+    /// The part of the area that shall lie in flat faces ([`Flatness::flat_share`]): steps grow until it does
+    /// and facets have formed. With a `movement`, whichever is reached first. `None`: no such end.
     pub flat_share: Option<f64>,
     /// 0: the energy of the paper; 1: the most angular.
     pub sharpness: f64,
@@ -77,8 +77,8 @@ pub enum FlowStatus {
     Converged,
     /// The shape has shrunk to (almost) nothing; the last sound step is returned.
     Collapsed,
-    /// A step led out of the surroundings of the shape, as rounding does on triangles that are too uneven; the last sound
-    /// step is returned.
+    /// A step led out of the surroundings of the shape, as rounding does on triangles that are too uneven;
+    /// the last sound step is returned.
     Diverged,
     /// The caller asked to finish early.
     Stopped,
@@ -137,13 +137,17 @@ pub(super) fn check(mesh: &Mesh, options: &StylizeOptions) -> Result<()> {
     check_weights("ridge_weights", options.ridge_weights.as_ref(), m, "face")?;
     if let Some(strength) = &options.strength {
         if let Some(i) = strength.iter().position(|s| *s > 1.0) {
-            return Err(Error::argument("strength", format!("entry {i} is {}; it must be at most 1", strength[i])));
+            return Err(Error::argument(
+                "strength",
+                format!("entry {i} is {}; it must be at most 1", strength[i]),
+            ));
         }
     }
     match &options.fixed {
-        Some(fixed) if fixed.len() != n => {
-            Err(Error::argument("fixed", format!("has {} entries, expected one per vertex: {n}", fixed.len())))
-        }
+        Some(fixed) if fixed.len() != n => Err(Error::argument(
+            "fixed",
+            format!("has {} entries, expected one per vertex: {n}", fixed.len()),
+        )),
         _ => Ok(()),
     }
 }

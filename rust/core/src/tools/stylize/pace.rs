@@ -3,23 +3,26 @@
 use super::flatness::Flatness;
 use super::FlowStatus;
 
-/// Bend in edges under the ridge angle, as a part of all bend, at which a shape counts as made of planes that meet in
-/// ridges, if [`PLANES`] agrees. An exact model has none, one whose coordinates were rounded to `f32` under 1e-4; a 32-sided cylinder 1.
+/// Bend in edges under the ridge angle, as a part of all bend, at which a shape counts as made of planes that
+/// meet in ridges, if [`PLANES`] agrees. An exact model has none, one whose coordinates were rounded to `f32`
+/// under 1e-4; a 32-sided cylinder 1.
 const SOFT: f64 = 0.02;
 
-/// Rough noise has no soft edges, either, but every face lies in a plane of its own; a model has most of its area in planes
-/// of several faces.
+/// Rough noise has no soft edges, either, but every face lies in a plane of its own; a model has most of its
+/// area in planes of several faces.
 const PLANES: f64 = 0.5;
 
-/// A flow has settled when two steps together have made less than this part of the area flat. A noisy cube reaches its
-/// planes at 0.77 and gains nothing after; a scan at the same place still gains 0.03 with each doubling.
+/// A flow has settled when two steps together have made less than this part of the area flat. A noisy cube
+/// reaches its planes at 0.77 and gains nothing after; a scan at the same place still gains 0.03 with each
+/// doubling.
 const SETTLED: f64 = 0.01;
 
 /// What must have become flat before a flow can settle: a sphere gains nothing for its first steps, either.
 const BEGUN: f64 = 0.05;
 
-/// While a step still makes this much of the area flat, facets are forming, and a flow goes on beyond the share asked for:
-/// planes under noise come out within two steps that gain 0.3 each; on scans at a half no step gains more than 0.07.
+/// While a step still makes this much of the area flat, facets are forming, and a flow goes on beyond the
+/// share asked for: planes under noise come out within two steps that gain 0.3 each; on scans at a half no
+/// step gains more than 0.07.
 const FORMING: f64 = 0.1;
 
 /// The flow ends within this part of the movement asked for.
@@ -30,9 +33,10 @@ const USUAL_GROWTH: f64 = 0.5;
 
 /// The pace of one flow.
 ///
-/// A step with fidelity `η` is a step of length `1 / η` in the time of the flow (implicit Euler). What a flow reaches
-/// depends on its time, hardly on the number of steps: ten steps that each double the time find the planes that a hundred
-/// equal ones find. So with a movement to reach, every step doubles the time, and the last ends where the movement does.
+/// A step with fidelity `η` is a step of length `1 / η` in the time of the flow (implicit Euler). What a flow
+/// reaches depends on its time, hardly on the number of steps: ten steps that each double the time find the
+/// planes that a hundred equal ones find. So with a movement to reach, every step doubles the time, and the
+/// last ends where the movement does.
 #[derive(Debug)]
 pub(super) struct Pace {
     movement: Option<f64>,
@@ -49,7 +53,15 @@ pub(super) struct Pace {
 impl Pace {
     /// The pace of a flow that ends at one of two marks, or after its steps if there is none.
     pub(super) fn new(movement: Option<f64>, flat_share: Option<f64>, start: &Flatness) -> Self {
-        Self { movement, flat_share, factor: 1.0, time: 0.0, last: None, flat: vec![start.flat_share], fraction: 0.0 }
+        Self {
+            movement,
+            flat_share,
+            factor: 1.0,
+            time: 0.0,
+            last: None,
+            flat: vec![start.flat_share],
+            fraction: 0.0,
+        }
     }
 
     /// Whether there is nothing to do for a flow that looks for an end by itself.
@@ -80,8 +92,8 @@ impl Pace {
         self.fraction
     }
 
-    /// Takes note of a step that has left the shape `moved` from where it began (as a part of its size), and sets the next
-    /// one; the status where there shall be none.
+    /// Takes note of a step that has left the shape `moved` from where it began (as a part of its size), and
+    /// sets the next one; the status where there shall be none.
     pub(super) fn after(&mut self, moved: f64, now: &Flatness) -> Option<FlowStatus> {
         if !self.looks_for_an_end() {
             return None;
