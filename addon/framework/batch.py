@@ -88,7 +88,7 @@ def parser() -> argparse.ArgumentParser:
 def _add_files(child: argparse.ArgumentParser) -> None:
     add = child.add_argument
     add("files", nargs="+", type=Path, metavar="FILE", help=f"Files to read: {' '.join(files.FORMATS)}")
-    add("-o", "--output", type=Path, required=True, metavar="OUT", help="File or folder to write to")
+    add("-o", "--output", action=_Output, required=True, metavar="OUT", help="File or folder/ to write to")
     add(
         "--format", type=_suffix, choices=list(files.FORMATS), help="Write into the folder OUT in this format"
     )
@@ -122,6 +122,16 @@ def _add_files(child: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="Write a summary: .txt, .json, or .html with pictures before and after; may be repeated",
     )
+
+
+class _Output(argparse.Action):
+    """Where to write: a path forgets the slash at its end, which says that it is a folder."""
+
+    def __call__(
+        self, _parser: object, options: argparse.Namespace, text: str, _option: str | None = None
+    ) -> None:
+        """Keep the path, and whether it was given as a folder."""
+        options.output, options.is_folder = Path(text), text.endswith(("/", os.sep))
 
 
 def _suffix(text: str) -> str:

@@ -61,14 +61,17 @@ class Ledger:
         return contextlib.nullcontext()
 
 
-def assign(sources: Sequence[Path], out: Path, suffix: str | None) -> tuple[list[Target], Ledger]:
+def assign(
+    sources: Sequence[Path], out: Path, suffix: str | None, is_folder: bool = False
+) -> tuple[list[Target], Ledger]:
     """The target of every source, and the ledger of what may not be written.
 
-    `out` is a file, or a folder if there are several sources, a suffix to be written, or no suffix in it.
+    `out` is a file, or a folder: if it is said to be one, if there are several sources, a suffix to be
+    written, or no suffix in it.
     """
     ledger = Ledger(sources)
     planned = Ledger(())
-    into_folder = len(sources) > 1 or suffix is not None or out.is_dir() or not out.suffix
+    into_folder = is_folder or len(sources) > 1 or suffix is not None or out.is_dir() or not out.suffix
     targets = []
     for source in sources:
         path = out / (source.stem + (suffix or source.suffix.lower())) if into_folder else out

@@ -66,7 +66,7 @@ def serve(options: argparse.Namespace, steps: Sequence[Step]) -> int:
 
 
 def _planned(options: argparse.Namespace, steps: Sequence[Step]) -> tuple[list[Target], Plan]:
-    targets, ledger = assign(options.files, options.output, options.format)
+    targets, ledger = assign(options.files, options.output, options.format, options.is_folder)
     pictures = options.pictures or any(path.suffix.lower() == ".html" for path in options.report)
     return targets, Plan(steps, ledger, None, pictures)
 

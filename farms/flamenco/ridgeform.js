@@ -17,11 +17,14 @@ const JOB_TYPE = {
         { key: "chunk_size", type: "int32", required: true, default: 10, propargs: { min: 1 },
           visible: "submission", description: "Files in one task" },
 
-        // Found when the job is submitted: the script itself sees no disk.
+        // Found when the job is submitted: the script itself sees no disk, and knows no folder of a blend file.
         { key: "files", type: "string", required: true, editable: false, visible: "web",
-          eval: "__import__('json').dumps(sorted(p.name for p in " +
+          eval: "__import__('json').dumps(sorted(p.as_posix() for p in " +
               "abspath(settings.input_folder).glob(settings.pattern) if p.is_file()))",
-          description: "Names of the files, as a list in JSON" },
+          description: "Paths of the files, as a list in JSON" },
+        { key: "output", type: "string", required: true, editable: false, visible: "web",
+          eval: "abspath(settings.output_folder).as_posix()",
+          description: "Path of the folder to write to" },
     ],
 };
 
@@ -41,25 +44,23 @@ function compileJob(job) {
             throw `Arguments: leave ${option} to this job type`;
         }
     }
-    const names = JSON.parse(settings.files);
-    if (names.length === 0) {
+    const files = JSON.parse(settings.files);
+    if (files.length === 0) {
         throw `There is no file ${settings.pattern} in ${settings.input_folder}`;
     }
+    const names = files.map(file => path.basename(file));
     refuseEqualOutputs(names, args.some(arg => arg.split("=")[0] === "--format"));
 
-    const files = names.map(name => path.join(settings.input_folder, name));
     const size = Math.max(1, settings.chunk_size);
     const tasks = [];
     for (let begin = 0; begin < files.length; begin += size) {
         const end = Math.min(begin + size, files.length);
         const task = author.Task(`files-${begin + 1}-${end}`, "blender");
-        // An output that is a folder is taken as one whatever its name ends in.
-        task.addCommand(author.Command("make-directory", { path: settings.output_folder }));
         task.addCommand(ridgeform(settings, args, files.slice(begin, end), ["--pictures"]));
         tasks.push(task);
     }
     const summary = author.Task("summary", "blender");
-    const page = settings.output_folder.replace(/[\\/]+$/, "") + ".html";
+    const page = settings.output.replace(/[\\/]+$/, "") + ".html";
     // All is done by then, so that only the page is made.
     summary.addCommand(ridgeform(settings, args, files, ["--report", page]));
     for (const task of tasks) {
@@ -70,8 +71,10 @@ function compileJob(job) {
 }
 
 // A task that is tried again, on whatever worker, does only what is left: the journal beside the output knows.
+// The slash has the output taken as a folder whatever its name ends in.
 function ridgeform(settings, args, files, more) {
-    const all = ["--command", "ridgeform"].concat(args, more, ["--resume", "-o", settings.output_folder]);
+    const output = settings.output.replace(/[\\/]+$/, "") + "/";
+    const all = ["--command", "ridgeform"].concat(args, more, ["--resume", "-o", output]);
     return author.Command("exec", { exe: "{blender}", args: all.concat(["--"], files) });
 }
 

@@ -1,10 +1,11 @@
-// What Flamenco's manager offers a job compiler script, as its documentation has it; everything else throws.
+// What Flamenco's manager offers a job compiler script, as its documentation, its built-in scripts, and its
+// source have it: flamenco.blender.org/usage/job-types and …/jobs-tasks-commands/commands. All else throws.
 // node flamenco_stub.js SCRIPT SETTINGS: prints the job type and the tasks of a job as JSON.
 "use strict";
 const fs = require("fs");
 const vm = require("vm");
 
-const PARAMETERS = { "exec": { exe: "string", args: "object" }, "make-directory": { path: "string" } };
+const PARAMETERS = { "exec": { exe: "string", args: "object" } };
 
 function author() {
     return {
@@ -30,7 +31,7 @@ function author() {
 }
 
 const path = {
-    join: (...parts) => parts.join("/").replace(/\/+/g, "/"),
+    basename: name => name.split(/[\\/]/).pop(),
     stem: name => name.replace(/\.[^./]*$/, ""),
 };
 

@@ -35,9 +35,15 @@ def compiled(**settings):
 
 
 def job(folder, arguments="stylize", **more):
-    names = sorted(path.name for path in (folder / "in").iterdir()) if (folder / "in").is_dir() else ["a.ply"]
-    given = {"input_folder": str(folder / "in"), "pattern": "*.ply", "output_folder": str(folder / "out")}
-    return compiled(**given | {"arguments": arguments, "chunk_size": 2, "files": json.dumps(names)} | more)
+    """A job as it is submitted, with what the add-on evaluates."""
+    found = sorted(map(str, (folder / "in").iterdir())) if (folder / "in").is_dir() else ["a.ply"]
+    given = {
+        "input_folder": "//in/",
+        "pattern": "*.ply",
+        "output_folder": "//out/",
+        "output": str(folder / "out"),
+    }
+    return compiled(**given | {"arguments": arguments, "chunk_size": 2, "files": json.dumps(found)} | more)
 
 
 def test_the_settings_are_those_that_flamenco_knows(tmp_path):
@@ -55,12 +61,21 @@ def test_the_files_are_found_when_a_job_is_submitted(tmp_path):
     batch_kit.boxes(tmp_path / "in", 3)
     (tmp_path / "in/other.txt").touch()
     kind, _ = job(tmp_path)
-    (files,) = (setting for setting in kind["settings"] if setting["key"] == "files")
-    settings = type("Settings", (), {"input_folder": str(tmp_path / "in"), "pattern": "*.ply"})
-    # The names that expressions may use.
-    names = {"settings": settings, "bpy": bpy, "C": bpy.context, "Path": Path, "jobname": "Job"}
-    found = eval(files["eval"], names | {"abspath": lambda path: Path(path).absolute()})
-    assert json.loads(found) == ["box0.ply", "box1.ply", "box2.ply"]
+    files, output = (setting["eval"] for setting in kind["settings"] if "eval" in setting)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    # Folders as Blender's file browser gives them, and the names that Flamenco's add-on evaluates with.
+    given = {"input_folder": "//in/", "pattern": "*.ply", "output_folder": "//out.v2/"}
+    names = {
+        "settings": type("Settings", (), given),
+        "bpy": bpy,
+        "C": bpy.context,
+        "Path": Path,
+        "jobname": "Job",
+    }
+    names["abspath"] = lambda path: Path(bpy.path.abspath(str(path)))
+    found = json.loads(eval(files, {}, names))
+    assert found == [(tmp_path / f"in/box{number}.ply").as_posix() for number in range(3)]
+    assert eval(output, {}, names) == (tmp_path / "out.v2").as_posix()
 
 
 @pytest.mark.parametrize(
@@ -70,7 +85,7 @@ def test_the_files_are_found_when_a_job_is_submitted(tmp_path):
         ("stylize --jobs 2", ["a.ply"], "leave --jobs to this job type"),
         ("stylize --report=x.html", ["a.ply"], "leave --report to this job type"),
         ("stylize", [], "There is no file"),
-        ("stylize --format .ply", ["a.obj", "A.stl"], "a.obj and A.stl would have the same output"),
+        ("stylize --format .ply", ["/in/a.obj", "/in/A.stl"], "a.obj and A.stl would have the same output"),
     ],
 )
 def test_what_is_wrong_is_said_when_a_job_is_submitted(tmp_path, arguments, names, message):
@@ -88,7 +103,9 @@ def test_the_commands_do_all_files_once_also_when_a_task_is_tried_again(tmp_path
         f"assert sys.argv.pop(1) == 'ridgeform'\n{code}\n"
     )
     blender.chmod(blender.stat().st_mode | stat.S_IXUSR)
-    _, tasks = job(tmp_path, "stylize --steps 1")
+    # A name that could be that of a file.
+    out = tmp_path / "out.ply"
+    _, tasks = job(tmp_path, "stylize --steps 1", output=str(out))
     assert [task["name"] for task in tasks] == ["files-1-2", "files-3-3", "summary"]
     assert tasks[-1]["dependencies"] == ["files-1-2", "files-3-3"]
     assert {task["type"] for task in tasks} == {"blender"}
@@ -96,20 +113,18 @@ def test_the_commands_do_all_files_once_also_when_a_task_is_tried_again(tmp_path
     def run(task):
         for command in task["commands"]:
             given = command["parameters"]
-            if command["name"] == "make-directory":
-                Path(given["path"]).mkdir(parents=True, exist_ok=True)
-            else:
-                exe = given["exe"].replace("{blender}", str(blender))
-                subprocess.run([exe, *given["args"]], check=True, capture_output=True, cwd="/")
+            exe = given["exe"].replace("{blender}", str(blender))
+            subprocess.run([exe, *given["args"]], check=True, capture_output=True, cwd="/")
 
-    for task in tasks[:-1]:
+    # The task with one file first: nothing is there that says that the output is a folder.
+    for task in reversed(tasks[:-1]):
         run(task)
-    before = batch_kit.state_of(tmp_path / "out")
+    before = batch_kit.state_of(out)
     assert set(before) == {path.name for path in sources}
     run(tasks[0])
     run(tasks[-1])
-    assert batch_kit.state_of(tmp_path / "out") == before
-    assert set(entries(tmp_path / "out").values()) == {"done"}
-    page = (tmp_path / "out.html").read_text()
+    assert batch_kit.state_of(out) == before
+    assert set(entries(out).values()) == {"done"}
+    page = (tmp_path / "out.ply.html").read_text()
     assert "3 of 3 files done, 3 of them before" in page
     assert page.count("data:image/png") == 6
