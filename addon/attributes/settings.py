@@ -4,6 +4,7 @@
 from ..blender.attribute_names import search_names
 from ..framework import shared_settings as shared
 from ..framework.settings import (
+    Range,
     Settings,
     boolean,
     choice,
@@ -80,9 +81,7 @@ class AttributeName(Settings):
     """What is worked on."""
 
     attribute: data_name(
-        "Attribute",
-        "Attribute or vertex group to work on. Empty: the active one",
-        search=search_names,
+        "Attribute", "Attribute or vertex group to work on. Empty: the active one", search=search_names
     )
 
 
@@ -90,6 +89,12 @@ class EnergyChoice(Settings):
     """What is minimized."""
 
     energy: choice("Energy", "How the result should vary across the surface", ENERGIES, default=OURS)
+
+
+PLACES = (
+    ("NEW", "New Attribute", "Leave the values as they are and put the result into a new attribute"),
+    ("IN_PLACE", "In Place", "Overwrite the values"),
+)
 
 
 class ResultSettings(EnergyChoice):
@@ -106,14 +111,26 @@ class ResultSettings(EnergyChoice):
     output: choice(
         "Result",
         "Where to put the result",
-        (
-            ("NEW", "New Attribute", "Leave the values as they are and put the result into a new attribute"),
-            ("IN_PLACE", "In Place", "Overwrite the values"),
-        ),
+        PLACES,
         default="NEW",
         flag=None,
         switches={"--in-place": "IN_PLACE"},
     )
+
+
+DISPLAYS = (
+    ("NONE", "Nothing", "Leave the view and the materials as they are"),
+    (
+        "VIEWPORT",
+        "Viewport Colors",
+        'Show the values as colors in Solid shading, stored in the attribute "ridgeform_shown"',
+    ),
+    (
+        "MATERIAL",
+        "Material",
+        "Give the mesh a material that turns the values into colors, also for rendering",
+    ),
+)
 
 
 class DisplaySettings(Settings):
@@ -122,19 +139,7 @@ class DisplaySettings(Settings):
     display: choice(
         "Show",
         "How to show the result. Colors are always shown as they are",
-        (
-            ("NONE", "Nothing", "Leave the view and the materials as they are"),
-            (
-                "VIEWPORT",
-                "Viewport Colors",
-                'Show the values as colors in Solid shading, stored in the attribute "ridgeform_shown"',
-            ),
-            (
-                "MATERIAL",
-                "Material",
-                "Give the mesh a material that turns the values into colors, also for rendering",
-            ),
-        ),
+        DISPLAYS,
         default="VIEWPORT",
         flag=None,
         switches={"--material": "MATERIAL"},
@@ -142,9 +147,7 @@ class DisplaySettings(Settings):
     bands: integer(
         "Bands",
         "Number of bands of one color each in the material, with isolines as their borders. 0 is smooth",
-        default=0,
-        min=0,
-        max=32,
+        Range(0, min=0, max=32),
         active=lambda settings: settings.display == "MATERIAL",
     )
 
@@ -158,10 +161,7 @@ class ExpertSettings(Settings):
     tolerance: number(
         "Tolerance",
         "Certified relative duality gap that the result must reach",
-        default=0.001,
-        min=1e-8,
-        max=1.0,
-        precision=6,
+        Range(0.001, min=1e-8, max=1.0, precision=6),
         section=shared.EXPERT,
     )
     max_iterations: shared.MAX_ITERATIONS
@@ -218,19 +218,17 @@ class DenoiseSettings(
     """The settings of denoising."""
 
 
+KNOWN = (
+    ("SELECTED", "Selected Vertices", "Spread the values of the selected vertices over the mesh"),
+    ("UNSELECTED", "Fill the Selection", "Compute the selected vertices from the others"),
+    ("GROUP", "Vertex Group", "Spread the values of the vertices in a group over the mesh"),
+)
+
+
 class KnownSettings(AttributeName):
     """What is interpolated, and from where."""
 
-    known: choice(
-        "Known",
-        "Which values are kept. All others are computed",
-        (
-            ("SELECTED", "Selected Vertices", "Spread the values of the selected vertices over the mesh"),
-            ("UNSELECTED", "Fill the Selection", "Compute the selected vertices from the others"),
-            ("GROUP", "Vertex Group", "Spread the values of the vertices in a group over the mesh"),
-        ),
-        default="SELECTED",
-    )
+    known: choice("Known", "Which values are kept. All others are computed", KNOWN, default="SELECTED")
     known_group: vertex_group(
         "Known In",
         "Vertex group of the vertices whose values are known. Empty: the vertex group to work on",
@@ -250,10 +248,7 @@ class ModesCount(Settings):
     count: integer(
         "Modes",
         "Number of modes to compute, those of least energy first",
-        default=8,
-        min=1,
-        max=1000,
-        soft_max=32,
+        Range(8, min=1, max=1000, soft_max=32),
     )
 
 
@@ -263,9 +258,7 @@ class ModesSettings(ModesCount, EnergyChoice, DisplaySettings, ExpertSettings):
     shown: integer(
         "Shown Mode",
         "Mode to show. On a closed surface, mode 0 is the same everywhere",
-        default=1,
-        min=0,
-        max=999,
+        Range(1, min=0, max=999),
     )
 
 
@@ -273,8 +266,7 @@ class ShowSettings(AttributeName, DisplaySettings):
     """The settings of showing an attribute."""
 
     signed: boolean(
-        "Zero in the Middle",
-        "Show negative values in blue, positive ones in red, and zero in white",
+        "Zero in the Middle", "Show negative values in blue, positive ones in red, and zero in white"
     )
 
 

@@ -3,7 +3,7 @@
 
 from ..blender.attribute_names import search_colors, search_face_numbers
 from ..framework import shared_settings as shared
-from ..framework.settings import Settings, boolean, choice, data_name, integer, number
+from ..framework.settings import Range, Settings, boolean, choice, data_name, integer, number
 
 
 def _finds_regions(settings: object) -> bool:
@@ -11,10 +11,22 @@ def _finds_regions(settings: object) -> bool:
 
 
 SHOW = boolean(
-    "Show Result",
-    "Make the redrawn colors active and show them in Solid shading",
-    default=True,
-    flag=None,
+    "Show Result", "Make the redrawn colors active and show them in Solid shading", default=True, flag=None
+)
+
+
+SOURCES = (
+    ("ATTRIBUTE", "Color Attribute", "A color attribute of the mesh"),
+    (
+        "IMAGE",
+        "Image Texture",
+        "The image of the active material, sampled at the vertices with the active UV map",
+    ),
+)
+REGIONS = (
+    ("COLORS", "From Colors", "Find the regions by their colors"),
+    ("MATERIALS", "Material Slots", "Faces with the same material slot are a region"),
+    ("ATTRIBUTE", "Face Attribute", "Faces with the same integer in an attribute are a region"),
 )
 
 
@@ -24,14 +36,7 @@ class DiffusionSettings(Settings):
     source: choice(
         "Colors",
         "Where the colors come from",
-        (
-            ("ATTRIBUTE", "Color Attribute", "A color attribute of the mesh"),
-            (
-                "IMAGE",
-                "Image Texture",
-                "The image of the active material, sampled at the vertices with the active UV map",
-            ),
-        ),
+        SOURCES,
         default="ATTRIBUTE",
         flag=None,
         switches={"--image": "IMAGE"},
@@ -42,16 +47,7 @@ class DiffusionSettings(Settings):
         search=search_colors,
         active=lambda settings: settings.source == "ATTRIBUTE",
     )
-    regions: choice(
-        "Regions",
-        "Regions whose borders become curves",
-        (
-            ("COLORS", "From Colors", "Find the regions by their colors"),
-            ("MATERIALS", "Material Slots", "Faces with the same material slot are a region"),
-            ("ATTRIBUTE", "Face Attribute", "Faces with the same integer in an attribute are a region"),
-        ),
-        default="COLORS",
-    )
+    regions: choice("Regions", "Regions whose borders become curves", REGIONS, default="COLORS")
     region_attribute: data_name(
         "Face Attribute",
         "Integer attribute on faces that tells the regions apart",
@@ -61,33 +57,23 @@ class DiffusionSettings(Settings):
     count: integer(
         "Count",
         "Number of regions to find",
-        default=8,
-        min=0,
-        soft_min=1,
-        optional=False,
+        Range(8, min=0, soft_min=1, soft_max=64),
         otherwise="as many are found as the colors call for",
-        soft_max=64,
         active=_finds_regions,
     )
     least_faces: integer(
         "Minimum Triangles",
         "Regions with fewer triangles are merged with a neighbor",
-        default=20,
-        min=1,
-        soft_max=500,
+        Range(20, min=1, soft_max=500),
         active=_finds_regions,
     )
     color_error: number(
         "Color Tolerance",
         "How much a color on a curve may change so that fewer different colors are needed along it",
-        default=0.01,
-        min=0.0,
-        soft_max=0.2,
-        precision=3,
+        Range(0.01, min=0.0, soft_max=0.2, precision=3),
     )
     rims: boolean(
-        "Mesh Borders",
-        "Turn the borders of an open mesh into curves too, with colors on their one side",
+        "Mesh Borders", "Turn the borders of an open mesh into curves too, with colors on their one side"
     )
     show: SHOW
     refine: boolean(

@@ -2,7 +2,7 @@
 """The settings of facets: how many, what they are made of, and where."""
 
 from ..framework import shared_settings as shared
-from ..framework.settings import Settings, boolean, choice, integer, number, vertex_group
+from ..framework.settings import Range, Settings, boolean, choice, integer, number, vertex_group
 
 WHERE = "Where"
 
@@ -17,29 +17,27 @@ def by_error(settings: object) -> bool:
     return settings.mode == "ERROR"
 
 
+MODES = (
+    ("AUTO", "Auto", "As many as the shape gives evidence for"),
+    ("COUNT", "Count", "As many as you choose"),
+    ("ERROR", "Error", "As many as it takes to stay that close to the mesh"),
+)
+TOPOLOGIES = (
+    ("POLYGONS", "Polygons", "One flat n-gon for each facet; several where it has a hole"),
+    ("TRIANGLES", "Triangles", "Triangles in the plane of each facet"),
+)
+
+
 class FacetSettings(Settings):
     """The settings of facets."""
 
     mode: choice(
-        "Mode",
-        "What determines how many facets there are",
-        (
-            ("AUTO", "Auto", "As many as the shape gives evidence for"),
-            ("COUNT", "Count", "As many as you choose"),
-            ("ERROR", "Error", "As many as it takes to stay that close to the mesh"),
-        ),
-        default="AUTO",
-        expand=True,
-        flag=None,
+        "Mode", "What determines how many facets there are", MODES, default="AUTO", expand=True, flag=None
     )
     facets: integer(
         "Facets",
         "Number of facets. A mesh is computed only once, then other numbers are quick",
-        default=60,
-        min=1,
-        max=1_000_000,
-        soft_min=4,
-        soft_max=500,
+        Range(60, min=1, max=1_000_000, soft_min=4, soft_max=500),
         shown=by_count,
         flag="--facets",
         implies={"mode": "COUNT"},
@@ -48,37 +46,19 @@ class FacetSettings(Settings):
         "Error",
         "Distance from the mesh that is allowed, root mean square, in percent of its size (the diagonal of "
         "its bounding box)",
-        default=0.5,
-        min=0.0001,
-        max=100.0,
-        soft_min=0.05,
-        soft_max=5.0,
-        precision=2,
+        Range(0.5, min=0.0001, max=100.0, soft_min=0.05, soft_max=5.0, precision=2),
         subtype="PERCENTAGE",
         shown=by_error,
         flag="--error",
         metavar="PERCENT",
         implies={"mode": "ERROR"},
     )
-    topology: choice(
-        "Topology",
-        "What facets are made of",
-        (
-            ("POLYGONS", "Polygons", "One flat n-gon for each facet; several where it has a hole"),
-            ("TRIANGLES", "Triangles", "Triangles in the plane of each facet"),
-        ),
-        default="POLYGONS",
-        expand=True,
-    )
+    topology: choice("Topology", "What facets are made of", TOPOLOGIES, default="POLYGONS", expand=True)
     marks: shared.MARKS.but(
         default={"SHARP"},
         description="Mark the edges between facets; with Sharp, facets are shaded flat. Existing marks stay",
     )
-    mark_seams: boolean(
-        "Seams",
-        "Mark the edges between facets as seams for unwrapping",
-        flag="--seams",
-    )
+    mark_seams: boolean("Seams", "Mark the edges between facets as seams for unwrapping", flag="--seams")
     strength_group: vertex_group(
         "Mask",
         "Vertex group that determines where to make facets. Faces with a vertex outside of it stay as they "
@@ -86,8 +66,7 @@ class FacetSettings(Settings):
         section=WHERE,
     )
     ridge_group: shared.RIDGE_GROUP.but(
-        section=WHERE,
-        description="Vertex group painted where ridges should run. Unpainted areas are neutral",
+        section=WHERE, description="Vertex group painted where ridges should run. Unpainted areas are neutral"
     )
     avoid_ridges: shared.AVOID_RIDGES.but(section=WHERE)
 

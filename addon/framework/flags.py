@@ -51,7 +51,7 @@ def flags_of(name: str, setting: Setting) -> list[str]:
 def default_text(setting: Setting) -> str:
     """The default in words of the command line; empty where none counts unless the flag is given."""
     value = setting.default
-    if isinstance(value, bool) or setting.implies or setting.optional is False:
+    if isinstance(value, bool) or setting.implies or (setting.optional and not setting.used):
         return ""
     if isinstance(value, set):
         return ", ".join(_word(item) for item in sorted(value))
@@ -159,10 +159,10 @@ def given_flags(values: object, settings: type[Settings]) -> dict[str, object]:
             continue
         if any(getattr(values, other) != implied for other, implied in setting.implies.items()):
             continue
-        if setting.optional is not None:
+        if setting.optional:
             counts = chosen(values, name) is not None
             changed = _written(setting, value) != _written(setting, setting.default)
-            if counts != setting.optional or (counts and changed):
+            if counts != setting.used or (counts and changed):
                 # Zero is none.
                 given[word] = _written(setting, value) if counts else 0
         elif setting.implies or _written(setting, value) != _written(setting, setting.default):

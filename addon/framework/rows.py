@@ -35,7 +35,7 @@ def draw_setting(
     """Draw one row, an optional number with its check box; vertex groups only where a mesh can have them."""
     is_active = setting.active is None or setting.active(settings)
     is_slider = setting.keywords.get("subtype") == "FACTOR"
-    if setting.optional is not None:
+    if setting.optional:
         row = layout.row(align=True, heading=setting.label)
         row.active = is_active
         row.prop(settings, switch_of(name), text="")

@@ -20,6 +20,22 @@ Item = tuple[str, str, str]
 """A choice: identifier, label, description."""
 
 
+@dataclass(frozen=True)
+class Range:
+    """The values of a number: the one at first, the limits, how far the slider goes, and the decimals."""
+
+    default: float
+    min: float | None = None
+    max: float | None = None
+    soft_min: float | None = None
+    soft_max: float | None = None
+    precision: int | None = None
+
+    def keywords(self) -> dict[str, float]:
+        """The arguments of the property; Blender's own for all that is not said."""
+        return {name: value for name, value in vars(self).items() if value is not None}
+
+
 @dataclass(frozen=True, kw_only=True)
 class Setting:
     """One setting: what Blender makes of it, and what rows, presets and the command line do with it."""
@@ -46,10 +62,16 @@ class Setting:
     """Flags without a value, for a choice: which identifier each stands for."""
     implies: Mapping[str, object] = field(default_factory=dict)
     """The other settings that its flag also sets."""
-    optional: bool | None = None
-    """For a number: whether a check box beside it, `use_<name>`, is on at first; `None` without one."""
     otherwise: str = ""
-    """What happens where the check box is off, for its tooltip."""
+    """For a number with a check box beside it, `use_<name>`: what happens where that is off, for its
+    tooltip."""
+    used: bool = False
+    """Whether that check box is on at first."""
+
+    @property
+    def optional(self) -> bool:
+        """Whether a check box stands beside the number."""
+        return bool(self.otherwise)
 
     @property
     def label(self) -> str:
@@ -85,14 +107,14 @@ def boolean(name: str, description: str, *, default: bool = False, **more: objec
     return _setting(bpy.props.BoolProperty, name, description, {"default": default, **more})
 
 
-def integer(name: str, description: str, *, default: int, **more: object) -> Setting:
+def integer(name: str, description: str, values: Range, **more: object) -> Setting:
     """A whole number."""
-    return _setting(bpy.props.IntProperty, name, description, {"default": default, **more})
+    return _setting(bpy.props.IntProperty, name, description, {**values.keywords(), **more})
 
 
-def number(name: str, description: str, *, default: float, **more: object) -> Setting:
+def number(name: str, description: str, values: Range, **more: object) -> Setting:
     """A decimal number; with the subtype `ANGLE` in radians, and in degrees on the command line."""
-    return _setting(bpy.props.FloatProperty, name, description, {"default": default, **more})
+    return _setting(bpy.props.FloatProperty, name, description, {**values.keywords(), **more})
 
 
 def factor(name: str, description: str, *, default: float, **more: object) -> Setting:
@@ -141,9 +163,9 @@ def _with_switches(own: Mapping[str, Setting]) -> dict[str, Setting]:
     """Declared settings, with the check boxes of those that are optional before them."""
     made: dict[str, Setting] = {}
     for name, setting in own.items():
-        if setting.optional is not None:
+        if setting.optional:
             text = f"Set {setting.label}. Otherwise {setting.otherwise}"
-            box = boolean(setting.label, text, default=setting.optional, flag=None)
+            box = boolean(setting.label, text, default=setting.used, flag=None)
             # Drawn in the row of the number.
             made[switch_of(name)] = box.but(section=setting.section, shown=lambda _settings: False)
         made[name] = setting
@@ -174,7 +196,7 @@ class Settings:
         cls.follows = {
             switch_of(name): (name, lambda value: value > 0)
             for name, made in cls.declared.items()
-            if made.optional is not None
+            if made.optional
         } | dict(cls.follows)
 
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from .settings import Setting, boolean, choice, choices, factor, integer, number, vertex_group
+from .settings import Range, Setting, boolean, choice, choices, factor, integer, number, vertex_group
 
 EXPERT = "Expert"
 """The subpanel of the paper's numbers and the solver's."""
@@ -37,68 +37,54 @@ AVOID_RIDGES = boolean(
     "Keep ridges away from the painted vertices instead of drawing them there",
     active=lambda settings: bool(settings.ridge_group),
 )
+MARK_KINDS = (
+    ("SHARP", "Sharp", "Mark ridges as sharp edges"),
+    ("CREASE", "Crease", "Give ridges a full subdivision crease"),
+    ("BEVEL", "Bevel", "Give ridges a full bevel weight"),
+)
 MARKS = choices(
     "Mark Ridges",
     "Mark the edges along the ridges. Existing marks are kept",
-    (
-        ("SHARP", "Sharp", "Mark ridges as sharp edges"),
-        ("CREASE", "Crease", "Give ridges a full subdivision crease"),
-        ("BEVEL", "Bevel", "Give ridges a full bevel weight"),
-    ),
+    MARK_KINDS,
     expand=True,
     flag="--mark",
+)
+COUPLINGS = (
+    ("joint", "Joint", "One norm over all components, so that the result does not depend on the axes"),
+    ("separate", "Separate", "Each component by itself, as in the paper"),
 )
 COUPLING = choice(
     "Coupling",
     "How the coordinates, or the components of a vector or color, share ridges",
-    (
-        ("joint", "Joint", "One norm over all components, so that the result does not depend on the axes"),
-        ("separate", "Separate", "Each component by itself, as in the paper"),
-    ),
+    COUPLINGS,
     default="joint",
     section=EXPERT,
 )
-DUAL = choice(
-    "Dual",
-    "The dual edges of the Hessian",
-    (
-        ("barycentric", "Barycentric", "Between centers of mass: works on every mesh"),
-        ("circumcentric", "Circumcentric", "Between circumcenters: for well-shaped triangles"),
-    ),
-    default="barycentric",
-    section=EXPERT,
+DUALS = (
+    ("barycentric", "Barycentric", "Between centers of mass: works on every mesh"),
+    ("circumcentric", "Circumcentric", "Between circumcenters: for well-shaped triangles"),
 )
+DUAL = choice("Dual", "The dual edges of the Hessian", DUALS, default="barycentric", section=EXPERT)
 DELAUNAY = boolean(
     "Intrinsic Delaunay",
     "Compute on the intrinsic Delaunay triangulation. Helps with long, thin triangles",
     section=EXPERT,
 )
-SOLVER = choice(
-    "Solver",
-    "Algorithm that solves the problem",
-    (
-        ("auto", "Automatic", "Chosen to suit the problem"),
-        ("fast", "Fast", "The specialized first-order solver"),
-        ("clarabel", "Clarabel", "A general interior-point solver: slow and accurate"),
-    ),
-    default="auto",
-    section=EXPERT,
+SOLVERS = (
+    ("auto", "Automatic", "Chosen to suit the problem"),
+    ("fast", "Fast", "The specialized first-order solver"),
+    ("clarabel", "Clarabel", "A general interior-point solver: slow and accurate"),
 )
+SOLVER = choice("Solver", "Algorithm that solves the problem", SOLVERS, default="auto", section=EXPERT)
 MAX_ITERATIONS = integer(
     "Iterations",
     "Maximum number of solver iterations",
-    default=1000,
-    min=0,
-    soft_min=1,
+    Range(1000, min=0, soft_min=1),
     section=EXPERT,
-    optional=False,
     otherwise="it is left to the solver",
 )
 USE_FIDELITY = boolean(
-    "Set Fidelity",
-    "Set the fidelity weight of the paper instead of the strength",
-    section=EXPERT,
-    flag=None,
+    "Set Fidelity", "Set the fidelity weight of the paper instead of the strength", section=EXPERT, flag=None
 )
 
 
@@ -107,7 +93,7 @@ def fidelity(description: str, *, default: float, switched: bool = True, **more:
     given = {"min": 1e-6, "max": 1e12, "soft_min": 1.0, "soft_max": 1e6, "precision": 1, "section": EXPERT}
     if switched:
         given |= {"active": uses_fidelity, "implies": {"use_fidelity": True}}
-    return number("Fidelity", description, default=default, **(given | more))
+    return number("Fidelity", description, Range(default), **(given | more))
 
 
 def uses_fidelity(settings: object) -> bool:

@@ -4,7 +4,29 @@
 import numpy as np
 
 from ..framework import shared_settings as shared
-from ..framework.settings import Settings, boolean, choice, chosen, factor, integer, number
+from ..framework.settings import Range, Settings, boolean, choice, chosen, factor, integer, number
+
+SHAPES = (
+    (
+        "AUTO",
+        "Automatic",
+        "Flat where the mesh stands steeply around a planar rim, as at a missing side of a box or at "
+        "the cut end of a tube, ridges where some end at the hole, and smooth everywhere else",
+    ),
+    ("SHARP", "Sharp", "Flat planes that meet in ridges"),
+    ("SMOOTH", "Smooth", "No ridges"),
+    # Last: files store the place of a choice among the others.
+    ("FLAT", "Flat", "In the plane of the rim"),
+)
+MATERIALS = (
+    (
+        "CONTINUE",
+        "Continue",
+        "Continue the materials around the hole. Where two of them meet, the border runs along a "
+        "ridge of the patch if possible",
+    ),
+    ("MAJORITY", "One", "Use the material that most of the border of the hole has"),
+)
 
 
 class HoleSettings(Settings):
@@ -13,10 +35,7 @@ class HoleSettings(Settings):
     max_edges: integer(
         "Maximum Edges",
         "Maximum number of edges around a hole for it to be filled",
-        default=100,
-        min=0,
-        soft_min=3,
-        optional=False,
+        Range(100, min=0, soft_min=3),
         otherwise="holes of any size are filled",
     )
     outer: boolean(
@@ -24,23 +43,7 @@ class HoleSettings(Settings):
         "Fill the outer border of an open sheet as well. In Edit Mode, a border selected alone is always "
         "filled",
     )
-    shape: choice(
-        "Shape",
-        "What the patch looks like",
-        (
-            (
-                "AUTO",
-                "Automatic",
-                "Flat where the mesh stands steeply around a planar rim, as at a missing side of a box or at "
-                "the cut end of a tube, ridges where some end at the hole, and smooth everywhere else",
-            ),
-            ("SHARP", "Sharp", "Flat planes that meet in ridges"),
-            ("SMOOTH", "Smooth", "No ridges"),
-            # Last: files store the place of a choice among the others.
-            ("FLAT", "Flat", "In the plane of the rim"),
-        ),
-        default="AUTO",
-    )
+    shape: choice("Shape", "What the patch looks like", SHAPES, default="AUTO")
     sharpness: factor(
         "Sharpness",
         "How angular a sharp patch is: 0 is the flow of the paper, without ridges drawn through the mesh, 1 "
@@ -51,26 +54,15 @@ class HoleSettings(Settings):
     edge_length: number(
         "Edge Length",
         "Length of the edges in the patch, in the units of the object",
-        default=0.1,
-        min=0.0,
-        optional=False,
+        Range(0.1, min=0.0, precision=4),
         otherwise="it is that of the edges around the hole",
         subtype="DISTANCE",
-        precision=4,
         metavar="LENGTH",
     )
     material: choice(
         "Material",
         "Material of the patch",
-        (
-            (
-                "CONTINUE",
-                "Continue",
-                "Continue the materials around the hole. Where two of them meet, the border runs along a "
-                "ridge of the patch if possible",
-            ),
-            ("MAJORITY", "One", "Use the material that most of the border of the hole has"),
-        ),
+        MATERIALS,
         default="CONTINUE",
         flag=None,
         switches={"--one-material": "MAJORITY"},
@@ -81,9 +73,7 @@ class HoleSettings(Settings):
     iterations: integer(
         "Steps",
         "Maximum number of flow steps",
-        default=50,
-        min=1,
-        soft_max=200,
+        Range(50, min=1, soft_max=200),
         section=shared.EXPERT,
         metavar="STEPS",
     )

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from ..framework.settings import Settings, boolean, choices, chosen, number, vertex_group
+from ..framework.settings import Range, Settings, boolean, choices, chosen, number, vertex_group
 
 OUTPUTS = (
     (
@@ -28,11 +28,8 @@ class RestoreSettings(Settings):
         "Regularize",
         "Make surfaces parallel and orthogonal that are so up to this angle, and radii equal that differ by "
         "as little",
-        default=np.radians(3.0),
-        min=0.0,
-        max=np.radians(30.0),
+        Range(np.radians(3.0), min=0.0, max=np.radians(30.0)),
         subtype="ANGLE",
-        optional=False,
         otherwise="surfaces stay as they were fitted",
     )
     free: boolean(
@@ -53,21 +50,13 @@ class RestoreSettings(Settings):
     max_move: number(
         "Maximum Distance",
         "How far a vertex may move, in the units of the mesh",
-        default=0.01,
-        min=0.0,
-        soft_max=10.0,
-        precision=4,
-        optional=False,
+        Range(0.01, min=0.0, soft_max=10.0, precision=4),
         otherwise="it is four times the noise and half the length of an edge",
     )
     noise: number(
         "Noise",
         "Standard deviation of the noise along the normal, in the units of the mesh",
-        default=0.001,
-        min=0.0,
-        soft_max=10.0,
-        precision=5,
-        optional=False,
+        Range(0.001, min=0.0, soft_max=10.0, precision=5),
         otherwise="it is found in the mesh",
     )
 

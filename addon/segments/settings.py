@@ -8,6 +8,7 @@ import numpy as np
 from ..blender.attribute_names import search_names
 from ..framework import shared_settings as shared
 from ..framework.settings import (
+    Range,
     Setting,
     Settings,
     boolean,
@@ -58,8 +59,81 @@ def weight_of(angle: float) -> float:
 
 def _width(name: str, description: str, *, default: float) -> Setting:
     """A width of the bands around borders."""
-    given = {"min": 1e-5, "max": 10.0, "precision": 4, "section": shared.EXPERT, "shown": of_faces}
-    return number(name, description, default=default, **given)
+    values = Range(default, min=1e-5, max=10.0, precision=4)
+    return number(name, description, values, section=shared.EXPERT, shown=of_faces)
+
+
+KINDS = (
+    (
+        "FACES",
+        "Faces",
+        "What creases and steps enclose: sides, walls, and roofs. For buildings, machine parts, and "
+        "furniture",
+    ),
+    (
+        "PARTS",
+        "Parts",
+        "Limbs, heads, and handles, cut through hollows where it is short. For characters, animals, "
+        "and everything that has limbs",
+    ),
+)
+SOURCES = (
+    ("SHAPE", "Shape", "Parts that are nearly flat or evenly curved, with borders along the ridges"),
+    ("ATTRIBUTE", "Attribute", "Parts on which an attribute, color, or vertex group is even or rises evenly"),
+)
+MODES = (
+    ("AUTO", "Automatic", "As many as there are, given an angle, a weight, or a coarseness"),
+    ("COUNT", "Count", "As many as you choose"),
+)
+OUTPUTS = (
+    (
+        "MATERIALS",
+        "Material Slots",
+        "A slot with a color of its own for each segment. Existing slots and materials stay, those "
+        "of an earlier run are used again",
+    ),
+    ("SEAMS", "Seams", "Mark the borders as seams for unwrapping. Existing seams are kept"),
+    ("SHARP", "Sharp Edges", "Mark the borders as sharp edges. Existing marks are kept"),
+    ("FACE_SETS", "Face Sets", "Make each segment a face set of Sculpt Mode"),
+    (
+        "VERTEX_GROUPS",
+        "Vertex Groups",
+        "Make a vertex group of each segment, replacing those of an earlier run",
+    ),
+    (
+        "INDICATOR",
+        "Indicator",
+        "Store where the borders are, 0 on them and 1 inside segments, in the attribute "
+        '"ridgeform_indicator"',
+    ),
+    (
+        "SHARPENED",
+        "Sharpened Surface",
+        "Keep what the borders were found on, flattened between them: a shape as a new shape key, an "
+        "attribute as a new one",
+    ),
+    ("OBJECTS", "Separate Objects", "Make each segment an object of its own. Only in Object Mode"),
+)
+BORDERS = (
+    ("SHARP", "Sharp", "Edges marked as sharp"),
+    ("SEAMS", "Seams", "Seams"),
+    ("MATERIALS", "Materials", "Edges between faces of different materials"),
+)
+METHODS = (
+    (
+        "fitted",
+        "Fitted",
+        "Flooded between the borders, merged where little bends, faces at a border given to the side "
+        "that they fit best",
+    ),
+    ("paper", "Paper", "Cut where the indicator is below the threshold (Rowe et al. 2024)"),
+)
+UNITS = (
+    ("extent", "Extent", "The size of the shape, however it is turned: for a cube its side"),
+    ("bounding_box", "Bounding Box", "The longest side of the bounding box"),
+    ("area", "Area", "The square root of the surface area"),
+    ("max_edge", "Longest Edge", "The longest edge"),
+)
 
 
 class SegmentSettings(Settings):
@@ -67,40 +141,9 @@ class SegmentSettings(Settings):
 
     former: ClassVar = {"use_count": {True: {"mode": "COUNT"}, False: {"mode": "AUTO"}}}
     follows: ClassVar = {"angle": ("length_weight", lambda weight: min(BEND * weight, np.pi))}
-    kind: choice(
-        "Kind",
-        "What counts as a segment",
-        (
-            (
-                "FACES",
-                "Faces",
-                "What creases and steps enclose: sides, walls, and roofs. For buildings, machine parts, and "
-                "furniture",
-            ),
-            (
-                "PARTS",
-                "Parts",
-                "Limbs, heads, and handles, cut through hollows where it is short. For characters, animals, "
-                "and everything that has limbs",
-            ),
-        ),
-        default="FACES",
-        expand=True,
-    )
+    kind: choice("Kind", "What counts as a segment", KINDS, default="FACES", expand=True)
     source: choice(
-        "By",
-        "What the segments are found on",
-        (
-            ("SHAPE", "Shape", "Parts that are nearly flat or evenly curved, with borders along the ridges"),
-            (
-                "ATTRIBUTE",
-                "Attribute",
-                "Parts on which an attribute, color, or vertex group is even or rises evenly",
-            ),
-        ),
-        default="SHAPE",
-        flag=None,
-        shown=of_faces,
+        "By", "What the segments are found on", SOURCES, default="SHAPE", flag=None, shown=of_faces
     )
     attribute: data_name(
         "Attribute",
@@ -111,25 +154,15 @@ class SegmentSettings(Settings):
         shown=of_faces,
     )
     mode: choice(
-        "Mode",
-        "What determines how many segments there are",
-        (
-            ("AUTO", "Automatic", "As many as there are, given an angle, a weight, or a coarseness"),
-            ("COUNT", "Count", "As many as you choose"),
-        ),
-        default="AUTO",
-        expand=True,
-        flag=None,
+        "Mode", "What determines how many segments there are", MODES, default="AUTO", expand=True, flag=None
     )
     angle: number(
         "Angle",
         "Two faces of a shape become one segment if they meet at an edge bent by less than about this "
         "angle. Larger angles give fewer segments",
-        default=BEND * 0.5,
-        min=np.radians(0.005),
-        max=np.pi,
-        soft_min=np.radians(2.0),
-        soft_max=np.radians(120.0),
+        Range(
+            BEND * 0.5, min=np.radians(0.005), max=np.pi, soft_min=np.radians(2.0), soft_max=np.radians(120.0)
+        ),
         subtype="ANGLE",
         shown=by_angle,
     )
@@ -137,34 +170,21 @@ class SegmentSettings(Settings):
         "Border Weight",
         "What a border costs for its length (λ of the paper), where segments are found on an attribute. "
         "Larger values give fewer segments",
-        default=0.5,
-        min=1e-4,
-        max=1e4,
-        soft_min=0.05,
-        soft_max=3.0,
-        precision=2,
+        Range(0.5, min=1e-4, max=1e4, soft_min=0.05, soft_max=3.0, precision=2),
         shown=by_weight,
     )
     coarseness: number(
         "Coarseness",
         "How much a cut must be worth: short against what it cuts off, and through hollows. Larger values "
         "give fewer parts. Cuts of about the same worth, as of two arms, are made all or none",
-        default=1.0,
-        min=0.01,
-        max=100.0,
-        soft_min=0.5,
-        soft_max=4.0,
-        precision=2,
+        Range(1.0, min=0.01, max=100.0, soft_min=0.5, soft_max=4.0, precision=2),
         shown=lambda settings: of_parts(settings) and not by_count(settings),
     )
     count: integer(
         "Segments",
         "Number of segments. The weakest borders are removed first, so that fewer segments are unions of "
         "more. A mesh is computed only once",
-        default=6,
-        min=1,
-        max=100_000,
-        soft_max=100,
+        Range(6, min=1, max=100_000, soft_max=100),
         shown=by_count,
         flag="--segments",
         implies={"mode": "COUNT"},
@@ -172,35 +192,7 @@ class SegmentSettings(Settings):
     outputs: choices(
         "Make",
         'What to make of the segments, besides the face attribute "ridgeform_segment"',
-        (
-            (
-                "MATERIALS",
-                "Material Slots",
-                "A slot with a color of its own for each segment. Existing slots and materials stay, those "
-                "of an earlier run are used again",
-            ),
-            ("SEAMS", "Seams", "Mark the borders as seams for unwrapping. Existing seams are kept"),
-            ("SHARP", "Sharp Edges", "Mark the borders as sharp edges. Existing marks are kept"),
-            ("FACE_SETS", "Face Sets", "Make each segment a face set of Sculpt Mode"),
-            (
-                "VERTEX_GROUPS",
-                "Vertex Groups",
-                "Make a vertex group of each segment, replacing those of an earlier run",
-            ),
-            (
-                "INDICATOR",
-                "Indicator",
-                "Store where the borders are, 0 on them and 1 inside segments, in the attribute "
-                '"ridgeform_indicator"',
-            ),
-            (
-                "SHARPENED",
-                "Sharpened Surface",
-                "Keep what the borders were found on, flattened between them: a shape as a new shape key, an "
-                "attribute as a new one",
-            ),
-            ("OBJECTS", "Separate Objects", "Make each segment an object of its own. Only in Object Mode"),
-        ),
+        OUTPUTS,
         default={"MATERIALS"},
         flag="--make",
     )
@@ -208,10 +200,7 @@ class SegmentSettings(Settings):
         "Transition",
         "Width of the band around a border in which the weights of vertex groups change from 0 to 1, for "
         "rigging. 0 gives every vertex the full weight of its segment",
-        default=0.0,
-        min=0.0,
-        soft_max=10.0,
-        precision=3,
+        Range(0.0, min=0.0, soft_max=10.0, precision=3),
         subtype="DISTANCE",
         active=lambda settings: "VERTEX_GROUPS" in settings.outputs,
     )
@@ -223,11 +212,7 @@ class SegmentSettings(Settings):
     existing: choices(
         "Keep Borders",
         "Borders of the mesh that cuts follow wherever they can",
-        (
-            ("SHARP", "Sharp", "Edges marked as sharp"),
-            ("SEAMS", "Seams", "Seams"),
-            ("MATERIALS", "Materials", "Edges between faces of different materials"),
-        ),
+        BORDERS,
         flag="--keep-borders",
         shown=of_parts,
     )
@@ -242,27 +227,15 @@ class SegmentSettings(Settings):
     min_faces: integer(
         "Minimum Faces",
         "Segments with fewer triangles are merged with a neighbor",
-        default=20,
-        min=0,
-        soft_min=1,
-        optional=False,
+        Range(20, min=0, soft_min=1, soft_max=200),
         otherwise="it is as many as the noise of the mesh calls for",
-        soft_max=200,
         section=shared.EXPERT,
         shown=of_faces,
     )
     method: choice(
         "Method",
         "How segments are made from the indicator of borders",
-        (
-            (
-                "fitted",
-                "Fitted",
-                "Flooded between the borders, merged where little bends, faces at a border given to the side "
-                "that they fit best",
-            ),
-            ("paper", "Paper", "Cut where the indicator is below the threshold (Rowe et al. 2024)"),
-        ),
+        METHODS,
         default="fitted",
         section=shared.EXPERT,
         shown=of_faces,
@@ -297,17 +270,7 @@ class SegmentSettings(Settings):
         default=0.001,
     )
     scale: choice(
-        "Unit",
-        "Length that counts as 1",
-        (
-            ("extent", "Extent", "The size of the shape, however it is turned: for a cube its side"),
-            ("bounding_box", "Bounding Box", "The longest side of the bounding box"),
-            ("area", "Area", "The square root of the surface area"),
-            ("max_edge", "Longest Edge", "The longest edge"),
-        ),
-        default="extent",
-        section=shared.EXPERT,
-        shown=of_faces,
+        "Unit", "Length that counts as 1", UNITS, default="extent", section=shared.EXPERT, shown=of_faces
     )
     solver: shared.SOLVER.but(shown=of_faces)
     max_iterations: shared.MAX_ITERATIONS.but(shown=of_faces)

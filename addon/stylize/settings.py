@@ -8,6 +8,7 @@ import numpy as np
 
 from ..framework import shared_settings as shared
 from ..framework.settings import (
+    Range,
     Settings,
     boolean,
     choice,
@@ -50,32 +51,54 @@ def first_fidelity_of(strength: float) -> float:
     return 10.0 ** (8.55 - 4.0 * strength)
 
 
+FINISHES = (
+    ("KEEP", "Keep Mesh", "Keep vertices and faces, and move the vertices only"),
+    (
+        "FACETS",
+        "Facets",
+        "Make one flat polygon of each facet, with straight ridges between them. For meshes without "
+        "shape keys, in Object Mode",
+    ),
+    (
+        "LOW_POLY",
+        "Low Poly",
+        "Simplify the result: flat facets need few triangles. Quads and n-gons become triangles. "
+        "For meshes without shape keys, in Object Mode",
+    ),
+)
+PLACES = (
+    ("POSITIONS", "Mesh", "Move the vertices, or the active shape key if there is one"),
+    ("SHAPE_KEY", "New Shape Key", "Leave the mesh as it is and put the result into a new shape key"),
+    (
+        "ATTRIBUTE",
+        "Attribute and Modifier",
+        "Leave the mesh as it is, put the result into an attribute, and add a modifier that blends "
+        "the mesh with it by a factor or a mask",
+    ),
+)
+UNITS = (
+    ("max_edge", "Longest Edge", "The unit of the paper"),
+    (
+        "bounding_box",
+        "Bounding Box",
+        "The longest side of the bounding box: independent of the density of the mesh",
+    ),
+    (
+        "area",
+        "Area",
+        "The square root of the surface area: independent of the density of the mesh and of how the "
+        "object is turned",
+    ),
+)
+
+
 class StylizeSettings(Settings):
     """The settings of stylize."""
 
     former: ClassVar = {
         "reduce": {True: {"finish": "LOW_POLY", "reduce_ratio": 0.25}, False: {"finish": "KEEP"}}
     }
-    finish: choice(
-        "Finish",
-        "What the result is made of",
-        (
-            ("KEEP", "Keep Mesh", "Keep vertices and faces, and move the vertices only"),
-            (
-                "FACETS",
-                "Facets",
-                "Make one flat polygon of each facet, with straight ridges between them. For meshes without "
-                "shape keys, in Object Mode",
-            ),
-            (
-                "LOW_POLY",
-                "Low Poly",
-                "Simplify the result: flat facets need few triangles. Quads and n-gons become triangles. "
-                "For meshes without shape keys, in Object Mode",
-            ),
-        ),
-        default="KEEP",
-    )
+    finish: choice("Finish", "What the result is made of", FINISHES, default="KEEP")
     reduce_ratio: factor(
         "Ratio",
         "Ratio of triangles to keep",
@@ -90,24 +113,16 @@ class StylizeSettings(Settings):
     facets: integer(
         "Facets",
         "Number of facets",
-        default=100,
-        min=0,
-        max=1_000_000,
-        soft_min=4,
-        soft_max=500,
+        Range(100, min=0, max=1_000_000, soft_min=4, soft_max=500),
         shown=lambda settings: settings.finish == "FACETS",
         implies={"finish": "FACETS"},
-        optional=False,
         otherwise="there are as many as the flow has made flat",
     )
     steps: integer(
         "Steps",
         "Maximum number of flattening steps. Fewer are done when the facets have settled, or when Strength "
         "is reached",
-        default=20,
-        min=1,
-        max=1000,
-        soft_max=60,
+        Range(20, min=1, max=1000, soft_max=60),
     )
     strength: shared.strength(
         "How much of the surface becomes flat, and how far it may move for that: 0 keeps every detail, 1 "
@@ -128,16 +143,7 @@ class StylizeSettings(Settings):
     output: choice(
         "Result",
         "Where to put the result",
-        (
-            ("POSITIONS", "Mesh", "Move the vertices, or the active shape key if there is one"),
-            ("SHAPE_KEY", "New Shape Key", "Leave the mesh as it is and put the result into a new shape key"),
-            (
-                "ATTRIBUTE",
-                "Attribute and Modifier",
-                "Leave the mesh as it is, put the result into an attribute, and add a modifier that blends "
-                "the mesh with it by a factor or a mask",
-            ),
-        ),
+        PLACES,
         default="POSITIONS",
         section=WHERE,
         flag=None,
@@ -152,13 +158,10 @@ class StylizeSettings(Settings):
     mark_angle: number(
         "Ridge Angle",
         "Minimum angle between the two faces of an edge for it to be marked as a ridge",
-        default=np.radians(20.0),
-        min=0.0,
-        max=np.pi,
+        Range(np.radians(20.0), min=0.0, max=np.pi),
         subtype="ANGLE",
         section=FINISH_OPTIONS,
         active=lambda settings: bool(settings.marks),
-        optional=False,
         otherwise="it is the angle that separates the edges inside facets from the ridges of this shape",
     )
     use_fidelity: shared.USE_FIDELITY
@@ -170,20 +173,7 @@ class StylizeSettings(Settings):
     scale: choice(
         "Unit",
         "Length in which the fidelity weight is measured",
-        (
-            ("max_edge", "Longest Edge", "The unit of the paper"),
-            (
-                "bounding_box",
-                "Bounding Box",
-                "The longest side of the bounding box: independent of the density of the mesh",
-            ),
-            (
-                "area",
-                "Area",
-                "The square root of the surface area: independent of the density of the mesh and of how the "
-                "object is turned",
-            ),
-        ),
+        UNITS,
         default="max_edge",
         section=shared.EXPERT,
         active=shared.uses_fidelity,
@@ -195,13 +185,10 @@ class StylizeSettings(Settings):
     tolerance: number(
         "Tolerance",
         "Certified relative duality gap that each step must reach",
-        default=1e-3,
-        min=0.0,
-        max=1.0,
-        precision=6,
+        Range(1e-3, min=0.0, max=1.0, precision=6),
         section=shared.EXPERT,
-        optional=True,
         otherwise="a step ends when nothing visible changes",
+        used=True,
     )
     max_iterations: shared.MAX_ITERATIONS
 

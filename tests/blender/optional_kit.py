@@ -7,7 +7,7 @@ OPTIONAL = [
     (tool, name)
     for tool in registry.TOOLS
     for name, setting in tool.settings.declared.items()
-    if setting.optional is not None
+    if setting.optional
 ]
 every_optional_number = pytest.mark.parametrize(
     ("tool", "name"), OPTIONAL, ids=[f"{tool.key}-{name}" for tool, name in OPTIONAL]

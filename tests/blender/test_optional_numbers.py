@@ -17,12 +17,12 @@ def panel_of(tool):
 def test_an_optional_number_has_a_check_box_in_its_row(tool, name):
     setting, box = tool.settings.declared[name], tool.settings.declared[switch_of(name)]
     assert (box.label, box.section) == (setting.label, setting.section)
-    assert box.default is setting.optional
+    assert box.default is setting.used
     assert setting.default > 0
     layout = layout_kit.Layout()
     rows.draw_setting(layout, defaults_of(tool.settings), name, setting, None)
     assert layout.rows == [switch_of(name), name]
-    assert chosen(defaults_of(tool.settings), name) == (setting.default if setting.optional else None)
+    assert chosen(defaults_of(tool.settings), name) == (setting.default if setting.used else None)
     assert chosen(defaults_of(tool.settings, **{name: 3}), name) == 3
     assert chosen(defaults_of(tool.settings, **{name: 0}), name) is None
     assert chosen(defaults_of(tool.settings, **{name: 3, switch_of(name): False}), name) is None

@@ -59,7 +59,7 @@ def test_every_setting_has_a_row_in_its_section_once(tool, add_mesh):
     settings = defaults_of(tool.settings)
     for name, setting in tool.settings.declared.items():
         number = tool.settings.declared.get(name.removeprefix("use_"))
-        row = number if number is not None and number.optional is not None else setting
+        row = number if number is not None and number.optional else setting
         if row.shown is not None:
             assert make_shown(settings, row, tool)
         drawn = layout_kit.Layout()
@@ -353,9 +353,9 @@ def words_of_default(setting):
     value = setting.default
     if isinstance(value, bool):
         return {"on" if value else "off"}
-    if setting.optional is False:
+    if setting.optional and not setting.used:
         return {"off"}
-    if setting.optional:
+    if setting.used:
         return {f"on, {flags.default_text(setting.but(implies={}))}"}
     if isinstance(value, set):
         return {", ".join(label for identifier, label, _ in setting.items if identifier in value)}
