@@ -155,3 +155,36 @@ fn flatness_of_known_shapes() {
     reversed.faces[5].swap(0, 1);
     assert_eq!(of(&reversed).n_facets, 6);
 }
+
+#[test]
+fn round_shapes_are_flat_nowhere_however_dense() {
+    for density in 2..=6 {
+        let shape = shapes::icosphere(density);
+        let ball = Flatness::of(shape.mesh().unwrap().connectivity(), &shape.vertices);
+        assert_eq!((ball.flat_share, ball.plane_share), (0.0, 0.0), "{density}");
+    }
+}
+
+#[test]
+fn planes_are_flat_however_dense_and_rounded() {
+    for density in [4, 40, 200] {
+        // Triangles a hundred times as long as high, too.
+        for stretch in [1.0, 0.01] {
+            let rounded = |shape: Shape| shape.map(|point| point.map(|x| f64::from(x as f32)));
+            let cube = rounded(shapes::cube(density).rotated(AXIS, 0.8));
+            let sheet = shapes::grid(density, density).map(|[x, y, z]| [x, stretch * y, z]);
+            let sheet = rounded(sheet.rotated(AXIS, 0.8));
+            let of = |shape: &Shape| Flatness::of(shape.mesh().unwrap().connectivity(), &shape.vertices);
+            let (cube, sheet) = (of(&cube), of(&sheet));
+            assert_eq!((cube.n_facets, sheet.n_facets), (6, 1), "{density} {stretch}");
+            assert!(sheet.flat_share > 0.999 && cube.plane_share > 0.999);
+        }
+    }
+}
+
+#[test]
+fn a_dense_ball_becomes_facets() {
+    let ball = flow(&shapes::icosphere(5), &StylizeOptions { flat_share: Some(0.5), ..options(0.012) });
+    assert!(ball.flatness[1].n_facets > 12 && ball.flatness[1].n_facets < 300, "{:?}", ball.flatness);
+    assert!(ball.flatness[1].flat_share > 0.3, "{:?}", ball.flatness);
+}
