@@ -24,6 +24,9 @@ NOISE_STRENGTH = 0.6
 BANDS = 10
 HOUSE_NOISE = 0.1
 SEGMENT_COUNTS = (5, None, 30)
+PART_VIEW = (0.7, -1.0, 0.8)
+PART_NOISE = 0.2
+NOISE_FACTORS = (0.25, 1.0, 4.0)
 FACET_COUNTS = {"bust": (80, 200, 400), "spot": (60, 150)}
 
 
@@ -199,6 +202,52 @@ def facets() -> None:
     pictures.sheet(PICTURES / "facets.png", [row], captions=[captions], text_pixels=15)
 
 
+def facet() -> None:
+    """Spot as it is and in facets, for a slider."""
+    import pictures  # noqa: PLC0415
+    import ridgeform  # noqa: PLC0415
+
+    points, triangles = source("spot")
+    made = ridgeform.facet(ridgeform.Mesh(points, triangles), facets=FACET_COUNTS["spot"][1])
+    look = {"view": SPOT_VIEW, "size": (440, 420), "frame": points}
+    row = [pictures.render(points, triangles, **look), pictures.render(made.vertices, made.faces, **look)]
+    pictures.sheet(PICTURES / "facet_spot.png", [row])
+
+
+def surface_colors(labels: np.ndarray) -> np.ndarray:
+    """A color for each face, by the number of its surface; clay for those that have none."""
+    import pictures  # noqa: PLC0415
+
+    from addon.segments.slots import color_of  # noqa: PLC0415
+
+    palette = np.array([color_of(number)[:3] for number in range(labels.max() + 1)] + [pictures.CLAY])
+    return palette[labels]
+
+
+def restored() -> None:
+    """A noisy part before and after, and its surfaces; and what the setting Noise does to these."""
+    import pictures  # noqa: PLC0415
+    import ridgeform  # noqa: PLC0415
+    from known_shapes import segment_shapes  # noqa: PLC0415
+
+    part = segment_shapes.SHAPES["fan part"](1)
+    noisy = part.noisy(PART_NOISE, 0).vertices
+    mesh = ridgeform.Mesh(noisy, part.faces)
+    found = ridgeform.restore(mesh)
+    look = {"view": PART_VIEW, "size": (300, 260), "frame": noisy}
+    row = [pictures.render(points, part.faces, **look) for points in (noisy, found.vertices)]
+    row.append(pictures.render(found.vertices, part.faces, color=surface_colors(found.labels), **look))
+    captions = ["a scan", "restored", f"its {len(found.surfaces)} surfaces"]
+    pictures.sheet(PICTURES / "restore.png", [row], captions=[captions], text_pixels=15)
+    row, captions = [], []
+    for factor in NOISE_FACTORS:
+        made = ridgeform.restore(mesh, noise=factor * found.noise)
+        print(factor, made, flush=True)
+        row.append(pictures.render(made.vertices, part.faces, color=surface_colors(made.labels), **look))
+        captions.append(f"Noise {factor:g} times: {len(made.surfaces)} surfaces")
+    pictures.sheet(PICTURES / "restore_noise.png", [row], captions=[captions], text_pixels=15)
+
+
 def holes(name: str) -> None:
     """A picture of the page on filling holes."""
     import hole_pictures  # noqa: PLC0415
@@ -215,6 +264,8 @@ DRAWN = {
     "attributes": attributes,
     "segments": segments,
     "facets": facets,
+    "facet": facet,
+    "restore": restored,
     "holes_box": lambda: holes("box"),
     "holes_checker": lambda: holes("checker"),
 }

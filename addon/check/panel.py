@@ -17,6 +17,8 @@ class RIDGEFORM_PT_check(InTab, bpy.types.Panel):  # noqa: N801
     bl_idname = "RIDGEFORM_PT_check"
     bl_label = "Check Mesh"
     bl_options = {"DEFAULT_CLOSED"}
+    # As a popover, wide enough for its sentences.
+    bl_ui_units_x = 15
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw what was found last, and the button to look again."""

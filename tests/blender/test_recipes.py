@@ -13,11 +13,17 @@ from hole_kit import box
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGES = [DOCS.parent / "README.md", *sorted(DOCS.glob("*.md"))]
-RECIPES = re.findall(
-    r"^## ([^\n]+)\n(?:(?!^## ).)*?^```python\n(.*?)^```",
+SECTIONS = re.findall(
+    r"^## ([^\n]+)\n(.*?)(?=^## |\Z)",
     (DOCS / "recipes.md").read_text(encoding="utf-8"),
     re.MULTILINE | re.DOTALL,
 )
+RECIPES = [
+    (title, code)
+    for title, section in SECTIONS
+    for code in re.findall(r"^```python\n(.*?)^```", section, re.MULTILINE | re.DOTALL)
+]
+"""Every Python block, with the recipe that it is in."""
 
 
 def painted_box_with_a_hole():
@@ -52,12 +58,15 @@ def test_the_python_of_a_recipe_runs(title, code):
         assert len([group for group in obj.vertex_groups if group.name.startswith("ridgeform_segment")]) > 3
     if "diffusion" in code:
         assert any(child.type == "CURVES" for child in obj.children)
-    if "FACETS" in code:
+    if "FACETS" in code or ".facet(" in code:
         assert len(obj.data.polygons) < 100
+    if ".restore(" in code:
+        assert all(max(map(abs, face.normal)) > 0.9999 for face in obj.data.polygons)
+        assert [child.type for child in obj.children] == ["EMPTY"] * 6
 
 
 def test_all_recipes_with_python_are_found():
-    assert len(RECIPES) >= 7
+    assert len(RECIPES) >= 11
 
 
 def command_lines():
