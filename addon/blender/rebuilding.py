@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The border between Blender and NumPy where a mesh gets other faces: what it was, what it becomes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
 
-from . import mesh_io, mesh_layers
+from . import kept_normals, mesh_io, mesh_layers
 from .carrying import Triangulation
 from .mesh_layers import ATTRIBUTE_KINDS, Layers
 from .mesh_state import ChangedError
@@ -21,14 +21,21 @@ class Before:
     polygons: Polygons
     """Its faces."""
     layers: Layers
-    has_normals: bool
-    """Whether it has custom normals, which no other faces keep."""
+    normals: np.ndarray | None
+    """The normals (c, 3) of its corners, if it has custom ones."""
 
     @property
     def n_loose(self) -> int:
         """How many vertices have no face."""
         used = np.bincount(self.old.triangles.ravel(), minlength=len(self.old.coordinates))
         return int((used == 0).sum())
+
+    def kept_normals(self, points: np.ndarray, faces: Polygons, coordinates: np.ndarray) -> np.ndarray | None:
+        """The normals (d, 3) of the corners of other faces, given the mesh's coordinates (n, 3) of now."""
+        if self.normals is None:
+            return None
+        old = replace(self.old, coordinates=coordinates)
+        return kept_normals.kept(self.normals, old, self.polygons, points, faces)
 
 
 @dataclass
@@ -40,6 +47,8 @@ class Rebuilt:
     layers: Layers
     note: str = ""
     """What is to be said of it."""
+    normals: np.ndarray | None = None
+    """The normals (d, 3) of its corners, 0 where they are not custom ones; `None` where none were before."""
 
 
 def reason_against(mesh: bpy.types.Mesh, leaves_mesh: bool = False) -> str | None:
@@ -67,7 +76,7 @@ def read(obj: bpy.types.Object) -> Before:
         mesh_io.positions(mesh).astype(np.float64),
     )
     starts, corners, _ = mesh_io.face_corners(mesh)
-    return Before(old, Polygons(corners, starts), mesh_layers.read_layers(obj), mesh.has_custom_normals)
+    return Before(old, Polygons(corners, starts), mesh_layers.read_layers(obj), kept_normals.read(mesh))
 
 
 def check(obj: bpy.types.Object, before: Before) -> None:
@@ -81,7 +90,8 @@ def check(obj: bpy.types.Object, before: Before) -> None:
 def write(obj: bpy.types.Object, made: Rebuilt) -> np.ndarray:
     """Give the mesh of an object other points, faces and layers; its materials stay.
 
-    Returned is the row (k,) in the edges of the faces of each edge of the mesh.
+    Returned is the row (k,) in the edges of the faces of each edge of the mesh. Normals come last, by
+    `kept_normals.write`, when edges are marked.
     """
     mesh, faces = obj.data, made.faces
     mesh.clear_geometry()

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 import ridgeform
 
-from ..blender import mesh_io, modifiers, rebuilding
+from ..blender import kept_normals, mesh_io, modifiers, rebuilding
 from ..blender.refusals import RefusedError
 from ..framework import faceting
 from ..framework.faceting import Facetable, FacetMesh
@@ -61,8 +61,6 @@ class Faceting(Run):
         part.warnings += surface.weld.notes
         part.warnings += modifiers.mirror_notes(obj, coordinates)
         part.warnings += modifiers.shape_notes(obj, "CREASE" in self.settings.marks)
-        if source.before.has_normals:
-            part.warnings.append("custom normals were dropped")
         return part
 
     def replaces_faces(self, part: FacetPart) -> bool:
@@ -88,10 +86,12 @@ class Faceting(Run):
         mesh_io.mark_edges(obj.data, ridges, self.settings.marks)
         if self.settings.mark_seams:
             mesh_io.mark_seams(obj.data, ridges)
+        kept_normals.write(obj.data, made.rebuilt.normals)
 
     def figures(self, part: FacetPart) -> dict[str, object]:
         """How many facets there are, and how far they are from the mesh in parts of its size."""
-        found = part.task.result.found
+        made = part.task.result
+        found = made.found
         wanted = self.settings.facets if by_count(self.settings) else None
         return {
             "facets": int(found.n_facets),
@@ -100,7 +100,7 @@ class Faceting(Run):
             "crossings": int(found.n_crossings),
             "status": str(found.status),
             "faces": len(part.object.data.polygons),
-            "warnings": part.warnings + faceting.notes(found, wanted),
+            "warnings": part.warnings + faceting.notes(found, made.mesh.rebuilt, wanted),
         }
 
     @classmethod

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 import ridgeform
 
-from ..blender import mesh_io, mesh_layers, modifiers, rebuilding
+from ..blender import kept_normals, mesh_io, mesh_layers, modifiers, rebuilding
 from ..blender.carrying import Kept, carried
 from ..blender.mesh_layers import Layer
 from ..blender.mirroring import Plane
@@ -106,9 +106,9 @@ def facets_of(
     return found, faceted(source, found, coordinates, triangles=triangles, flat=flat, check=check)
 
 
-def notes(found: ridgeform.Faceted, wanted: int | None) -> list[str]:
+def notes(found: ridgeform.Faceted, made: Rebuilt, wanted: int | None) -> list[str]:
     """What a modeler should know of facets, of which `wanted` were asked for."""
-    said = []
+    said = [note for note in (kept_normals.note(made.normals),) if note is not None]
     if wanted is not None and found.n_facets != wanted:
         said.append(f"{wanted} facets were asked for, {found.n_facets} are what comes nearest")
     if found.n_crossings:
@@ -156,7 +156,8 @@ def faceted(
     everything = replace(source.before.layers, attributes=source.before.layers.attributes + source.flags)
     layers = carried(everything, old, surface, points, rebuilt, anchors=anchors, kept=kept)
     _set_flags(layers, kept, rebuilt, facets >= 0 if flat else None)
-    return FacetMesh(Rebuilt(points, rebuilt, layers), facets)
+    normals = source.before.kept_normals(points, rebuilt, coordinates)
+    return FacetMesh(Rebuilt(points, rebuilt, layers, normals=normals), facets)
 
 
 def _faces_of(found: ridgeform.Faceted, triangles: bool) -> tuple[Polygons, np.ndarray]:

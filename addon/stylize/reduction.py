@@ -8,7 +8,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 
-from ..blender import rebuilding
+from ..blender import kept_normals, rebuilding
 from ..blender.carrying import MarkedEdges, carried
 from ..blender.polygons import Polygons
 from ..blender.rebuilding import Before, Rebuilt
@@ -92,7 +92,9 @@ def reduce(
     said = [f"reduced from {len(triangles)} to {len(faces)} triangles"]
     if len(faces) > MORE * wanted:
         said.append(f"{wanted} were asked for, but borders, marks, and masks keep their vertices")
-    return Rebuilt(points, polygons, layers, "; ".join([*said, *_losses(source)]))
+    normals = source.kept_normals(points, polygons, coordinates)
+    said += [*_losses(source), *filter(None, [kept_normals.note(normals)])]
+    return Rebuilt(points, polygons, layers, "; ".join(said), normals)
 
 
 def _losses(before: Before) -> list[str]:
@@ -101,7 +103,6 @@ def _losses(before: Before) -> list[str]:
     facts = (
         (int(before.old.faces.max(initial=-1)) + 1 != len(triangles), "quads and n-gons became triangles"),
         (before.n_loose > 0, f"vertices without a face were dropped ({before.n_loose})"),
-        (before.has_normals, "custom normals were dropped"),
     )
     return [sentence for applies, sentence in facts if applies]
 

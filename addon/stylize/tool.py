@@ -122,7 +122,7 @@ class Stylization(Run):
         return {
             "facets": int(result.n_facets) if made is None else made,
             "flat_share": float(result.flat_share[-1]),
-            "moved": part.source.moved(result.vertices),
+            "moved": part.task.result.moved,
             "energy_before": float(result.energy[0]),
             "energy_after": float(result.energy[-1]),
             "gap": float(result.gap.max()) if len(result.gap) else 0.0,

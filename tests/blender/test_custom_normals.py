@@ -84,3 +84,63 @@ def test_uvs_and_colors_stay_in_every_bit():
     obj.data.uv_layers[0].data.foreach_get("uv", now[0])
     obj.data.color_attributes["Paint"].data.foreach_get("color", now[1])
     assert np.array_equal(now[0], layout) and np.array_equal(now[1], paint)
+
+
+def bent_box():
+    """A smooth box whose custom normals are bent."""
+    obj = smooth_box()
+    bent = corner_normals(obj) + 0.3 * np.array([0.0, 0.0, 1.0], np.float32)
+    bent /= np.linalg.norm(bent, axis=1, keepdims=True)
+    obj.data.normals_split_custom_set(bent.tolist())
+    return obj
+
+
+NEW_FACES = [
+    lambda **given: bpy.ops.ridgeform.stylize(finish="LOW_POLY", reduce_ratio=0.4, **given),
+    lambda **given: bpy.ops.ridgeform.stylize(finish="FACETS", **given),
+    bpy.ops.ridgeform.facet,
+]
+
+
+def notes():
+    return "; ".join(job.last_summary()[0]["warnings"])
+
+
+@pytest.mark.parametrize("call", NEW_FACES)
+def test_new_faces_have_none_and_it_is_said(call):
+    obj = bent_box()
+    assert call() == {"FINISHED"}
+    assert "its custom normals were cleared" in notes() and "so that the facets show" in notes()
+    assert obj.data.has_custom_normals == ("where its faces are new" in notes())
+    kit.empty_scene()
+    smooth_box()
+    assert call() == {"FINISHED"}
+    assert "custom normals" not in notes()
+
+
+@pytest.mark.parametrize("call", NEW_FACES)
+def test_faces_that_a_mask_holds_keep_theirs(call):
+    obj = bent_box()
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.mesh.quads_convert_to_tris()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    normals = corner_normals(obj)
+    places, mesh = kit.coordinates(obj), obj.data
+    group = obj.vertex_groups.new(name="Mask")
+    group.add(np.flatnonzero(places[:, 2] > -0.3).tolist(), 1.0, "REPLACE")
+    held = {}
+    for loop, normal in zip(mesh.loops, normals, strict=True):
+        held.setdefault(tuple(places[loop.vertex_index].tolist()), []).append(normal)
+    deep = {place for place in held if place[2] < -0.8}
+    assert call(strength_group="Mask") == {"FINISHED"}
+    assert "its custom normals were cleared where its faces are new" in notes()
+    now, places = corner_normals(obj), kit.coordinates(obj)
+    seen = 0
+    for loop, normal in zip(mesh.loops, now, strict=True):
+        place = tuple(places[loop.vertex_index].tolist())
+        if place in deep:
+            seen += 1
+            # Normals are stored in 16 bits, relative to the faces.
+            assert min(degrees_between(np.array(held[place]), normal[None])) < 0.1
+    assert seen > 50

@@ -23,10 +23,10 @@ pub struct Stylized {
     iterations: usize,
     /// Numeric factorizations, all steps together.
     factorisations: usize,
-    /// The part of the area in faces that meet all neighbors at less than 2 degrees, before and after,
-    /// (2,) float64.
+    /// The part of the area in faces that lie in one plane with all their neighbors (at less than 2 degrees,
+    /// in proportion less where they are smaller than 3e-4 of the area), before and after, (2,) float64.
     flat_share: Py<PyArray1<f64>>,
-    /// Facets that one would count afterward: parts whose faces meet at less than 2 degrees,
+    /// Facets that one would count afterward: parts whose faces lie in one plane in that sense,
     /// with at least 3e-4 of the area.
     n_facets: usize,
     /// "finished" (all steps done), "reached" (moved as far as `movement` allows, or as flat as `flat_share`

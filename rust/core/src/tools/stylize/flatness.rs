@@ -6,16 +6,16 @@ use crate::mesh::partition::Partition;
 use crate::mesh::{vector, Connectivity};
 use crate::tools::scale::extent;
 
-/// Faces that meet at less than this angle lie in one plane to the eye (radians; 2 degrees), where the smallest
-/// facet that one would count has room for no more than the two.
+/// Faces that meet at less than this angle lie in one plane to the eye (radians; 2 degrees), where the
+/// smallest facet that one would count has room for no more than the two.
 ///
-/// Where it has room for more, they may bend by that much all in all: otherwise a dense mesh of anything round is
-/// one plane. Meshes of known spheres are flat nowhere at any density, and what the flow has made flat stays so:
-/// the median angle within its facets is below 0.005 degrees on six scans.
+/// Where it has room for more, they may bend by that much all in all: otherwise a dense mesh of anything
+/// round is one plane. Meshes of known spheres are flat nowhere at any density, and what the flow has made
+/// flat stays so: the median angle within its facets is below 0.005 degrees on six scans.
 const FLAT: f64 = 2.0 / 180.0 * std::f64::consts::PI;
 
-/// How far rounding to single precision moves faces against their neighbors, in parts of the shape's size: 1.2 times
-/// its precision at most on flat sheets of known shape.
+/// How far rounding to single precision moves faces against their neighbors, in parts of the shape's size:
+/// 1.2 times its precision at most on flat sheets of known shape.
 const ROUNDING: f64 = 2.0 * f32::EPSILON as f64;
 
 /// Edges with less than this angle are soft to the eye, whatever the shading (radians; 20 degrees).
@@ -28,8 +28,8 @@ const SEEN: f64 = 3e-4;
 /// What the angles at the edges of a shape say about it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flatness {
-    /// The part of the area in faces that lie in one plane with all their neighbors: that meet them at less than
-    /// two degrees, and at less where they are smaller than the smallest facet that one would count.
+    /// The part of the area in faces that lie in one plane with all their neighbors: that meet them at less
+    /// than two degrees, and at less where they are smaller than the smallest facet that one would count.
     pub flat_share: f64,
     /// The part of the bend `Σ length · angle` that lies in edges of less than twenty degrees.
     pub soft_share: f64,
