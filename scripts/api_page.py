@@ -14,7 +14,7 @@ GROUPS = {
     ),
     "Shapes": (
         "stylize", "Stylized", "fill_holes", "Filled", "FilledHole", "segment", "Segmentation",
-        "parts", "Parts", "restore", "Restored",
+        "parts", "Parts", "facet", "Faceted", "restore", "Restored",
     ),
     "Functions on surfaces": ("denoise", "interpolate", "vibration_modes", "Solution"),
     "Diffusion curves": (

@@ -3,7 +3,8 @@
     python scripts/setup_env.py scripts/build_docs.py
 
 The README is the first page. The API page is made of the docstrings and stubs of the wheel, with the cells of
-examples/api.py. MkDocs runs in an environment of its own, and stops at a link that leads nowhere.
+examples/api.py; the notebooks are run. MkDocs runs in an environment of its own, and stops at a link that
+leads nowhere.
 """
 
 import os
@@ -15,7 +16,7 @@ from pathlib import Path
 from api_page import api_page
 from build_wheel import build_wheel
 from setup_env import fill_environment
-from workspace import OUT, ROOT, run, stop
+from workspace import OUT, ROOT, WHEEL_SITE, python_path, run, stop
 
 SOURCE = OUT / "site-source"
 SITE = OUT / "site"
@@ -75,6 +76,8 @@ def main() -> None:
     build_wheel()
     stage()
     python = fill_environment("docs", sys.executable, ["docs"], "mkdocs")
+    path = {"PYTHONPATH": python_path(WHEEL_SITE)}
+    run([python, ROOT / "scripts/notebook_pages.py", SOURCE / "notebooks"], "notebooks", path)
     # The theme announces its maker's next product on every run otherwise.
     quiet = {"NO_MKDOCS_2_WARNING": "1", "DISABLE_MKDOCS_2_WARNING": "true"}
     run(
