@@ -39,6 +39,13 @@ class Plane:
     normal: np.ndarray
     offset: float
     is_on: np.ndarray
+    reach: float = 0.0
+    """How far from it others become one with their image, too."""
+
+    def holds(self, places: np.ndarray) -> np.ndarray:
+        """Which of some places (n, 3) bool lie on it."""
+        rounding = np.finfo(np.float32).eps * float(np.abs(places).max(initial=0.0))
+        return np.abs(places @ self.normal - self.offset) <= max(0.5 * self.reach, rounding)
 
 
 @dataclass
@@ -173,7 +180,7 @@ class _Work:
         for value in (0.0, 1.0, -1.0):
             normal[np.abs(normal - value) < EXACT] = value
         offset = float(out[:, 0] @ mirror.matrix[:3, 3] / sizes[0])
-        return Plane(normal, offset, self.on >> bit & 1 > 0)
+        return Plane(normal, offset, self.on >> bit & 1 > 0, mirror.reach)
 
     def _projection(self, mirrors: int) -> np.ndarray:
         """The projection (3, 3) onto the directions that all mirrors of a set of bits leave alone."""

@@ -172,9 +172,15 @@ def _make_facets(
     made.moved += float(found.largest) / float(np.linalg.norm(np.ptp(places, axis=0)))
     made.notes += faceting.notes(found, made.rebuilt, wanted)
     if source.edges is not None:
-        made.ridges, least = facet_mesh.ridges(), chosen(settings, "mark_angle")
+        edges, points, least = (
+            _edges(made.rebuilt, source),
+            made.rebuilt.points,
+            chosen(settings, "mark_angle"),
+        )
+        # A facet and its image in a mirror are one where nothing bends.
+        made.ridges = facet_mesh.ridges() | (edges.on_planes(points) & edges.ridges(points, ONE_FACET))
         if least is not None:
-            made.ridges &= _edges(made.rebuilt).ridges(made.rebuilt.points, least)
+            made.ridges &= edges.ridges(points, least)
 
 
 def _stays_round(flow: ridgeform.Stylized, settings: object) -> bool:
@@ -189,9 +195,9 @@ def _width(places: np.ndarray, weld: Weld) -> float:
     return float(np.sqrt(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()))
 
 
-def _edges(rebuilt: rebuilding.Rebuilt) -> Edges:
+def _edges(rebuilt: rebuilding.Rebuilt, source: Source) -> Edges:
     faces = rebuilt.faces
-    return Edges(faces.edges, (faces.starts, faces.corners, faces.corner_edges))
+    return Edges(faces.edges, (faces.starts, faces.corners, faces.corner_edges), source.edges.planes)
 
 
 def _ridges(source: Source, made: Finished, least: float | None) -> np.ndarray:
@@ -199,7 +205,7 @@ def _ridges(source: Source, made: Finished, least: float | None) -> np.ndarray:
         return source.edges.ridges(made.coordinates, least) & source.free[source.edges.ends].all(axis=1)
     faces, points = made.rebuilt.faces, made.rebuilt.points.astype(np.float32)
     # What is left of a facet is a few triangles, and nothing between facets is round.
-    ridges = _edges(made.rebuilt).ridges(points, ONE_FACET if least is None else least)
+    ridges = _edges(made.rebuilt, source).ridges(points, ONE_FACET if least is None else least)
     held = np.isin(_rows(points), _rows(made.coordinates[~source.free]))
     return ridges & ~held[faces.edges].any(axis=1)
 

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Finding the ridges: edges with a large angle between their two faces."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+
+from ..blender.mirroring import Plane
 
 
 @dataclass(frozen=True)
@@ -12,6 +15,8 @@ class Edges:
 
     ends: np.ndarray
     corners: tuple[np.ndarray, np.ndarray, np.ndarray]
+    planes: Sequence[Plane] = ()
+    """The planes across which mirrors continue the mesh."""
 
     def ridges(self, coordinates: np.ndarray, least: float | None = None) -> np.ndarray:
         """Which edges (k,) bool are bent by at least an angle (radians), or what parts them from the others.
@@ -19,10 +24,34 @@ class Edges:
         `coordinates` (n, 3).
         """
         angles = edge_angles(coordinates, self.corners, len(self.ends))
+        for plane in self.planes:
+            self._bend_on(plane, coordinates, angles)
         if least is None:
             lengths = np.linalg.norm(coordinates[self.ends[:, 0]] - coordinates[self.ends[:, 1]], axis=1)
             least = dividing_angle(angles, lengths.astype(np.float64))
         return (angles >= 0) & (angles >= least)
+
+    def on_planes(self, coordinates: np.ndarray) -> np.ndarray:
+        """Which edges (k,) bool are open and lie on the plane of a mirror."""
+        found = np.zeros(len(self.ends), bool)
+        for plane in self.planes:
+            found |= self._open_on(plane, coordinates)
+        return found
+
+    def _open_on(self, plane: Plane, coordinates: np.ndarray) -> np.ndarray:
+        count = np.bincount(self.corners[2], minlength=len(self.ends))
+        return (count == 1) & plane.holds(coordinates.astype(np.float64))[self.ends].all(axis=1)
+
+    def _bend_on(self, plane: Plane, coordinates: np.ndarray, angles: np.ndarray) -> None:
+        """Enter how far (k,) the faces at open edges on a mirror's plane are bent against their images."""
+        starts, vertices, corner_edges = self.corners
+        corner = np.flatnonzero(self._open_on(plane, coordinates)[corner_edges])
+        face = np.searchsorted(starts, corner, side="right") - 1
+        normals = face_normals(coordinates, starts, vertices)[face]
+        lengths = np.linalg.norm(normals, axis=1)
+        corner, normals, lengths = corner[lengths > 0], normals[lengths > 0], lengths[lengths > 0]
+        across = np.clip(np.abs(normals @ plane.normal) / lengths, 0.0, 1.0)
+        angles[corner_edges[corner]] = 2.0 * np.arcsin(across)
 
 
 def face_normals(coordinates: np.ndarray, starts: np.ndarray, vertices: np.ndarray) -> np.ndarray:

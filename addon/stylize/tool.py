@@ -184,7 +184,8 @@ def _prepare(obj: bpy.types.Object, settings: object) -> FlowPart:
     source = Source(coordinates, weld, moving[weld.vertex])
     _prepare_finish(obj, settings, source)
     if settings.marks:
-        source.edges = Edges(mesh_io.edges(mesh), mesh_io.face_corners(mesh))
+        planes = () if weld.images is None else weld.images.planes
+        source.edges = Edges(mesh_io.edges(mesh), mesh_io.face_corners(mesh), planes)
     del options["iterations"]
     flow = recorded.Flow(weld.places(vertices), weld.triangles, options)
     task = Task(obj.name, lambda _: None, most=settings.steps)

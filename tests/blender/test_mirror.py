@@ -215,3 +215,60 @@ def test_images_of_a_triangle_turn_their_faces():
     assert images.is_turned.tolist() == [False, True, True, False]
     held = images.held(np.ones((5, 3)))
     assert held[:3].tolist() == [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]]
+
+
+def folded_sheet(bend: float, off: float = 0.0) -> bpy.types.Object:
+    """Half a roof whose ridge lies on the plane x = 0, `off` from it, and falls by `bend` (radians)."""
+    x, y = np.meshgrid(np.linspace(0.0, 1.0, 9), np.linspace(-1.0, 1.0, 17))
+    points = np.stack([x.ravel(), y.ravel(), -np.tan(bend) * x.ravel()], axis=1)
+    points[points[:, 0] == 0.0, 0] = off
+    start = (np.arange(16)[:, None] * 9 + np.arange(8)).ravel()
+    faces = np.stack([start, start + 1, start + 10, start + 9], axis=1)
+    return kit.add_object("Roof", points, faces.tolist())
+
+
+def sharp_edges(mesh: bpy.types.Mesh) -> np.ndarray:
+    """The middles (s, 3) of the edges that are marked sharp."""
+    places = np.array([vertex.co for vertex in mesh.vertices])
+    return np.array([places[list(edge.vertices)].mean(axis=0) for edge in mesh.edges if edge.use_edge_sharp])
+
+
+@pytest.mark.parametrize("finish", ["KEEP", "LOW_POLY", "FACETS"])
+@pytest.mark.parametrize(("bend", "is_ridge"), [(0.5, True), (0.0, False)])
+def test_a_ridge_on_the_plane_is_marked(finish, bend, is_ridge):
+    obj = folded_sheet(bend)
+    mirror(obj, "X")
+    bpy.ops.ridgeform.stylize(finish=finish, reduce_ratio=0.5, steps=2)
+    shown = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    marked = sharp_edges(shown)
+    on_plane = marked[np.abs(marked[:, 0]) < 1e-6] if len(marked) else marked
+    assert (len(on_plane) > 0) == is_ridge
+
+
+@pytest.mark.parametrize("use", ["merge distance", "mirror object", "two axes", "mask", "bevel"])
+def test_a_ridge_on_the_plane_is_marked_whatever_the_mirror(use):
+    obj = folded_sheet(0.4, 4e-4 if use == "merge distance" else 0.0)
+    settings = {"merge_threshold": 1e-3} if use == "merge distance" else {}
+    if use == "mirror object":
+        settings["mirror_object"] = bpy.data.objects.new("Center", None)
+        bpy.context.collection.objects.link(settings["mirror_object"])
+        obj.location = settings["mirror_object"].location = 1.0, 2.0, 3.0
+        bpy.context.view_layer.update()
+    given = {"marks": {"BEVEL"}} if use == "bevel" else {}
+    group = obj.vertex_groups.new(name="Mask")
+    lower = np.flatnonzero(kit.coordinates(obj)[:, 1] < 0.0).tolist()
+    group.add(lower, 1.0, "REPLACE")
+    if use == "mask":
+        given["strength_group"] = "Mask"
+    mirror(obj, "XZ" if use == "two axes" else "X", **settings)
+    bpy.ops.ridgeform.stylize(steps=1, **given)
+    marked = np.array([edge.use_edge_sharp for edge in obj.data.edges])
+    if use == "bevel":
+        weights = np.empty(len(obj.data.edges), np.float32)
+        obj.data.attributes["bevel_weight_edge"].data.foreach_get("value", weights)
+        marked = weights == 1.0
+    ends = np.array([edge.vertices for edge in obj.data.edges])
+    places = kit.coordinates(obj)[ends]
+    seam = (np.abs(places[:, :, 0]) < 1e-3).all(axis=1)
+    wanted = seam & (places[:, :, 1] < 0.0).all(axis=1) if use == "mask" else seam
+    assert seam.sum() == 16 and np.array_equal(marked[seam], wanted[seam])
