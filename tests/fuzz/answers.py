@@ -169,6 +169,52 @@ def segment(mesh: ridgeform.Mesh, given: Given, sane: bool) -> None:
         assert found.labels_at(count).max() + 1 == count
 
 
+def facet(mesh: ridgeform.Mesh, given: Given, sane: bool) -> None:
+    """Flat polygons near the mesh; what was to stay keeps every bit; closed stays closed."""
+    found = ridgeform.facet(mesh, **given)
+    n, m = mesh.n_vertices, mesh.n_faces
+    near(found.vertices, mesh)
+    finite(found.planes, found.rms, found.largest)
+    assert len(found.origins) == len(found.vertices)
+    assert ((found.origins >= 0) & (found.origins < n)).all()
+    for named in (found.polygon_vertices, found.faces):
+        assert ((named >= 0) & (named < len(found.vertices))).all()
+    assert len(found.face_facets) == len(found.faces)
+    assert found.labels.shape == (m,)
+    assert found.labels.max(initial=-1) < len(found.planes)
+    starts = found.polygon_starts
+    assert (np.diff(starts) >= 3).all()
+    assert starts[0] == 0
+    assert starts[-1] == len(found.polygon_vertices)
+    assert found.status in ("solved", "stopped")
+    if crowded(mesh.faces) == (0, 0) and is_plain(mesh):
+        assert crowded(found.faces) == (0, 0)
+        if not ridgeform.boundary_loops(mesh):
+            assert not ridgeform.boundary_loops(ridgeform.Mesh(found.vertices, found.faces))
+    if sane and "faces" in given:
+        still = np.unique(mesh.faces[~given["faces"]])
+        kept = found.vertices[np.isin(found.origins, still)]
+        np.testing.assert_array_equal(kept, mesh.vertices[found.origins[np.isin(found.origins, still)]])
+        assert np.isin(still, found.origins).all() or not is_plain(mesh)
+
+
+def restore(mesh: ridgeform.Mesh, given: Given, sane: bool) -> None:
+    """Vertices no farther than they may move; those that are fixed, or of other faces, where they were."""
+    found = ridgeform.restore(mesh, **given)
+    near(found.vertices[np.unique(mesh.faces)], mesh)
+    finite(found.noise)
+    assert found.status in ("restored", "unsure", "stopped")
+    assert found.labels.shape == (mesh.n_faces,)
+    assert found.labels.max(initial=-1) < len(found.surfaces)
+    still = np.ones(mesh.n_vertices, bool)
+    still[mesh.faces] = False
+    if sane and "fixed" in given:
+        still |= given["fixed"]
+    if sane and "faces" in given:
+        still[mesh.faces[~given["faces"]]] = True
+    np.testing.assert_array_equal(found.vertices[still], mesh.vertices[still])
+
+
 def fill_holes(mesh: ridgeform.Mesh, given: Given, sane: bool) -> None:
     """The mesh as it was, and patches that make nothing non-manifold."""
     found = ridgeform.fill_holes(mesh, **given)

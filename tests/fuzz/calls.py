@@ -91,6 +91,27 @@ TOOLS: dict[str, st.SearchStrategy[dict[str, Any]]] = {
             "scale": st.sampled_from(SCALES),
         },
     ),
+    "facet": st.fixed_dictionaries(
+        {},
+        optional={
+            "facets": st.sampled_from([1, 3, 12, 10**6]),
+            "error": powers,
+            "edge_weights": st.just("halfedge numbers"),
+            "faces": st.just("some faces"),
+            "threads": st.sampled_from([1, 2, 10**6]),
+        },
+    ),
+    "restore": st.fixed_dictionaries(
+        {},
+        optional={
+            "max_move": powers,
+            "noise": powers,
+            "regularize": st.floats(0, 30),
+            "free": st.booleans(),
+            "fixed": st.just("some vertices"),
+            "faces": st.just("some faces"),
+        },
+    ),
     "fill_holes": st.fixed_dictionaries(
         {},
         optional={
@@ -171,6 +192,7 @@ class Call:
             "vertex values": lambda: np.ldexp(rng.normal(size=(n, rng.integers(1, 4))), self.value_exponent),
             "vertex numbers": lambda: rng.random(n),
             "face numbers": lambda: rng.random(m) + 1e-3,
+            "halfedge numbers": lambda: rng.random((m, 3)),
             "some vertices": lambda: rng.random(n) < 0.2,
             "some faces": lambda: rng.random(m) < 0.6,
             "few vertices": lambda: few,
@@ -189,7 +211,7 @@ def calls(draw: st.DrawFn) -> Call:
     keywords = dict(draw(TOOLS[tool]))
     if tool in ("denoise", "interpolate"):
         keywords |= draw(scalar)
-    if tool in ("denoise", "interpolate", "vibration_modes", "stylize", "segment", "fill_holes"):
+    if tool in ("denoise", "interpolate", "vibration_modes", "stylize", "segment", "restore", "fill_holes"):
         keywords |= draw(solving)
     rarely = draw(st.integers(0, 19))
     return Call(

@@ -11,7 +11,7 @@ fn assembly(criterion: &mut Criterion) {
     let shape = shapes::torus(640, 312, 3.0, 1.0).noisy(0.002, 1);
     let mesh = shape.mesh().unwrap();
     let (connectivity, lengths) = (mesh.connectivity(), mesh.edge_lengths());
-    let pattern = HessianPattern::new(connectivity);
+    let pattern = HessianPattern::new(connectivity).unwrap();
     let mut rows = pattern.assemble(connectivity, lengths, Dual::Barycentric).unwrap();
     let mut group = criterion.benchmark_group("400k faces");
     group.sample_size(10);
@@ -19,14 +19,16 @@ fn assembly(criterion: &mut Criterion) {
         bencher.iter(|| Connectivity::new(shape.faces.clone(), shape.vertices.len()));
     });
     group.bench_function("report", |bencher| bencher.iter(|| report(&mesh)));
-    group.bench_function("pattern", |bencher| bencher.iter(|| HessianPattern::new(connectivity)));
+    group.bench_function("pattern", |bencher| bencher.iter(|| HessianPattern::new(connectivity).unwrap()));
     group.bench_function("assemble, barycentric", |bencher| {
         bencher.iter(|| pattern.assemble_into(connectivity, lengths, Dual::Barycentric, &mut rows));
     });
     group.bench_function("assemble, circumcentric", |bencher| {
         bencher.iter(|| pattern.assemble_into(connectivity, lengths, Dual::Circumcentric, &mut rows));
     });
-    group.bench_function("voronoi mass", |bencher| bencher.iter(|| voronoi_mass(connectivity, lengths)));
+    group.bench_function("voronoi mass", |bencher| {
+        bencher.iter(|| voronoi_mass(connectivity, lengths).unwrap())
+    });
     group.bench_function("delaunay flips", |bencher| bencher.iter(|| delaunay_flips(connectivity, lengths)));
     group.finish();
 }

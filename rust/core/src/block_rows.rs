@@ -1,7 +1,8 @@
 //! A sparse matrix made of blocks of [`BLOCK`] rows that share their columns: one block a face,
 //! one cone a block.
 
-use crate::{Error, Result};
+use crate::error::SolveError;
+use crate::{memory, Error, Result};
 
 /// Rows of one block: `xx`, `yy`, `√2·xy` of a face's Hessian (same Frobenius norm as the four entries).
 pub const BLOCK: usize = 3;
@@ -25,6 +26,16 @@ impl BlockRows {
     #[must_use]
     pub fn empty(n_columns: usize) -> Self {
         Self { n_columns, starts: vec![0], columns: Vec::new(), values: Vec::new() }
+    }
+
+    /// The same, with room for so many blocks and entries.
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub fn with_room(n_columns: usize, n_blocks: usize, n_entries: usize) -> Result<Self> {
+        let mut starts = memory::room(n_blocks + 1)?;
+        starts.push(0);
+        Ok(Self { n_columns, starts, columns: memory::room(n_entries)?, values: memory::room(n_entries)? })
     }
 
     /// Appends a block with these `(column, row values)`, in any order; values of a repeated column add up.
@@ -57,9 +68,11 @@ impl BlockRows {
     }
 
     /// `Hᵀ W H u` for this matrix `H` and a weight for each block.
-    #[must_use]
-    pub fn normal_times(&self, weights: &[f64], u: &[f64]) -> Vec<f64> {
-        let mut out = vec![0.0; u.len()];
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub fn normal_times(&self, weights: &[f64], u: &[f64]) -> std::result::Result<Vec<f64>, SolveError> {
+        let mut out = memory::repeated(0.0, u.len())?;
         for (b, w) in weights.iter().enumerate() {
             let h = self.block_times(b, u);
             let (columns, values) = self.block(b);
@@ -67,7 +80,7 @@ impl BlockRows {
                 out[column as usize] += w * (v[0] * h[0] + v[1] * h[1] + v[2] * h[2]);
             }
         }
-        out
+        Ok(out)
     }
 
     /// Block `b` times the vector `u`.
@@ -87,7 +100,7 @@ impl BlockRows {
     /// `‖(H u)_b‖²` of every block, jointly over the columns of `values` (column-major).
     ///
     /// # Errors
-    /// [`Error::Argument`] if `values` are not whole columns.
+    /// [`Error::Argument`] if `values` are not whole columns, [`SolveError::Memory`].
     pub fn block_squares(&self, values: &[f64]) -> Result<Vec<f64>> {
         let n = self.n_columns;
         if !values.len().is_multiple_of(n) {
@@ -99,7 +112,7 @@ impl BlockRows {
         }
         let square =
             |b: usize| values.chunks_exact(n.max(1)).map(|column| self.block_square(b, column)).sum();
-        Ok((0..self.n_blocks()).map(square).collect())
+        Ok(memory::gathered((0..self.n_blocks()).map(square))?)
     }
 
     /// `‖(H u)_b‖²` of block `b` for one column.

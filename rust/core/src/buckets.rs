@@ -59,11 +59,6 @@ impl<T: Copy + Default> Buckets<T> {
         &mut self.items[self.starts[i]..self.starts[i + 1]]
     }
 
-    /// Number of items.
-    pub(crate) fn len(&self) -> usize {
-        self.items.len()
-    }
-
     /// Where the buckets begin, with the number of items at the end, and the items of all.
     pub(crate) fn into_parts(self) -> (Vec<usize>, Vec<T>) {
         (self.starts, self.items)

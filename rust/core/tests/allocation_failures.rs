@@ -49,6 +49,8 @@ fn demand(name: &str, mesh: &Mesh) -> Demand {
         "vibration_modes" => mesh.demand(Tool::Modes),
         "segment" => mesh.demand(Tool::Segment).with_columns(3, false),
         "parts" => mesh.demand(Tool::Parts),
+        "facet" => mesh.demand(Tool::Facet),
+        "restore" => mesh.demand(Tool::Restore).with_columns(3, false),
         "fill_holes" => filling_demand(mesh, None),
         "remesh" => mesh.demand(Tool::Remesh),
         "diffusion_curves" => mesh.demand(Tool::DiffusionCurves),

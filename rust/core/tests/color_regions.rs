@@ -12,7 +12,7 @@ const PALETTE: [[f64; 3]; 5] =
     [[0.8, 0.1, 0.05], [0.04, 0.18, 0.65], [0.9, 0.7, 0.08], [0.08, 0.42, 0.14], [0.85, 0.85, 0.8]];
 
 fn painted(shape: &Shape, color: impl Fn([f64; 3]) -> [f64; 3]) -> Columns {
-    Columns::from_points(&shape.vertices.iter().map(|&p| color(p)).collect::<Vec<_>>())
+    Columns::from_points(&shape.vertices.iter().map(|&p| color(p)).collect::<Vec<_>>()).unwrap()
 }
 
 fn regions(shape: &Shape, colors: &Columns, options: SegmentOptions, groups: Option<&[u32]>) -> Vec<i32> {

@@ -56,7 +56,7 @@ fn flips_in_the_plane_match_positions() {
         assert!((found - expected).abs() < 1e-12);
     }
     // Delaunay weights are not negative, and affine functions stay without a Hessian.
-    let laplacian = cotangent_laplacian(&connectivity, &lengths);
+    let laplacian = cotangent_laplacian(&connectivity, &lengths).unwrap();
     let boundary: Vec<bool> = {
         let mut on = vec![false; shape.vertices.len()];
         (0..connectivity.n_halfedges()).filter(|&h| connectivity.twin(h).is_none()).for_each(|h| {

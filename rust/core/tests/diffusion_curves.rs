@@ -11,7 +11,7 @@ use ridgeform_core::{Error, Progress};
 
 /// A color a vertex.
 fn painted(shape: &Shape, color: impl Fn([f64; 3]) -> [f64; 3]) -> Columns {
-    Columns::from_points(&shape.vertices.iter().map(|&p| color(p)).collect::<Vec<_>>())
+    Columns::from_points(&shape.vertices.iter().map(|&p| color(p)).collect::<Vec<_>>()).unwrap()
 }
 
 /// A label a face, from its barycenter.

@@ -38,7 +38,7 @@ fn run(name: &str, which: usize) {
     let given = Given::new(shape_for(name, side, 1.0).mesh().unwrap());
     rayon::broadcast(|_| multiply());
     multiply();
-    ALLOCATOR.fail(which, LARGE);
+    ALLOCATOR.fail(which, LARGE, true);
     let outcome = given.call(name);
     let count = ALLOCATOR.stop();
     match outcome {
@@ -56,9 +56,17 @@ enum End {
     /// After so many large allocations.
     Result(usize),
     Refused,
-    /// The allocation could not return an error.
-    Aborted,
+    /// The allocation could not return an error; the function that asked for it.
+    Aborted(String),
     Fault(String),
+}
+
+/// The innermost function of a backtrace that is not of the standard library, and who called it.
+fn culprit(backtrace: &str) -> String {
+    let frames = backtrace.lines().filter_map(|line| line.trim().split_once(": ")).map(|(_, frame)| frame);
+    let own =
+        frames.filter(|frame| ["ridgeform_core", "faer", "clarabel"].iter().any(|name| frame.contains(name)));
+    own.take(4).collect::<Vec<_>>().join(" < ")
 }
 
 fn end_of(name: &str, which: usize) -> End {
@@ -74,7 +82,7 @@ fn end_of(name: &str, which: usize) -> End {
     match outcome {
         Some((count, "result")) if child.status.success() => End::Result(count.parse().unwrap()),
         Some((_, "refused")) if child.status.success() => End::Refused,
-        None if errors.contains("memory allocation of") => End::Aborted,
+        None if errors.contains("memory allocation of") => End::Aborted(culprit(&errors)),
         _ => End::Fault(format!("{name} at {which}: {} {text} {errors}", child.status)),
     }
 }
@@ -89,7 +97,18 @@ fn faults_of(name: &str, is_all: bool) -> Vec<String> {
     let step = if is_all { 1 } else { count.div_ceil(TRIED).max(1) };
     let ends: Vec<End> = (0..count).step_by(step).map(|which| end_of(name, which)).collect();
     let number = |wanted: &End| ends.iter().filter(|end| *end == wanted).count();
-    let (refused, aborted) = (number(&End::Refused), number(&End::Aborted));
+    let refused = number(&End::Refused);
+    let places: Vec<&String> = ends
+        .iter()
+        .filter_map(|end| match end {
+            End::Aborted(place) => Some(place),
+            _ => None,
+        })
+        .collect();
+    let aborted = places.len();
+    for place in places {
+        println!("{name} @ {place}");
+    }
     println!("{name}: {count} large, {} tried, {refused} refused, {aborted} end the process", ends.len());
     let first =
         (ends.first() != Some(&End::Refused)).then(|| format!("{name}: the first is {:?}", ends.first()));
@@ -106,7 +125,9 @@ fn a_failed_allocation_is_refused_or_known() {
         let (name, which) = case.split_once('@').unwrap();
         return run(name, which.parse().unwrap());
     }
-    let is_all = std::env::var(WHICH).is_ok_and(|which| which == "all");
-    let faults: Vec<String> = CALLS.into_par_iter().flat_map(|(name, _)| faults_of(name, is_all)).collect();
+    let which = std::env::var(WHICH).unwrap_or_default();
+    let calls =
+        CALLS.into_par_iter().filter(|(name, _)| which.is_empty() || which == "all" || which == *name);
+    let faults: Vec<String> = calls.flat_map(|(name, _)| faults_of(name, !which.is_empty())).collect();
     assert!(faults.is_empty(), "{faults:?}");
 }

@@ -119,7 +119,8 @@ fn ridges_form_where_they_are_cheap() {
     let share = |ridge_weights: Option<Vec<f64>>| {
         let vertices = flow(&shape, &StylizeOptions { ridge_weights, ..strong(10) }).vertices;
         let mesh = Mesh::new(vertices.clone(), shape.faces.clone()).unwrap();
-        let norms = hessian_norm(&mesh, &Columns::from_points(&vertices).data, Dual::Barycentric).unwrap();
+        let norms =
+            hessian_norm(&mesh, &Columns::from_points(&vertices).unwrap().data, Dual::Barycentric).unwrap();
         let strip: f64 = shape.faces.iter().zip(&norms).filter(|(f, _)| in_strip(f)).map(|(_, x)| x).sum();
         strip / norms.iter().sum::<f64>()
     };

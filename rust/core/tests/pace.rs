@@ -139,7 +139,7 @@ fn steps_that_run_out_or_miss_the_gap_are_told() {
 fn flatness_of_known_shapes() {
     let of = |shape: &Shape| {
         let mesh = shape.mesh().unwrap();
-        Flatness::of(mesh.connectivity(), &shape.vertices)
+        Flatness::of(mesh.connectivity(), &shape.vertices).unwrap()
     };
     let cube = of(&shapes::cube(8));
     assert_eq!((cube.n_facets, cube.soft_share < 1e-9, cube.plane_share), (6, true, 1.0));

@@ -11,11 +11,11 @@ use ridgeform_core::{Error, Progress};
 
 fn operator(mesh: &Mesh) -> BlockRows {
     let c = mesh.connectivity();
-    HessianPattern::new(c).assemble(c, mesh.edge_lengths(), Dual::Barycentric).unwrap()
+    HessianPattern::new(c).unwrap().assemble(c, mesh.edge_lengths(), Dual::Barycentric).unwrap()
 }
 
 fn scaled_mass(mesh: &Mesh, alpha: f64) -> Vec<f64> {
-    voronoi_mass(mesh.connectivity(), mesh.edge_lengths()).iter().map(|m| alpha * m).collect()
+    voronoi_mass(mesh.connectivity(), mesh.edge_lengths()).unwrap().iter().map(|m| alpha * m).collect()
 }
 
 /// A ridge on the positions, with noise.
@@ -146,7 +146,7 @@ fn contradicting_constraints_are_refused() {
 fn joint_and_separate_columns() {
     let mesh = shapes::cube(5).noisy(0.05, 8).mesh().unwrap();
     let h = operator(&mesh);
-    let points = Columns::from_points(mesh.positions().unwrap());
+    let points = Columns::from_points(mesh.positions().unwrap()).unwrap();
     let mut p = problem(&mesh, &h, 20.0, points.clone());
     let joint = assert_agreement(&p);
     p.coupling = Coupling::Separate;

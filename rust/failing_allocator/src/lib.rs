@@ -1,7 +1,8 @@
 //! An allocator for tests that counts large allocations and fails one of them.
 
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::backtrace::Backtrace;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
 /// The system's allocator, but for one large allocation that fails: the system gives nothing for it.
 ///
@@ -12,6 +13,8 @@ pub struct Failing {
     large: AtomicUsize,
     count: AtomicUsize,
     which: AtomicUsize,
+    /// Whether the one that fails says where it was asked for.
+    is_traced: AtomicBool,
 }
 
 impl Failing {
@@ -22,14 +25,16 @@ impl Failing {
             large: AtomicUsize::new(usize::MAX),
             count: AtomicUsize::new(0),
             which: AtomicUsize::new(usize::MAX),
+            is_traced: AtomicBool::new(false),
         }
     }
 
-    /// Counts allocations of at least `large` bytes from now on, from 0,
-    /// and fails the one with the number `which`.
-    pub fn fail(&self, which: usize, large: usize) {
+    /// Counts allocations of at least `large` bytes from now on, from 0, and fails the one with the number `which`; where
+    /// `is_traced`, that one prints its backtrace.
+    pub fn fail(&self, which: usize, large: usize, is_traced: bool) {
         self.count.store(0, Relaxed);
         self.which.store(which, Relaxed);
+        self.is_traced.store(is_traced, Relaxed);
         self.large.store(large, Relaxed);
     }
 
@@ -40,7 +45,15 @@ impl Failing {
     }
 
     fn fails(&self, size: usize) -> bool {
-        size >= self.large.load(Relaxed) && self.count.fetch_add(1, Relaxed) == self.which.load(Relaxed)
+        let large = self.large.load(Relaxed);
+        let is_failing = size >= large && self.count.fetch_add(1, Relaxed) == self.which.load(Relaxed);
+        if is_failing && self.is_traced.load(Relaxed) {
+            // What the backtrace takes does not count.
+            self.large.store(usize::MAX, Relaxed);
+            eprintln!("{}", Backtrace::force_capture());
+            self.large.store(large, Relaxed);
+        }
+        is_failing
     }
 }
 

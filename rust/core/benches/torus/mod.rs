@@ -18,9 +18,11 @@ pub(crate) fn torus(around: usize, across: usize) -> Torus {
     let shape = shapes::torus(around, across, 3.0, 1.0).noisy(0.01, 1);
     let mesh = shape.mesh().unwrap();
     let (connectivity, lengths) = (mesh.connectivity(), mesh.edge_lengths());
-    let operator =
-        HessianPattern::new(connectivity).assemble(connectivity, lengths, Dual::Barycentric).unwrap();
-    let fidelity = voronoi_mass(connectivity, lengths).iter().map(|m| 2e4 * m).collect();
+    let operator = HessianPattern::new(connectivity)
+        .unwrap()
+        .assemble(connectivity, lengths, Dual::Barycentric)
+        .unwrap();
+    let fidelity = voronoi_mass(connectivity, lengths).unwrap().iter().map(|m| 2e4 * m).collect();
     let normal = NormalMatrix::new(&operator).unwrap();
     Torus { shape, operator, fidelity, normal }
 }

@@ -133,7 +133,7 @@ fn solved(samples: &Samples, solution: &Solution) -> Vec<(&'static str, String)>
 /// Positions and faces to the matrix `H` of eq. (30), and new values on a pattern that is known.
 fn assembly(problem: &Problem, arguments: &Arguments) -> Outcome {
     let mesh = problem.mesh()?;
-    let pattern = HessianPattern::new(mesh.connectivity());
+    let pattern = HessianPattern::new(mesh.connectivity())?;
     let (connectivity, lengths) = (mesh.connectivity(), mesh.edge_lengths());
     let mut rows = pattern.assemble(connectivity, lengths, Dual::Barycentric)?;
     let mut cold = Samples::new(arguments)?;

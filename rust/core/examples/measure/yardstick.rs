@@ -5,7 +5,7 @@
 //! `α ‖u − u₀‖²_M`: one factorization, one solve of all columns. Linear constraints are left out. Its parts
 //! are timed as well, in the order in which they run.
 
-use std::convert::Infallible;
+use ridgeform_core::error::SolveError;
 
 use ridgeform_core::block_rows::{BlockRows, BLOCK};
 use ridgeform_core::linear::cholesky::Cholesky;
@@ -76,11 +76,11 @@ impl<const K: usize> Quadratic<K> {
         weights: Option<&[f64]>,
     ) -> Result<Self, Box<dyn std::error::Error>> {
         let (connectivity, lengths) = (mesh.connectivity(), mesh.edge_lengths());
-        let whole = HessianPattern::new(connectivity).assemble(connectivity, lengths, Dual::Barycentric)?;
+        let whole = HessianPattern::new(connectivity)?.assemble(connectivity, lengths, Dual::Barycentric)?;
         let areas = lengths.iter().map(|&l| triangle::area(l));
         let mut per_face: Vec<f64> = areas.map(|a| if a > 0.0 { 1.0 / a } else { 0.0 }).collect();
         per_face.iter_mut().zip(weights.unwrap_or(&[])).for_each(|(x, w)| *x *= w);
-        let mass = voronoi_mass(connectivity, lengths);
+        let mass = voronoi_mass(connectivity, lengths)?;
         let mut is_known = vec![false; values.len()];
         known.iter().for_each(|&i| is_known[i] = true);
         let (operator, constant) = without_columns(&whole, values, &is_known);
@@ -104,15 +104,15 @@ impl<const K: usize> Quadratic<K> {
         Ok(Self { right, normal, cholesky, entries })
     }
 
-    fn back_substitute(&mut self, right: &[[f64; K]]) -> Result<Vec<[f64; K]>, Infallible> {
+    fn back_substitute(&mut self, right: &[[f64; K]]) -> Result<Vec<[f64; K]>, SolveError> {
         let mut solution = right.to_vec();
-        self.cholesky.solve(&mut solution);
+        self.cholesky.solve(&mut solution)?;
         Ok(solution)
     }
 
     fn solve(mut self) -> Result<Vec<[f64; K]>, Box<dyn std::error::Error>> {
         self.cholesky.factorize(&self.entries)?;
-        self.cholesky.solve(&mut self.right);
+        self.cholesky.solve(&mut self.right)?;
         Ok(self.right)
     }
 }

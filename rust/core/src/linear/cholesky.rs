@@ -36,6 +36,8 @@ pub struct Cholesky {
     order: Vec<u32>,
     factor: Vec<f64>,
     reciprocals: Vec<f64>,
+    /// The right sides in the order of the factor, and room for a panel of them.
+    rows: Vec<f64>,
     space: Vec<f64>,
     n_factorizations: usize,
 }
@@ -82,7 +84,7 @@ impl Cholesky {
         order.extend(symbolic.perm().into_iter().flat_map(|p| p.arrays().0).map(|&i| i as u32));
         let panels = panels(&symbolic)?;
         let tree = Tree::new(&pattern, &order, &panels)?;
-        let subtrees = Subtrees::new(&panels, &tree);
+        let subtrees = Subtrees::new(&panels, &tree)?;
         let len = symbolic.len_val() + LANES;
         // Every further thread has about half as much waiting as the first (measured at 200k and 1M rows).
         let waiting = tree.most_waiting(&panels) * (rayon::current_num_threads() + 1) / 2;
@@ -96,6 +98,7 @@ impl Cholesky {
         // Asked for now, while it can still be refused, and given back until it is needed.
         Vec::<f64>::new().try_reserve_exact(waiting).map_err(|_| too_large())?;
         factor.resize(len, 0.0);
+        let n = pattern.n;
         Ok(Self {
             pattern,
             panels,
@@ -104,7 +107,8 @@ impl Cholesky {
             workspace: Workspace::default(),
             order,
             factor,
-            reciprocals: Vec::new(),
+            reciprocals: memory::room(n)?,
+            rows: Vec::new(),
             space: Vec::new(),
             n_factorizations: 0,
         })
@@ -134,37 +138,43 @@ impl Cholesky {
     /// [`SolveError::Factorization`] when the matrix is not positive definite.
     pub fn factorize(&mut self, values: &[f64]) -> Result<(), SolveError> {
         self.n_factorizations += 1;
-        multifrontal::factorize(&self.tree, &self.panels, values, &mut self.factor, &self.workspace)
-            .ok_or_else(|| {
-                let reason =
-                    "the matrix is not positive definite; fix more vertices or raise the fidelity".into();
-                SolveError::Factorization { reason }
-            })?;
+        multifrontal::factorize(&self.tree, &self.panels, values, &mut self.factor, &self.workspace)?;
         self.panels.reciprocals(&self.factor, &mut self.reciprocals);
         Ok(())
     }
 
-    /// Solves in place for `K` right sides, with the last factorization. Rows of the matrix behind the last
-    /// of `right` are zero on the right side, and what they are in the solution is left out.
-    pub fn solve<const K: usize>(&mut self, right: &mut [[f64; K]]) {
-        self.solve_columns::<K, K>(right);
+    /// Solves in place for `K` right sides, with the last factorization. Rows of the matrix behind the last of
+    /// `right` are zero on the right side, and what they are in the solution is left out.
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub fn solve<const K: usize>(&mut self, right: &mut [[f64; K]]) -> Result<(), SolveError> {
+        self.solve_columns::<K, K>(right)
     }
 
     /// [`Cholesky::solve`] for the first `A` of `K` right sides.
-    pub fn solve_columns<const A: usize, const K: usize>(&mut self, right: &mut [[f64; K]]) {
-        let mut x = vec![[0.0; A]; self.order.len()];
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub fn solve_columns<const A: usize, const K: usize>(
+        &mut self,
+        right: &mut [[f64; K]],
+    ) -> Result<(), SolveError> {
+        memory::refill(&mut self.rows, 0.0, A * self.order.len())?;
+        let (x, _) = self.rows.as_chunks_mut::<A>();
         for (x, &i) in x.iter_mut().zip(&self.order) {
             if let Some(right) = right.get(i as usize) {
                 x.copy_from_slice(&right[..A]);
             }
         }
         let values = Values { panels: &self.factor, reciprocals: &self.reciprocals };
-        self.subtrees.solve(&self.panels, values, &mut x, &mut self.space);
+        self.subtrees.solve(&self.panels, values, x, &mut self.space)?;
         for (x, &i) in x.iter().zip(&self.order) {
             if let Some(right) = right.get_mut(i as usize) {
                 right[..A].copy_from_slice(x);
             }
         }
+        Ok(())
     }
 }
 
@@ -174,7 +184,7 @@ impl Cholesky {
 /// # Errors
 /// [`SolveError::Memory`].
 fn panels(symbolic: &SymbolicCholesky<usize>) -> Result<Panels, SolveError> {
-    let mut panels = Panels { below: vec![0], ..Panels::default() };
+    let mut panels = Panels::default();
     let push = |panels: &mut Panels, begin: usize, below: &[usize]| {
         panels.begin.push(begin);
         panels.rows.extend(below.iter().map(|&row| row as u32));
@@ -184,6 +194,9 @@ fn panels(symbolic: &SymbolicCholesky<usize>) -> Result<Panels, SolveError> {
         SymbolicCholeskyRaw::Supernodal(factor) => {
             let len = (0..factor.n_supernodes()).map(|s| factor.supernode(s).pattern().len()).sum();
             panels.rows = memory::room(len)?;
+            panels.begin = memory::room(factor.n_supernodes() + 1)?;
+            panels.below = memory::room(factor.n_supernodes() + 1)?;
+            panels.below.push(0);
             for s in 0..factor.n_supernodes() {
                 let supernode = factor.supernode(s);
                 push(&mut panels, supernode.start(), supernode.pattern());
@@ -191,6 +204,10 @@ fn panels(symbolic: &SymbolicCholesky<usize>) -> Result<Panels, SolveError> {
             panels.values = memory::twin(factor.col_ptr_for_val())?;
         }
         SymbolicCholeskyRaw::Simplicial(factor) => {
+            panels.rows = memory::room(factor.row_idx().len())?;
+            panels.begin = memory::room(factor.col_ptr().len())?;
+            panels.below = memory::room(factor.col_ptr().len())?;
+            panels.below.push(0);
             for (j, bounds) in factor.col_ptr().windows(2).enumerate() {
                 // The diagonal entry comes first.
                 push(&mut panels, j, &factor.row_idx()[bounds[0] + 1..bounds[1]]);
@@ -246,7 +263,7 @@ mod tests {
         let mut cholesky = Cholesky::analyze(pattern, None).unwrap();
         cholesky.factorize(&values).unwrap();
         let mut solution = right.clone();
-        cholesky.solve_columns::<A, K>(&mut solution);
+        cholesky.solve_columns::<A, K>(&mut solution).unwrap();
         for i in 0..n {
             for c in 0..K {
                 let expected = if c < A { x[i][c] } else { right[i][c] };
@@ -290,7 +307,7 @@ mod tests {
         assert!(cholesky.factorize(&values.iter().map(|v| -v).collect::<Vec<_>>()).is_err());
         cholesky.factorize(&values).unwrap();
         let mut right = times(&pattern, &values, &[[1.0]; 20]);
-        cholesky.solve(&mut right);
+        cholesky.solve(&mut right).unwrap();
         assert!(right.iter().all(|[x]| (x - 1.0).abs() < 1e-13));
     }
 }

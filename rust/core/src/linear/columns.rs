@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::unit::Unit;
-use crate::{Error, Result};
+use crate::{memory, Error, Result};
 
 /// A dense `n_rows × n_columns` matrix, stored column by column.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -30,10 +30,15 @@ impl Columns {
     }
 
     /// The three coordinates of points as three columns.
-    #[must_use]
-    pub fn from_points(points: &[[f64; 3]]) -> Self {
-        let data = (0..3).flat_map(|axis| points.iter().map(move |p| p[axis])).collect();
-        Self { n_rows: points.len(), n_columns: 3, data }
+    ///
+    /// # Errors
+    /// [`crate::error::SolveError::Memory`].
+    pub fn from_points(points: &[[f64; 3]]) -> Result<Self> {
+        let mut data = memory::room(3 * points.len())?;
+        for axis in 0..3 {
+            data.extend(points.iter().map(|p| p[axis]));
+        }
+        Ok(Self { n_rows: points.len(), n_columns: 3, data })
     }
 
     /// The rows of a three-column matrix as points.
@@ -44,7 +49,16 @@ impl Columns {
         if self.n_columns != 3 {
             return Err(Error::argument("values", format!("has {} columns, points need 3", self.n_columns)));
         }
-        Ok((0..self.n_rows).map(|i| std::array::from_fn(|axis| self.column(axis)[i])).collect())
+        let point = |i: usize| std::array::from_fn(|axis| self.column(axis)[i]);
+        Ok(memory::gathered((0..self.n_rows).map(point))?)
+    }
+
+    /// A copy.
+    ///
+    /// # Errors
+    /// [`crate::error::SolveError::Memory`].
+    pub fn copied(&self) -> Result<Self> {
+        Ok(Self { data: memory::twin(&self.data)?, ..*self })
     }
 
     /// The entries measured in `unit`.

@@ -1,27 +1,33 @@
 //! Preconditioned conjugate gradients, for `K` columns that take the same steps.
 
-use crate::Result;
+use crate::{memory, Result};
 
 /// A convex quadratic `½ xᵀ A x − bᵀ x` by its products, and where a run is on it.
 pub trait Quadratic<const K: usize> {
-    /// `out = A x`.
+    /// `A x`.
     ///
     /// # Errors
     /// What ends the run.
-    fn times(&mut self, x: &[[f64; K]], out: &mut Vec<[f64; K]>) -> Result<()>;
+    fn times(&mut self, x: &[[f64; K]]) -> Result<Vec<[f64; K]>>;
 
     /// The preconditioner times the residual, out of which what constraints hold may be taken.
-    fn precondition(&mut self, residual: &mut [[f64; K]]) -> Vec<[f64; K]>;
+    ///
+    /// # Errors
+    /// What ends the run.
+    fn precondition(&mut self, residual: &mut [[f64; K]]) -> Result<Vec<[f64; K]>>;
 
     /// Goes `far` along `direction`, whose product with `A` is given, and brings the residual up to date;
     /// `false` if that leads up, and is taken back.
+    ///
+    /// # Errors
+    /// What ends the run.
     fn go(
         &mut self,
         far: f64,
         direction: &[[f64; K]],
         product: &[[f64; K]],
         residual: &mut [[f64; K]],
-    ) -> bool;
+    ) -> Result<bool>;
 }
 
 /// How a run ended.
@@ -41,19 +47,18 @@ pub struct Descent {
 /// Stiefel 1952). A preconditioner that keeps to a linear subspace keeps the run there.
 ///
 /// # Errors
-/// Those of [`Quadratic::times`].
+/// Those of [`Quadratic`].
 pub fn descend<const K: usize>(
     quadratic: &mut impl Quadratic<K>,
     mut residual: Vec<[f64; K]>,
     enough: impl FnOnce(f64) -> f64,
     most: usize,
 ) -> Result<Descent> {
-    let mut direction = quadratic.precondition(&mut residual);
+    let mut direction = quadratic.precondition(&mut residual)?;
     let mut run = Descent { length: dot(&residual, &direction), iterations: 0, flat: None };
     let enough = enough(run.length);
-    let mut product = Vec::new();
     while run.iterations < most && run.length > enough {
-        quadratic.times(&direction, &mut product)?;
+        let product = quadratic.times(&direction)?;
         let curvature = dot(&direction, &product);
         let far = run.length / curvature;
         if curvature <= 0.0 || !far.is_finite() {
@@ -62,10 +67,10 @@ pub fn descend<const K: usize>(
             break;
         }
         run.iterations += 1;
-        if !quadratic.go(far, &direction, &product, &mut residual) {
+        if !quadratic.go(far, &direction, &product, &mut residual)? {
             break;
         }
-        let step = quadratic.precondition(&mut residual);
+        let step = quadratic.precondition(&mut residual)?;
         let before = std::mem::replace(&mut run.length, dot(&residual, &step));
         for (d, s) in direction.iter_mut().flatten().zip(step.iter().flatten()) {
             *d = s + run.length / before * *d;
@@ -85,18 +90,19 @@ pub struct Approximation<const K: usize> {
 
 /// Solves `matrix · x = right` from zero until the residual, in the norm of the preconditioner, is `goal`
 /// times what it was, or for `most` iterations: [`descend`] where nothing is to be looked after.
+///
+/// # Errors
+/// Those of `matrix` and `precondition`.
 pub fn conjugate_gradients<const K: usize>(
-    matrix: impl FnMut(&[[f64; K]], &mut Vec<[f64; K]>),
-    precondition: impl FnMut(&mut [[f64; K]]),
+    matrix: impl FnMut(&[[f64; K]]) -> Result<Vec<[f64; K]>>,
+    precondition: impl FnMut(&mut [[f64; K]]) -> Result<()>,
     right: Vec<[f64; K]>,
     goal: f64,
     most: usize,
-) -> Approximation<K> {
-    let mut system = System { matrix, precondition, solution: vec![[0.0; K]; right.len()] };
-    // Its products do not fail.
-    let iterations = descend(&mut system, right, |length| goal * goal * length, most)
-        .map_or(0, |descent| descent.iterations);
-    Approximation { solution: system.solution, iterations }
+) -> Result<Approximation<K>> {
+    let mut system = System { matrix, precondition, solution: memory::repeated([0.0; K], right.len())? };
+    let iterations = descend(&mut system, right, |length| goal * goal * length, most)?.iterations;
+    Ok(Approximation { solution: system.solution, iterations })
 }
 
 /// A linear system and what is solved of it.
@@ -108,18 +114,17 @@ struct System<A, P, const K: usize> {
 
 impl<A, P, const K: usize> Quadratic<K> for System<A, P, K>
 where
-    A: FnMut(&[[f64; K]], &mut Vec<[f64; K]>),
-    P: FnMut(&mut [[f64; K]]),
+    A: FnMut(&[[f64; K]]) -> Result<Vec<[f64; K]>>,
+    P: FnMut(&mut [[f64; K]]) -> Result<()>,
 {
-    fn times(&mut self, x: &[[f64; K]], out: &mut Vec<[f64; K]>) -> Result<()> {
-        (self.matrix)(x, out);
-        Ok(())
+    fn times(&mut self, x: &[[f64; K]]) -> Result<Vec<[f64; K]>> {
+        (self.matrix)(x)
     }
 
-    fn precondition(&mut self, residual: &mut [[f64; K]]) -> Vec<[f64; K]> {
-        let mut step = residual.to_vec();
-        (self.precondition)(&mut step);
-        step
+    fn precondition(&mut self, residual: &mut [[f64; K]]) -> Result<Vec<[f64; K]>> {
+        let mut step = memory::twin(residual)?;
+        (self.precondition)(&mut step)?;
+        Ok(step)
     }
 
     fn go(
@@ -128,10 +133,10 @@ where
         direction: &[[f64; K]],
         product: &[[f64; K]],
         residual: &mut [[f64; K]],
-    ) -> bool {
+    ) -> Result<bool> {
         add(far, direction, &mut self.solution);
         add(-far, product, residual);
-        true
+        Ok(true)
     }
 }
 
@@ -152,17 +157,16 @@ mod tests {
     use super::*;
 
     /// `2 x_i − x_{i−1} − x_{i+1} + x_i / 2`: definite, with many eigenvalues.
-    fn matrix(x: &[[f64; 1]], out: &mut Vec<[f64; 1]>) {
+    fn matrix(x: &[[f64; 1]]) -> Result<Vec<[f64; 1]>> {
         let at = |i: Option<usize>| i.and_then(|i| x.get(i)).map_or(0.0, |x| x[0]);
-        *out = (0..x.len()).map(|i| [2.5 * x[i][0] - at(i.checked_sub(1)) - at(Some(i + 1))]).collect();
+        Ok((0..x.len()).map(|i| [2.5 * x[i][0] - at(i.checked_sub(1)) - at(Some(i + 1))]).collect())
     }
 
     #[test]
     fn the_residual_falls_to_the_goal() {
         let right: Vec<[f64; 1]> = (0..50).map(|i| [(i as f64).sin()]).collect();
-        let found = conjugate_gradients(matrix, |_| {}, right.clone(), 1e-10, 200);
-        let mut rest = Vec::new();
-        matrix(&found.solution, &mut rest);
+        let found = conjugate_gradients(matrix, |_| Ok(()), right.clone(), 1e-10, 200).unwrap();
+        let mut rest = matrix(&found.solution).unwrap();
         add(-1.0, &right, &mut rest);
         assert!(dot(&rest, &rest) <= 1.1e-20 * dot(&right, &right));
         assert!((10..50).contains(&found.iterations), "{} iterations", found.iterations);
@@ -170,17 +174,20 @@ mod tests {
 
     #[test]
     fn with_the_matrix_itself_as_preconditioner_one_iteration_is_enough() {
-        let scale = |x: &[[f64; 1]], out: &mut Vec<[f64; 1]>| *out = x.iter().map(|x| [7.0 * x[0]]).collect();
-        let precondition = |x: &mut [[f64; 1]]| x.iter_mut().for_each(|x| x[0] /= 7.0);
-        let found = conjugate_gradients(scale, precondition, vec![[14.0], [-7.0]], 1e-12, 20);
+        let scale = |x: &[[f64; 1]]| Ok(x.iter().map(|x| [7.0 * x[0]]).collect());
+        let precondition = |x: &mut [[f64; 1]]| {
+            x.iter_mut().for_each(|x| x[0] /= 7.0);
+            Ok(())
+        };
+        let found = conjugate_gradients(scale, precondition, vec![[14.0], [-7.0]], 1e-12, 20).unwrap();
         assert_eq!((found.solution, found.iterations), (vec![[2.0], [-1.0]], 1));
     }
 
     #[test]
     fn where_the_matrix_is_not_definite_the_run_ends_and_says_so() {
         let mut saddle = System {
-            matrix: |x: &[[f64; 1]], out: &mut Vec<[f64; 1]>| *out = vec![x[0], [-x[1][0]]],
-            precondition: |_: &mut [[f64; 1]]| {},
+            matrix: |x: &[[f64; 1]]| Ok(vec![x[0], [-x[1][0]]]),
+            precondition: |_: &mut [[f64; 1]]| Ok(()),
             solution: vec![[0.0]; 2],
         };
         let run = descend(&mut saddle, vec![[0.0], [1.0]], |_| 0.0, 9).unwrap();
@@ -189,9 +196,9 @@ mod tests {
 
     #[test]
     fn nothing_to_solve_and_no_iterations_left_give_zero() {
-        let zero = conjugate_gradients(matrix, |_| {}, vec![[0.0]; 3], 1e-2, 10);
+        let zero = conjugate_gradients(matrix, |_| Ok(()), vec![[0.0]; 3], 1e-2, 10).unwrap();
         assert_eq!((zero.solution, zero.iterations), (vec![[0.0]; 3], 0));
-        let none = conjugate_gradients(matrix, |_| {}, vec![[1.0]; 3], 1e-2, 0);
+        let none = conjugate_gradients(matrix, |_| Ok(()), vec![[1.0]; 3], 1e-2, 0).unwrap();
         assert_eq!((none.solution, none.iterations), (vec![[0.0]; 3], 0));
     }
 }

@@ -9,8 +9,10 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
+use crate::error::SolveError;
 use crate::linear::multifrontal::Tree;
 use crate::linear::triangular::{Panel, Panels, Values, LANES};
+use crate::memory;
 
 /// Subtrees with more than this part of all entries are cut at their root: eight or nine are left, and a
 /// quarter of all entries above them. Half of it leaves twice as many, and a third above.
@@ -33,17 +35,19 @@ pub(super) struct Subtrees {
 
 impl Subtrees {
     /// Cuts the tree.
-    #[must_use]
-    pub(super) fn new(panels: &Panels, tree: &Tree) -> Self {
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub(super) fn new(panels: &Panels, tree: &Tree) -> Result<Self, SolveError> {
         let count = panels.count();
-        let mut entries = vec![0; count];
+        let mut entries = memory::repeated(0, count)?;
         for s in 0..count {
             let below: usize = tree.children(s).iter().map(|&c| entries[c as usize]).sum();
             entries[s] = below + panels.values[s + 1] - panels.values[s];
         }
         let total: usize = tree.children(count).iter().map(|&root| entries[root as usize]).sum();
-        let (mut list, mut rest) = (Vec::new(), Vec::new());
-        let mut heads = tree.children(count).to_vec();
+        let (mut list, mut rest) = (Vec::new(), memory::room(count)?);
+        let mut heads = memory::twin(tree.children(count))?;
         while let Some(head) = heads.pop() {
             let s = head as usize;
             if entries[s] < LEAST {
@@ -57,56 +61,62 @@ impl Subtrees {
         }
         list.sort_unstable_by_key(|subtree| subtree.start);
         rest.sort_unstable();
-        let rows = if list.is_empty() { Vec::new() } else { local_rows(panels, &list) };
-        Self { list, rest, rows }
+        let rows = if list.is_empty() { Vec::new() } else { local_rows(panels, &list)? };
+        Ok(Self { list, rest, rows })
     }
 
     /// Solves `L Lᵀ x = right` in place; `values` belong to `L`, rows are in the order of the factor.
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
     pub(super) fn solve<const K: usize>(
         &self,
         panels: &Panels,
         values: Values<'_>,
         x: &mut [[f64; K]],
         space: &mut Vec<f64>,
-    ) {
+    ) -> Result<(), SolveError> {
         let whole = || self.rest.iter().map(|&s| panels.panel(s as usize, values));
         let mut locals: Vec<Vec<[f64; K]>> = self
             .list
             .par_iter()
             .with_max_len(1)
             .map(|subtree| {
-                let mut local = x[rows_of(panels, subtree)].to_vec();
-                local.resize(local.len() + behind(panels, subtree).len(), [0.0; K]);
+                let own = &x[rows_of(panels, subtree)];
+                let mut local = memory::room(own.len() + behind(panels, subtree).len())?;
+                local.extend_from_slice(own);
+                local.resize(own.len() + behind(panels, subtree).len(), [0.0; K]);
                 forward(
                     self.panels_of(panels, values, subtree),
                     &mut local,
-                    &mut space_for(panels, subtree, K),
+                    &mut space_for(panels, subtree, K)?,
                 );
-                local
+                Ok(local)
             })
-            .collect();
+            .collect::<Result<_, SolveError>>()?;
         for (subtree, local) in self.list.iter().zip(&locals) {
             let n_own = rows_of(panels, subtree).len();
             for (&row, sum) in behind(panels, subtree).iter().zip(&local[n_own..]) {
                 x[row as usize].iter_mut().zip(sum).for_each(|(x, s)| *x += s);
             }
         }
-        space.clear();
-        space.resize((panels.longest() + LANES) * K, 0.0);
+        memory::refill(space, 0.0, (panels.longest() + LANES) * K)?;
         forward(whole(), x, space);
         backward(whole().rev(), x, space);
-        self.list.par_iter().with_max_len(1).zip(&mut locals).for_each(|(subtree, local)| {
+        self.list.par_iter().with_max_len(1).zip(&mut locals).try_for_each(|(subtree, local)| {
             let n_own = rows_of(panels, subtree).len();
             for (&row, local) in behind(panels, subtree).iter().zip(&mut local[n_own..]) {
                 *local = x[row as usize];
             }
             let reversed = self.panels_of(panels, values, subtree).rev();
-            backward(reversed, local, &mut space_for(panels, subtree, K));
-        });
+            backward(reversed, local, &mut space_for(panels, subtree, K)?);
+            Ok::<_, SolveError>(())
+        })?;
         for (subtree, local) in self.list.iter().zip(&locals) {
             let own = rows_of(panels, subtree);
             x[own.clone()].copy_from_slice(&local[..own.len()]);
         }
+        Ok(())
     }
 
     /// The panels of a subtree with its own numbers of rows.
@@ -135,14 +145,14 @@ fn behind<'p>(panels: &'p Panels, subtree: &Range<usize>) -> &'p [u32] {
 }
 
 /// Working space for the longest panel of a subtree.
-fn space_for(panels: &Panels, subtree: &Range<usize>, n_columns: usize) -> Vec<f64> {
+fn space_for(panels: &Panels, subtree: &Range<usize>, n_columns: usize) -> Result<Vec<f64>, SolveError> {
     let longest = subtree.clone().map(|s| panels.n_rows(s)).max().unwrap_or(0);
-    vec![0.0; (longest + LANES) * n_columns]
+    memory::repeated(0.0, (longest + LANES) * n_columns)
 }
 
 /// The rows below all panels, with the numbers that they have in their subtrees.
-fn local_rows(panels: &Panels, list: &[Range<usize>]) -> Vec<u32> {
-    let mut rows = panels.rows.clone();
+fn local_rows(panels: &Panels, list: &[Range<usize>]) -> Result<Vec<u32>, SolveError> {
+    let mut rows = memory::twin(&panels.rows)?;
     for subtree in list {
         let own = rows_of(panels, subtree);
         let behind = behind(panels, subtree);
@@ -158,7 +168,7 @@ fn local_rows(panels: &Panels, list: &[Range<usize>]) -> Vec<u32> {
             }
         }
     }
-    rows
+    Ok(rows)
 }
 
 /// `x ← L⁻¹x` by these panels.

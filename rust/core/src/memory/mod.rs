@@ -128,6 +128,56 @@ pub(crate) fn twin<T: Clone>(values: &[T]) -> std::result::Result<Vec<T>, SolveE
     Ok(array)
 }
 
+/// The values of an iterator that knows how many they are, as [`room`].
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn gathered<T>(
+    values: impl IntoIterator<Item = T, IntoIter: ExactSizeIterator>,
+) -> std::result::Result<Vec<T>, SolveError> {
+    let values = values.into_iter();
+    let mut array = room(values.len())?;
+    array.extend(values);
+    Ok(array)
+}
+
+/// Makes an array have room for `n` entries, as many as it has included.
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn make_room<T>(array: &mut Vec<T>, n: usize) -> std::result::Result<(), SolveError> {
+    let refused = |_| SolveError::Memory { needed: n.saturating_mul(size_of::<T>()), limit: None };
+    array.try_reserve_exact(n.saturating_sub(array.len())).map_err(refused)
+}
+
+/// Makes an array have at least `n` entries, further ones of `value`; it grows by halves at least.
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn grow<T: Clone>(array: &mut Vec<T>, n: usize, value: T) -> std::result::Result<(), SolveError> {
+    if array.len() < n {
+        let refused = |_| SolveError::Memory { needed: n.saturating_mul(size_of::<T>()), limit: None };
+        array.try_reserve(n - array.len()).map_err(refused)?;
+        array.resize(n, value);
+    }
+    Ok(())
+}
+
+/// Makes an array `n` times `value`, in the place that it has where that is enough.
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn refill<T: Clone>(
+    array: &mut Vec<T>,
+    value: T,
+    n: usize,
+) -> std::result::Result<(), SolveError> {
+    array.clear();
+    make_room(array, n)?;
+    array.resize(n, value);
+    Ok(())
+}
+
 /// An estimate, and by how much it may be too low: what must be free for [`SHARE`] of it to be `bytes`.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 fn with_margin(bytes: usize) -> usize {

@@ -47,9 +47,17 @@ pub struct Mesh {
 /// The edge lengths of `faces`, one row a face, column `i` opposite corner `i`.
 #[must_use]
 pub fn edge_lengths(faces: &[[u32; 3]], positions: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    rows_of_lengths(faces, positions).collect()
+}
+
+/// The rows of [`edge_lengths`], one after the other.
+pub(crate) fn rows_of_lengths<'a>(
+    faces: &'a [[u32; 3]],
+    positions: &'a [[f64; 3]],
+) -> impl ExactSizeIterator<Item = [f64; 3]> + 'a {
     // In the mesh's own unit: the square of a length is a number where the length is one.
     let unit = Unit::of(faces.iter().flatten().flat_map(|&v| positions[v as usize]));
-    let distance = |a: u32, b: u32| {
+    let distance = move |a: u32, b: u32| {
         let (mut p, mut q) = (positions[a as usize], positions[b as usize]);
         // Both faces of an edge must get the same bits.
         if a > b {
@@ -61,7 +69,7 @@ pub fn edge_lengths(faces: &[[u32; 3]], positions: &[[f64; 3]]) -> Vec<[f64; 3]>
         let d = [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
         unit.restore((d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt())
     };
-    faces.iter().map(|&[a, b, c]| [distance(b, c), distance(c, a), distance(a, b)]).collect()
+    faces.iter().map(move |&[a, b, c]| [distance(b, c), distance(c, a), distance(a, b)])
 }
 
 impl Mesh {

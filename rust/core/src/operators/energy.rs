@@ -10,7 +10,7 @@ use crate::operators::{
     mixed_hessian_squares, Dual,
 };
 use crate::unit::Unit;
-use crate::{Error, Result};
+use crate::{memory, Error, Result};
 
 /// What to minimize.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -106,12 +106,12 @@ impl EnergyForm {
         }
         let at_vertices = || face_weights.map(|w| of_vertices(connectivity, &usable_areas(lengths), w));
         let (operator, weights) = match energy {
-            Energy::L1Hessian => (assembled(mesh, dual)?, face_weights.map(<[f64]>::to_vec)),
+            Energy::L1Hessian => (assembled(mesh, dual)?, face_weights.map(memory::twin).transpose()?),
             Energy::L2CurvedHessian => {
                 let (rows, weights) = curved_hessian_squares(mesh, face_weights);
                 (rows, Some(weights))
             }
-            Energy::L2Laplacian => (laplacian_squares(connectivity, lengths), at_vertices()),
+            Energy::L2Laplacian => (laplacian_squares(connectivity, lengths)?, at_vertices()),
             Energy::L2Hessian | Energy::L1HessianStein2018 => {
                 let make =
                     if energy == Energy::L2Hessian { mixed_hessian_squares } else { mixed_hessian_rows };
@@ -125,7 +125,10 @@ impl EnergyForm {
                 (rows, weights)
             }
         };
-        let weights = weights.unwrap_or_else(|| vec![1.0; operator.n_blocks()]);
+        let weights = match weights {
+            Some(weights) => weights,
+            None => memory::repeated(1.0, operator.n_blocks())?,
+        };
         Ok(Self { operator, weights, energy })
     }
 

@@ -12,10 +12,11 @@
 //! for the neighbor nor a rotation. The matrices one by one are in [`super::factors`].
 
 use crate::block_rows::{BlockRows, BLOCK};
-use crate::error::{Error, MeshError};
+use crate::error::{Error, MeshError, SolveError};
+use crate::memory;
 use crate::mesh::{triangle, Connectivity, Mesh};
 use crate::operators::dual::DualEdge;
-use crate::operators::hinge::{directions, usable_areas, Hinge};
+use crate::operators::hinge::{directions, usable_area, Hinge};
 use crate::operators::Dual;
 use crate::unit::Unit;
 
@@ -34,14 +35,16 @@ pub struct HessianPattern {
 
 impl HessianPattern {
     /// The pattern of `connectivity`.
-    #[must_use]
-    pub fn new(connectivity: &Connectivity) -> Self {
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub fn new(connectivity: &Connectivity) -> Result<Self, SolveError> {
         let n_faces = connectivity.n_faces();
         let mut pattern = Self {
             n_columns: connectivity.n_vertices(),
-            starts: Vec::with_capacity(n_faces + 1),
-            columns: Vec::with_capacity(STENCIL * n_faces),
-            slots: Vec::with_capacity(n_faces),
+            starts: memory::room(n_faces + 1)?,
+            columns: memory::room(STENCIL * n_faces)?,
+            slots: memory::room(n_faces)?,
         };
         pattern.starts.push(0);
         for (f, &corners) in connectivity.faces().iter().enumerate() {
@@ -54,7 +57,7 @@ impl HessianPattern {
             }
             pattern.push(stencil);
         }
-        pattern
+        Ok(pattern)
     }
 
     /// Appends the block of a face with the vertices `stencil`.
@@ -80,18 +83,19 @@ impl HessianPattern {
     ///
     /// # Errors
     /// [`MeshError::ZeroDualEdge`] with circumcentric duals where two circumcenters coincide;
-    /// [`MeshError::LengthRows`] if `lengths` has not one row a face of this pattern's connectivity.
+    /// [`MeshError::LengthRows`] if `lengths` has not one row a face of this pattern's connectivity;
+    /// [`SolveError::Memory`].
     pub fn assemble(
         &self,
         connectivity: &Connectivity,
         lengths: &[[f64; 3]],
         dual: Dual,
-    ) -> Result<BlockRows, MeshError> {
+    ) -> crate::Result<BlockRows> {
         let mut rows = BlockRows {
             n_columns: self.n_columns,
-            starts: self.starts.clone(),
-            columns: self.columns.clone(),
-            values: Vec::new(),
+            starts: memory::twin(&self.starts)?,
+            columns: memory::twin(&self.columns)?,
+            values: memory::room(self.columns.len())?,
         };
         self.assemble_into(connectivity, lengths, dual, &mut rows)?;
         Ok(rows)
@@ -107,13 +111,13 @@ impl HessianPattern {
         lengths: &[[f64; 3]],
         dual: Dual,
         rows: &mut BlockRows,
-    ) -> Result<(), MeshError> {
+    ) -> crate::Result<()> {
         let n_faces = self.slots.len();
         if lengths.len() != n_faces || connectivity.n_faces() != n_faces {
-            return Err(MeshError::LengthRows { rows: lengths.len(), n_faces });
+            return Err(MeshError::LengthRows { rows: lengths.len(), n_faces }.into());
         }
-        rows.values.resize(self.columns.len(), [0.0; BLOCK]);
-        let areas = usable_areas(lengths);
+        memory::grow(&mut rows.values, self.columns.len(), [0.0; BLOCK])?;
+        let areas: Vec<f64> = memory::gathered(lengths.iter().map(|&l| usable_area(l)))?;
         for (f, slots) in self.slots.iter().enumerate() {
             let block = &mut rows.values[self.starts[f]..self.starts[f + 1]];
             block.fill([0.0; BLOCK]);
@@ -163,9 +167,9 @@ fn face_block(
 pub fn hessian(mesh: &Mesh, dual: Dual) -> Result<sprs::CsMat<f64>, Error> {
     let rows = assembled(mesh.measured(mesh.unit())?.as_ref(), dual)?;
     let n_entries = 4 * rows.columns.len();
-    let mut indptr = Vec::with_capacity(4 * rows.n_blocks() + 1);
-    let mut indices = Vec::with_capacity(n_entries);
-    let mut data = Vec::with_capacity(n_entries);
+    let mut indptr = memory::room(4 * rows.n_blocks() + 1)?;
+    let mut indices = memory::room(n_entries)?;
+    let mut data = memory::room(n_entries)?;
     indptr.push(0);
     for b in 0..rows.n_blocks() {
         let (columns, values) = rows.block(b);
@@ -181,8 +185,8 @@ pub fn hessian(mesh: &Mesh, dual: Dual) -> Result<sprs::CsMat<f64>, Error> {
 }
 
 /// The rows of every face, which have no unit; `mesh` of a size whose powers are numbers.
-pub(super) fn assembled(mesh: &Mesh, dual: Dual) -> Result<BlockRows, MeshError> {
-    let pattern = HessianPattern::new(mesh.connectivity());
+pub(super) fn assembled(mesh: &Mesh, dual: Dual) -> crate::Result<BlockRows> {
+    let pattern = HessianPattern::new(mesh.connectivity())?;
     pattern.assemble(mesh.connectivity(), mesh.edge_lengths(), dual)
 }
 
@@ -197,8 +201,8 @@ pub fn hessian_norm(mesh: &Mesh, values: &[f64], dual: Dual) -> Result<Vec<f64>,
     let unit = value.times(length.power(-2));
     let mesh = mesh.measured(length)?;
     let rows = assembled(&mesh, dual)?;
-    let mut norms: Vec<f64> =
-        rows.block_squares(&value.measure_all(values))?.into_iter().map(f64::sqrt).collect();
+    let mut norms = rows.block_squares(&value.measure_all(values))?;
+    norms.iter_mut().for_each(|norm| *norm = norm.sqrt());
     for (norm, &l) in norms.iter_mut().zip(mesh.edge_lengths()) {
         if *norm > 0.0 {
             *norm = unit.restore_finite("the Hessian", *norm / triangle::area(l))?;

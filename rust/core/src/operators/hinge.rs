@@ -4,7 +4,16 @@ use crate::mesh::triangle;
 
 /// The area of every face, 0 for degenerate ones.
 pub(crate) fn usable_areas(lengths: &[[f64; 3]]) -> Vec<f64> {
-    lengths.iter().map(|&l| if triangle::is_degenerate(l) { 0.0 } else { triangle::area(l) }).collect()
+    lengths.iter().map(|&l| usable_area(l)).collect()
+}
+
+/// The area of a face, 0 of a degenerate one.
+pub(crate) fn usable_area(l: [f64; 3]) -> f64 {
+    if triangle::is_degenerate(l) {
+        0.0
+    } else {
+        triangle::area(l)
+    }
 }
 
 /// The unit directions of a face's halfedges in its own frame.

@@ -4,14 +4,17 @@ use crate::block_rows::BlockRows;
 use crate::buckets::Buckets;
 use crate::mesh::{triangle, Connectivity};
 use crate::operators::voronoi_mass;
+use crate::{memory, Result};
 
 /// The cotangent Laplacian (Pinkall and Polthier 1993), `n × n`, symmetric and positive semidefinite:
 /// `uᵀ L u = ∫ |∇u|²` for the piecewise linear `u`. Off the diagonal it has `−(cot α + cot β) / 2`; its rows
 /// sum to 0.
 ///
 /// Degenerate faces ([`triangle::is_degenerate`]) contribute nothing.
-#[must_use]
-pub fn cotangent_laplacian(connectivity: &Connectivity, lengths: &[[f64; 3]]) -> sprs::CsMat<f64> {
+///
+/// # Errors
+/// [`crate::error::SolveError::Memory`].
+pub fn cotangent_laplacian(connectivity: &Connectivity, lengths: &[[f64; 3]]) -> Result<sprs::CsMat<f64>> {
     let n = connectivity.n_vertices();
     let halves = |&l: &[f64; 3]| {
         if triangle::is_degenerate(l) {
@@ -20,17 +23,17 @@ pub fn cotangent_laplacian(connectivity: &Connectivity, lengths: &[[f64; 3]]) ->
             triangle::cotangents(l).map(|c| 0.5 * c)
         }
     };
-    let weights: Vec<[f64; 3]> = lengths.iter().map(halves).collect();
-    let mut neighbors = Buckets::new(n, |visit| {
+    let weights: Vec<[f64; 3]> = memory::gathered(lengths.iter().map(halves))?;
+    let mut neighbors = Buckets::try_new(n, |visit| {
         for (h, &weight) in weights.as_flattened().iter().enumerate() {
             let (tail, head) = (connectivity.tail(h), connectivity.head(h));
             visit(tail as usize, (head, weight));
             visit(head as usize, (tail, weight));
         }
-    });
-    let mut indptr = Vec::with_capacity(n + 1);
-    let (mut indices, mut data) =
-        (Vec::with_capacity(neighbors.len() / 2 + n), Vec::with_capacity(neighbors.len() / 2 + n));
+    })?;
+    let mut indptr = memory::room(n + 1)?;
+    let most = 2 * connectivity.edges().count() + n;
+    let (mut indices, mut data) = (memory::room(most)?, memory::room(most)?);
     indptr.push(0);
     for v in 0..n {
         let row = neighbors.of_mut(v);
@@ -49,7 +52,7 @@ pub fn cotangent_laplacian(connectivity: &Connectivity, lengths: &[[f64; 3]]) ->
         }
         indptr.push(indices.len());
     }
-    sprs::CsMat::new((n, n), indptr, indices, data)
+    Ok(sprs::CsMat::new((n, n), indptr, indices, data))
 }
 
 /// Rows whose squares sum to `∫ |Δu|² = uᵀ L M⁻¹ L u` (Rowe et al. 2024, eq. (1), left, twice): a block a
@@ -58,14 +61,17 @@ pub fn cotangent_laplacian(connectivity: &Connectivity, lengths: &[[f64; 3]]) ->
 ///
 /// At the boundary `L` itself sets the normal derivative to zero (zero Neumann conditions). Vertices without
 /// mass have an empty block.
-#[must_use]
-pub fn laplacian_squares(connectivity: &Connectivity, lengths: &[[f64; 3]]) -> BlockRows {
-    let laplacian = cotangent_laplacian(connectivity, lengths);
-    let mut rows = BlockRows::empty(connectivity.n_vertices());
-    for (row, mass) in laplacian.outer_iterator().zip(voronoi_mass(connectivity, lengths)) {
+///
+/// # Errors
+/// [`crate::error::SolveError::Memory`].
+pub fn laplacian_squares(connectivity: &Connectivity, lengths: &[[f64; 3]]) -> Result<BlockRows> {
+    let laplacian = cotangent_laplacian(connectivity, lengths)?;
+    let n = connectivity.n_vertices();
+    let mut rows = BlockRows::with_room(n, n, laplacian.nnz())?;
+    for (row, mass) in laplacian.outer_iterator().zip(voronoi_mass(connectivity, lengths)?) {
         let scale = if mass > 0.0 { 1.0 / mass.sqrt() } else { 0.0 };
         let entries = row.iter().filter(|&(_, &value)| value * scale != 0.0);
         rows.push_block(entries.map(|(column, value)| (column as u32, [value * scale, 0.0, 0.0])));
     }
-    rows
+    Ok(rows)
 }

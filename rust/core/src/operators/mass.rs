@@ -1,21 +1,27 @@
 //! The lumped mass matrix.
 
+use crate::error::SolveError;
 use crate::mesh::{triangle, Connectivity, Mesh};
-use crate::Result;
+use crate::{memory, Result};
 
 /// The mixed Voronoi area of every vertex (Meyer et al. 2003), `n` values that sum to the total area.
 ///
 /// A triangle without an obtuse angle is split by its Voronoi cells; an obtuse one gives half its area to the
 /// obtuse corner and a quarter to each of the others. Unreferenced vertices get 0.
-#[must_use]
-pub fn voronoi_mass(connectivity: &Connectivity, lengths: &[[f64; 3]]) -> Vec<f64> {
-    let mut mass = vec![0.0; connectivity.n_vertices()];
+///
+/// # Errors
+/// [`SolveError::Memory`].
+pub fn voronoi_mass(
+    connectivity: &Connectivity,
+    lengths: &[[f64; 3]],
+) -> std::result::Result<Vec<f64>, SolveError> {
+    let mut mass = memory::repeated(0.0, connectivity.n_vertices())?;
     for (corners, &l) in connectivity.faces().iter().zip(lengths) {
         for (&corner, part) in corners.iter().zip(corner_areas(l)) {
             mass[corner as usize] += part;
         }
     }
-    mass
+    Ok(mass)
 }
 
 /// [`voronoi_mass`] of a mesh of any size.
@@ -24,7 +30,7 @@ pub fn voronoi_mass(connectivity: &Connectivity, lengths: &[[f64; 3]]) -> Vec<f6
 /// [`crate::error::SolveError::NoNumber`] where an area is past the largest number.
 pub fn mass_of(mesh: &Mesh) -> Result<Vec<f64>> {
     let unit = mesh.unit();
-    let mut mass = voronoi_mass(mesh.connectivity(), mesh.measured(unit)?.edge_lengths());
+    let mut mass = voronoi_mass(mesh.connectivity(), mesh.measured(unit)?.edge_lengths())?;
     for area in &mut mass {
         *area = unit.power(2).restore_finite("an area", *area)?;
     }

@@ -11,6 +11,7 @@ use crate::mesh::Mesh;
 use crate::operators::hinge::usable_areas;
 use crate::operators::vertex_weights::is_boundary;
 use crate::operators::voronoi_mass;
+use crate::{memory, Result};
 
 /// Per vertex of a one-ring, the 3 × 3 matrix `∫ ∇φ_v ⊗ ∇φ_w`.
 type Ring = Vec<(u32, [[f64; 3]; 3])>;
@@ -22,10 +23,12 @@ type Ring = Vec<(u32, [[f64; 3]; 3])>;
 ///
 /// # Errors
 /// [`MeshError::NoPositions`] for a mesh that is known by its edge lengths only.
-pub fn mixed_hessian_rows(mesh: &Mesh) -> Result<(BlockRows, Vec<u32>), MeshError> {
-    let mut rows = BlockRows::empty(mesh.connectivity().n_vertices());
-    let mut vertices = Vec::new();
-    for (v, ring) in rings(mesh)? {
+pub fn mixed_hessian_rows(mesh: &Mesh) -> Result<(BlockRows, Vec<u32>)> {
+    let rings = rings(mesh)?;
+    let n_entries = rings.iter().map(|(_, ring)| ring.len()).sum::<usize>();
+    let mut rows = BlockRows::with_room(mesh.connectivity().n_vertices(), 9 * rings.len(), 9 * n_entries)?;
+    let mut vertices = memory::room(9 * rings.len())?;
+    for (v, ring) in rings {
         for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
             if ring.iter().any(|(_, entry)| entry[i][j] != 0.0) {
                 rows.push_block(ring.iter().map(|&(w, entry)| (w, [entry[i][j], 0.0, 0.0])));
@@ -42,11 +45,14 @@ pub fn mixed_hessian_rows(mesh: &Mesh) -> Result<(BlockRows, Vec<u32>), MeshErro
 ///
 /// # Errors
 /// [`MeshError::NoPositions`] for a mesh that is known by its edge lengths only.
-pub fn mixed_hessian_squares(mesh: &Mesh) -> Result<(BlockRows, Vec<u32>), MeshError> {
-    let mass = voronoi_mass(mesh.connectivity(), mesh.edge_lengths());
-    let mut rows = BlockRows::empty(mesh.connectivity().n_vertices());
-    let mut vertices = Vec::new();
-    for (v, ring) in rings(mesh)?.into_iter().filter(|(v, _)| mass[*v as usize] > 0.0) {
+pub fn mixed_hessian_squares(mesh: &Mesh) -> Result<(BlockRows, Vec<u32>)> {
+    let mass = voronoi_mass(mesh.connectivity(), mesh.edge_lengths())?;
+    let rings = rings(mesh)?;
+    let (n_blocks, n_entries) =
+        (BLOCK * rings.len(), rings.iter().map(|(_, ring)| ring.len()).sum::<usize>());
+    let mut rows = BlockRows::with_room(mesh.connectivity().n_vertices(), n_blocks, BLOCK * n_entries)?;
+    let mut vertices = memory::room(n_blocks)?;
+    for (v, ring) in rings.into_iter().filter(|(v, _)| mass[*v as usize] > 0.0) {
         let scale = 1.0 / mass[v as usize].sqrt();
         for i in 0..BLOCK {
             rows.push_block(ring.iter().map(|&(w, entry)| (w, entry[i].map(|x| scale * x))));
@@ -57,31 +63,26 @@ pub fn mixed_hessian_squares(mesh: &Mesh) -> Result<(BlockRows, Vec<u32>), MeshE
 }
 
 /// The one-rings of the inner vertices.
-fn rings(mesh: &Mesh) -> Result<Vec<(u32, Ring)>, MeshError> {
+fn rings(mesh: &Mesh) -> Result<Vec<(u32, Ring)>> {
     let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
     let connectivity = mesh.connectivity();
     let areas = usable_areas(mesh.edge_lengths());
     let boundary = is_boundary(connectivity, &areas);
-    let corners = Buckets::new(connectivity.n_vertices(), |visit| {
+    let corners = Buckets::try_new(connectivity.n_vertices(), |visit| {
         for (f, face) in connectivity.faces().iter().enumerate() {
             face.iter().enumerate().for_each(|(c, &v)| visit(v as usize, (f, c)));
         }
-    });
-    let gradients: Vec<[[f64; 3]; 3]> = connectivity
-        .faces()
-        .iter()
-        .zip(&areas)
-        .map(
-            |(face, area)| {
-                if *area > 0.0 {
-                    hat_gradients(face.map(|v| positions[v as usize]))
-                } else {
-                    [[0.0; 3]; 3]
-                }
-            },
-        )
-        .collect();
-    let mut place = vec![u32::MAX; connectivity.n_vertices()];
+    })?;
+    let gradient = |(face, area): (&[u32; 3], &f64)| {
+        if *area > 0.0 {
+            hat_gradients(face.map(|v| positions[v as usize]))
+        } else {
+            [[0.0; 3]; 3]
+        }
+    };
+    let gradients: Vec<[[f64; 3]; 3]> =
+        memory::gathered(connectivity.faces().iter().zip(&areas).map(gradient))?;
+    let mut place = memory::repeated(u32::MAX, connectivity.n_vertices())?;
     let mut ring = |v: usize| -> Ring {
         let mut ring: Ring = Vec::new();
         for &(f, c) in corners.of(v) {
@@ -101,7 +102,9 @@ fn rings(mesh: &Mesh) -> Result<Vec<(u32, Ring)>, MeshError> {
         ring
     };
     let inner = |v: &usize| !boundary[*v] && corners.of(*v).iter().any(|&(f, _)| areas[f] > 0.0);
-    Ok((0..connectivity.n_vertices()).filter(inner).map(|v| (v as u32, ring(v))).collect())
+    let mut rings = memory::room((0..connectivity.n_vertices()).filter(inner).count())?;
+    rings.extend((0..connectivity.n_vertices()).filter(inner).map(|v| (v as u32, ring(v))));
+    Ok(rings)
 }
 
 /// The gradients in space of the three hat functions of a triangle with an area.

@@ -23,7 +23,7 @@ use crate::solve::cones::{norm, scaled, Block};
 use crate::solve::outcome::Outcome;
 use crate::solve::problem::{Problem, Settings, Status};
 use crate::solve::reduced::Reduced;
-use crate::{Error, Result};
+use crate::{memory, Error, Result};
 
 /// Below this many rows `qdldl` is faster, above it `faer` (measured, see the benchmarks).
 pub const QDLDL_BELOW: usize = 20_000;
@@ -62,8 +62,8 @@ pub fn minimize<const K: usize>(
     let Some((program, found)) = solve_apart(program, options, reduced.constraints.is_none(), progress)?
     else {
         // Nothing was reached yet: the point to start from, and what is certain of it.
-        let q = vec![[[0.0; K]; BLOCK]; reduced.n_blocks()];
-        return Ok(certified(reduced, reduced.target.clone(), &q, &[], 0, Status::Stopped));
+        let q = memory::repeated([[0.0; K]; BLOCK], reduced.n_blocks())?;
+        return certified(reduced, memory::twin(&reduced.target)?, &q, &[], 0, Status::Stopped);
     };
     let status = match found.status {
         SolverStatus::Solved => Status::Solved,
@@ -76,10 +76,9 @@ pub fn minimize<const K: usize>(
         _ => Status::Inaccurate,
     };
     let n = reduced.n();
-    let u: Vec<[f64; K]> = (0..n)
-        .map(|i| std::array::from_fn(|c| if c < n_columns { found.x[c * n + i] } else { 0.0 }))
-        .collect();
-    let (mut q, y) = program.multipliers(&found.z);
+    let row = |i: usize| std::array::from_fn(|c| if c < n_columns { found.x[c * n + i] } else { 0.0 });
+    let u: Vec<[f64; K]> = memory::gathered((0..n).map(row))?;
+    let (mut q, y) = program.multipliers(&found.z)?;
     for (q, w) in q.iter_mut().zip(reduced.weights.iter()) {
         if *w == 0.0 {
             // The interior point only comes near zero here;
@@ -87,7 +86,7 @@ pub fn minimize<const K: usize>(
             *q = [[0.0; K]; BLOCK];
         }
     }
-    let mut outcome = certified(reduced, u, &q, &y, found.iterations as usize, status);
+    let mut outcome = certified(reduced, u, &q, &y, found.iterations as usize, status)?;
     if let (Some(tolerance), true) = (settings.tolerance, status != Status::Stopped) {
         // What counts is the gap of the point that is returned, not Clarabel's own,
         // which allows for infeasibility.
@@ -153,33 +152,28 @@ fn certified<const K: usize>(
     y: &[[f64; K]],
     iterations: usize,
     status: Status,
-) -> Outcome<K> {
-    let mut h = Vec::new();
-    reduced.apply(&u, &mut h);
-    let primal = reduced.objective(&u, &h);
-    let mut at_target = Vec::new();
-    reduced.apply(&reduced.target, &mut at_target);
-    let floor = reduced.floor(&at_target);
-    let bound = |q: &[Block<K>]| {
+) -> Result<Outcome<K>> {
+    let primal = reduced.objective(&u, &reduced.apply(&u)?);
+    let floor = reduced.floor(&reduced.apply(&reduced.target)?);
+    let bound = |q: &[Block<K>]| -> Result<f64> {
         let mut dual_point = DualPoint::default();
         for (b, (q, w)) in q.iter().zip(reduced.weights.iter()).enumerate() {
             dual_point.add(q, *w, &reduced.constant(b));
         }
-        let mut g = Vec::new();
-        reduced.apply_transposed(|b| q[b], &mut g);
+        let mut g = reduced.apply_transposed(|b| q[b])?;
         if let Some(constraints) = &reduced.constraints {
             constraints.add_transposed(y, &mut g);
         }
-        bound_along_ray(reduced, &dual_point, y, &g, &u)
+        Ok(bound_along_ray(reduced, &dual_point, y, &g, &u))
     };
-    let mut dual = bound(q);
+    let mut dual = bound(q)?;
     if reduced.has_fidelity_everywhere {
         // No equations to keep: shortening each block by itself costs less than shortening all alike.
         let clip = |(q, w): (&Block<K>, &f64)| scaled((w / norm(q).max(f64::MIN_POSITIVE)).min(1.0), q);
-        let clipped: Vec<Block<K>> = q.iter().zip(reduced.weights.iter()).map(clip).collect();
-        dual = dual.max(bound(&clipped));
+        let clipped: Vec<Block<K>> = memory::gathered(q.iter().zip(reduced.weights.iter()).map(clip))?;
+        dual = dual.max(bound(&clipped)?);
     }
-    Outcome { u, primal, dual, floor, iterations, status, warm: None }
+    Ok(Outcome { u, primal, dual, floor, iterations, status, warm: None })
 }
 
 struct Program<const K: usize> {
@@ -253,19 +247,17 @@ impl<const K: usize> Program<K> {
     }
 
     /// Clarabel's dual variables as `q` (one block each) and `y` (one row per constraint).
-    fn multipliers(&self, z: &[f64]) -> (Vec<Block<K>>, Vec<[f64; K]>) {
+    fn multipliers(&self, z: &[f64]) -> Result<(Vec<Block<K>>, Vec<[f64; K]>)> {
         let k = self.n_columns;
         let entry = |row: &[f64], c: usize| if c < k { row[c] } else { 0.0 };
         let y = z[..self.n_equalities]
             .chunks_exact(k)
             .map(|row| std::array::from_fn(|c| entry(row, c)))
             .collect();
-        let q = z[self.n_equalities..]
-            .chunks_exact(1 + BLOCK * k)
-            .map(|cone| {
-                std::array::from_fn(|r| std::array::from_fn(|c| -entry(&cone[1 + r * k..1 + (r + 1) * k], c)))
-            })
-            .collect();
-        (q, y)
+        let block = |cone: &[f64]| {
+            std::array::from_fn(|r| std::array::from_fn(|c| -entry(&cone[1 + r * k..1 + (r + 1) * k], c)))
+        };
+        let q = memory::gathered(z[self.n_equalities..].chunks_exact(1 + BLOCK * k).map(block))?;
+        Ok((q, y))
     }
 }

@@ -6,6 +6,7 @@ use crate::error::SolveError;
 use crate::linear::cholesky::Cholesky;
 use crate::linear::small::DenseCholesky;
 use crate::linear::Columns;
+use crate::memory;
 use crate::solve::free_operator::FreeOperator;
 
 /// Constraints on the free rows, and the Schur complement that belongs to the last factorization.
@@ -108,15 +109,14 @@ impl<const K: usize> LinearConstraints<K> {
     /// [`SolveError::Infeasible`] when the rows of `A` depend on each other.
     pub fn prepare(&mut self, cholesky: &mut Cholesky, n: usize) -> Result<(), SolveError> {
         let p = self.rows.len();
-        self.response.clear();
-        self.response.resize(n * p, [0.0]);
+        memory::refill(&mut self.response, [0.0], n * p)?;
         for (row, column) in self.rows.iter().zip(self.response.chunks_exact_mut(n.max(1))) {
             for &(i, v) in row {
                 column[i as usize][0] += v;
             }
-            cholesky.solve(column);
+            cholesky.solve(column)?;
         }
-        let mut schur = vec![0.0; p * p];
+        let mut schur = memory::repeated(0.0, p * p)?;
         for (i, row) in self.rows.iter().enumerate() {
             for j in 0..=i {
                 let column = &self.response[j * n..(j + 1) * n];

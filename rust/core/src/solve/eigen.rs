@@ -7,7 +7,7 @@ use crate::linear::small::symmetric_eigen;
 use crate::linear::Columns;
 use crate::progress::Progress;
 use crate::solve::normal_matrix::NormalMatrix;
-use crate::{Error, Result};
+use crate::{memory, Error, Result};
 
 /// Vectors that one triangular solve takes: a vector register's worth.
 const AT_ONCE: usize = 4;
@@ -70,25 +70,24 @@ impl Pencil<'_> {
         let massive = self.mass.iter().filter(|m| **m > 0.0).count();
         let size = massive.min(2 * count + SPARE);
         let mut cholesky = self.factored()?;
-        let mut block: Vec<Vec<f64>> = (0..size)
-            .map(|j| {
-                let step = (j as f64 + 2.5).sqrt();
-                (0..n)
-                    .map(|i| if self.mass[i] > 0.0 { ((i + 1) as f64 * step).fract() - 0.5 } else { 0.0 })
-                    .collect()
-            })
-            .collect();
+        let first = |j: usize| {
+            let step = (j as f64 + 2.5).sqrt();
+            let entry = |i: usize| ((i + 1) as f64 * step).fract() - 0.5;
+            memory::gathered((0..n).map(|i| if self.mass[i] > 0.0 { entry(i) } else { 0.0 }))
+        };
+        let mut block: Vec<Vec<f64>> = (0..size).map(first).collect::<std::result::Result<_, _>>()?;
         block[0].iter_mut().zip(self.mass).for_each(|(x, m)| *x = if *m > 0.0 { 1.0 } else { 0.0 });
         let mut values = Vec::new();
         let (mut best, mut at_rest) = (f64::INFINITY, 0);
         for round in 0..MOST_ROUNDS {
             progress.check()?;
-            let mut next = block.clone();
+            let mut next: Vec<Vec<f64>> =
+                block.iter().map(|x| memory::twin(x)).collect::<std::result::Result<_, _>>()?;
             for group in next.chunks_mut(AT_ONCE) {
                 let row =
                     |i: usize| std::array::from_fn(|c| group.get(c).map_or(0.0, |x| self.mass[i] * x[i]));
-                let mut right: Vec<[f64; AT_ONCE]> = (0..n).map(row).collect();
-                cholesky.solve(&mut right);
+                let mut right: Vec<[f64; AT_ONCE]> = memory::gathered((0..n).map(row))?;
+                cholesky.solve(&mut right)?;
                 for (c, x) in group.iter_mut().enumerate() {
                     x.iter_mut().zip(&right).for_each(|(x, row)| *x = row[c]);
                 }
@@ -105,11 +104,11 @@ impl Pencil<'_> {
                 return Ok(Eigenpairs { values, vectors });
             }
             self.orthonormalize(&mut next)?;
-            let images: Vec<Vec<f64>> = next.iter().map(|x| self.times(x)).collect();
+            let images: Vec<Vec<f64>> = next.iter().map(|x| self.times(x)).collect::<Result<_>>()?;
             let projected = images.iter().map(|y| next.iter().map(|x| dot(x, y)).collect()).collect();
             let (found, rotation) = symmetric_eigen(projected);
             values = found;
-            block = combined(&next, &rotation);
+            block = combined(&next, &rotation)?;
         }
         let reason = format!(
             "{count} modes did not settle in {MOST_ROUNDS} rounds; flip slivers away (delaunay), merge close \
@@ -122,12 +121,12 @@ impl Pencil<'_> {
     /// The factor of `Q + σM`.
     fn factored(&self) -> Result<Cholesky> {
         let normal = NormalMatrix::new(self.operator)?;
-        let mut cholesky = Cholesky::analyze(normal.pattern().clone(), self.memory_limit)?;
-        let mut values = Vec::new();
+        let mut cholesky = Cholesky::analyze(normal.pattern().copied()?, self.memory_limit)?;
+        let mut values = memory::room(normal.pattern().rows.len())?;
         let mut shift = SHIFT * self.scale;
         let mut attempt = 0;
         loop {
-            let diagonal: Vec<f64> = self.mass.iter().map(|m| shift * m).collect();
+            let diagonal: Vec<f64> = memory::gathered(self.mass.iter().map(|m| shift * m))?;
             normal.assemble(self.operator, self.weights, &diagonal, &mut values);
             for (&start, m) in normal.pattern().starts.iter().zip(self.mass) {
                 if *m == 0.0 && values[start] == 0.0 {
@@ -137,17 +136,17 @@ impl Pencil<'_> {
             attempt += 1;
             match cholesky.factorize(&values) {
                 Ok(()) => return Ok(cholesky),
-                Err(error) if attempt == SHIFT_ATTEMPTS => return Err(error.into()),
-                Err(_) => shift *= 10.0,
+                Err(SolveError::Factorization { .. }) if attempt < SHIFT_ATTEMPTS => shift *= 10.0,
+                Err(error) => return Err(error.into()),
             }
         }
     }
 
     /// `Q u`, zero where there is no mass.
-    fn times(&self, u: &[f64]) -> Vec<f64> {
-        let mut out = self.operator.normal_times(self.weights, u);
+    fn times(&self, u: &[f64]) -> Result<Vec<f64>> {
+        let mut out = self.operator.normal_times(self.weights, u)?;
         out.iter_mut().zip(self.mass).filter(|(_, m)| **m == 0.0).for_each(|(x, _)| *x = 0.0);
-        out
+        Ok(out)
     }
 
     /// How far the `image` of `u` under the inverse is from a multiple of `u`, relative to it.
@@ -191,13 +190,13 @@ fn dot(x: &[f64], y: &[f64]) -> f64 {
 }
 
 /// The linear combinations of `block` in the columns of `rotation` (one vector a column).
-fn combined(block: &[Vec<f64>], rotation: &[Vec<f64>]) -> Vec<Vec<f64>> {
+fn combined(block: &[Vec<f64>], rotation: &[Vec<f64>]) -> Result<Vec<Vec<f64>>> {
     let combine = |coefficients: &Vec<f64>| {
-        let mut sum = vec![0.0; block[0].len()];
+        let mut sum = memory::repeated(0.0, block[0].len())?;
         for (x, c) in block.iter().zip(coefficients) {
             sum.iter_mut().zip(x).for_each(|(s, x)| *s += c * x);
         }
-        sum
+        Ok(sum)
     };
     rotation.iter().map(combine).collect()
 }

@@ -65,11 +65,13 @@ impl FreeOperator {
     }
 
     /// What belongs to the blocks that are left, of something per block.
-    #[must_use]
-    pub fn of_blocks<'v>(&self, values: &'v [f64]) -> Cow<'v, [f64]> {
-        match &self.blocks {
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`] when the system does not give what it takes.
+    pub fn of_blocks<'v>(&self, values: &'v [f64]) -> Result<Cow<'v, [f64]>, SolveError> {
+        Ok(match &self.blocks {
             None => Cow::Borrowed(values),
-            Some(blocks) => blocks.iter().map(|&b| values[b as usize]).collect(),
-        }
+            Some(blocks) => Cow::Owned(memory::gathered(blocks.iter().map(|&b| values[b as usize]))?),
+        })
     }
 }

@@ -211,7 +211,7 @@ mod tests {
             .iter()
             .map(|row| std::array::from_fn(|c| row.iter().enumerate().map(|(j, v)| v * x[4 * c + j]).sum()))
             .collect();
-        cholesky.solve(&mut right);
+        cholesky.solve(&mut right).unwrap();
         for (i, right) in right.iter().enumerate() {
             assert!((0..2).all(|c| (right[c] - x[4 * c + i]).abs() < 1e-12));
         }

@@ -8,6 +8,8 @@
 //! 1999): its matrix has the pattern of `HᵀH`, and its dual point solves the dual equations exactly.
 
 use crate::block_rows::BLOCK;
+use crate::error::SolveError;
+use crate::memory;
 use crate::solve::certificate::DualPoint;
 use crate::solve::cones::{combine, norm, scaled, Block};
 use crate::solve::reduced::Reduced;
@@ -65,10 +67,17 @@ pub(super) struct Model<const K: usize> {
 
 impl<const K: usize> Model<K> {
     /// The model at `u` and `z`, whose blocks are not longer than the weights, for the parameter `μ`.
-    #[must_use]
-    pub(super) fn new(reduced: &Reduced<'_, K>, u: &[[f64; K]], z: &[Block<K>], barrier: f64) -> Self {
-        let mut model = Self { barrier, h: Vec::new(), slope: Vec::new(), stiffness: Vec::new() };
-        reduced.apply(u, &mut model.h);
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub(super) fn new(
+        reduced: &Reduced<'_, K>,
+        u: &[[f64; K]],
+        z: &[Block<K>],
+        barrier: f64,
+    ) -> Result<Self, SolveError> {
+        let (h, m) = (reduced.apply(u)?, reduced.n_blocks());
+        let mut model = Self { barrier, h, slope: memory::room(m)?, stiffness: memory::room(m)? };
         for ((h, z), &w) in model.h.iter().zip(z).zip(reduced.weights.iter()) {
             let (primal, dual) = (h.map(|row| row[0]), z.map(|row| row[0]));
             let (mut scale, mut drop) = (0.0, 0.0);
@@ -80,7 +89,7 @@ impl<const K: usize> Model<K> {
             model.slope.push(scaled(scale, h));
             model.stiffness.push(Stiffness { scale, drop, dual, primal });
         }
-        model
+        Ok(model)
     }
 
     /// The dual point at which the equations begin, `s`.
@@ -101,39 +110,50 @@ impl<const K: usize> Model<K> {
         self.stiffness
     }
 
-    /// `out = (HᵀVH + 2a) x`: the matrix of the linear equations, never formed.
-    pub(super) fn times(&self, reduced: &Reduced<'_, K>, x: &[[f64; K]], out: &mut Vec<[f64; K]>) {
-        reduced.apply_transposed(|b| self.stiffness[b].times_block(&reduced.block_times(b, x)), out);
+    /// `(HᵀVH + 2a) x`: the matrix of the linear equations, never formed.
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub(super) fn times(
+        &self,
+        reduced: &Reduced<'_, K>,
+        x: &[[f64; K]],
+    ) -> Result<Vec<[f64; K]>, SolveError> {
+        let product = |b: usize| self.stiffness[b].times_block(&reduced.block_times(b, x));
+        let mut out = reduced.apply_transposed(product)?;
         for ((row, x), a) in out.iter_mut().zip(x).zip(&reduced.fidelity) {
             row.iter_mut().zip(x).for_each(|(row, x)| *row += 2.0 * a * x);
         }
+        Ok(out)
     }
 
     /// The farthest of the points all the way, halfway, a quarter of the way, … along a `step` from `u` at
     /// which the barrier function is not larger than before, and the objective there; `change` is `H` times
     /// the step.
-    #[must_use]
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
     pub(super) fn descend(
         &self,
         reduced: &Reduced<'_, K>,
         u: &[[f64; K]],
         step: &[[f64; K]],
         change: &[Block<K>],
-    ) -> Option<(Vec<[f64; K]>, f64)> {
+    ) -> Result<Option<(Vec<[f64; K]>, f64)>, SolveError> {
         let before = self.value(reduced, u, &self.h);
         let mut part = 1.0;
         for _ in 0..=HALVINGS {
             let there = |(u, step): (&[f64; K], &[f64; K])| std::array::from_fn(|c| u[c] + part * step[c]);
-            let u: Vec<[f64; K]> = u.iter().zip(step).map(there).collect();
-            let h: Vec<Block<K>> =
-                self.h.iter().zip(change).map(|(h, by)| combine(1.0, h, part, by)).collect();
+            let u: Vec<[f64; K]> = memory::gathered(u.iter().zip(step).map(there))?;
+            let moved = self.h.iter().zip(change).map(|(h, by)| combine(1.0, h, part, by));
+            let h: Vec<Block<K>> = memory::gathered(moved)?;
             if self.value(reduced, &u, &h) <= before {
                 let primal = reduced.objective(&u, &h);
-                return Some((u, primal));
+                return Ok(Some((u, primal)));
             }
             part *= 0.5;
         }
-        None
+        Ok(None)
     }
 
     /// The barrier function `Σ w t − μ log(t² − ‖h‖²)`, with the best `t`, and the fidelity.
@@ -226,8 +246,7 @@ mod tests {
 
     /// What the dual equations lack.
     fn lacking(reduced: &Reduced<'_, 1>, u: &[[f64; 1]], z: &[Block<1>]) -> Vec<[f64; 1]> {
-        let mut g = Vec::new();
-        reduced.apply_transposed(|b| z[b], &mut g);
+        let mut g = reduced.apply_transposed(|b| z[b]).unwrap();
         for (i, g) in g.iter_mut().enumerate() {
             g[0] = 2.0 * reduced.fidelity[i] * (reduced.target[i][0] - u[i][0]) - g[0];
         }
@@ -245,16 +264,15 @@ mod tests {
         let mut z = vec![[[0.0; 1]; BLOCK]; reduced.n_blocks()];
         let mut far = f64::INFINITY;
         for _ in 0..n_steps {
-            let model = Model::new(reduced, &u, &z, barrier);
+            let model = Model::new(reduced, &u, &z, barrier).unwrap();
             system.factorize_stiff(reduced, model.stiffness()).unwrap();
             z = model.slope().to_vec();
             let mut step = lacking(reduced, &u, &z);
-            system.solve_change(reduced, &mut step);
-            let mut change = Vec::new();
-            reduced.apply_change(&step, &mut change);
+            system.solve_change(reduced, &mut step).unwrap();
+            let change = reduced.apply_change(&step).unwrap();
             follow(model.stiffness(), &change, &mut z);
             clip(reduced, &mut z);
-            u = model.descend(reduced, &u, &step, &change).unwrap().0;
+            u = model.descend(reduced, &u, &step, &change).unwrap().unwrap().0;
             far = step.iter().map(|x| x[0].abs()).fold(0.0, f64::max);
         }
         (u, z, far)
@@ -265,16 +283,15 @@ mod tests {
         with_reduced(|reduced| {
             let none = vec![[[0.0; 1]; BLOCK]; reduced.n_blocks()];
             // On the path z is the slope; there, and only there, the matrix is the derivative.
-            let model =
-                |u: &[[f64; 1]]| Model::new(&reduced, u, Model::new(&reduced, u, &none, 0.1).slope(), 0.1);
+            let at = |u: &[[f64; 1]], z: &[Block<1>]| Model::new(&reduced, u, z, 0.1).unwrap();
+            let model = |u: &[[f64; 1]]| at(u, at(u, &none).slope());
             let u = &reduced.target;
             let step: Vec<[f64; 1]> = (0..u.len()).map(|i| [(1.3 * i as f64).cos()]).collect();
             let moved = |far: f64| -> Vec<[f64; 1]> {
                 u.iter().zip(&step).map(|(u, s)| [u[0] + far * s[0]]).collect()
             };
             let (ahead, behind) = (model(&moved(1e-5)), model(&moved(-1e-5)));
-            let mut change = Vec::new();
-            reduced.apply_change(&step, &mut change);
+            let change = reduced.apply_change(&step).unwrap();
             let mut derivative = none.clone();
             follow(model(u).stiffness(), &change, &mut derivative);
             for (b, derivative) in derivative.iter().enumerate() {
@@ -293,8 +310,7 @@ mod tests {
             let barrier = 1e-3;
             let (u, z, far) = center(&mut reduced, barrier, 25);
             assert!(far < 1e-9, "the last step goes {far}");
-            let mut h = Vec::new();
-            reduced.apply(&u, &mut h);
+            let h = reduced.apply(&u).unwrap();
             for ((h, z), &w) in h.iter().zip(&z).zip(reduced.weights.iter()) {
                 if w > 0.0 {
                     let (_, t) = cone(barrier / w, norm(h));
@@ -310,10 +326,10 @@ mod tests {
     #[test]
     fn the_path_ends_at_the_minimum() {
         with_reduced(|mut reduced| {
-            let (mut h, mut before) = (Vec::new(), f64::INFINITY);
+            let mut before = f64::INFINITY;
             for barrier in [1e-1, 1e-3, 1e-5] {
                 let (u, z, _) = center(&mut reduced, barrier, 40);
-                reduced.apply(&u, &mut h);
+                let h = reduced.apply(&u).unwrap();
                 let primal = reduced.objective(&u, &h);
                 let along = h.iter().zip(&z).map(|(h, z)| crate::solve::cones::inner(h, z)).sum::<f64>();
                 // What a cone leaves is at most twice μ.

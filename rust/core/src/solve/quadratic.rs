@@ -14,7 +14,7 @@ use crate::solve::constraints::LinearConstraints;
 use crate::solve::free_operator::FreeOperator;
 use crate::solve::normal_matrix::NormalMatrix;
 use crate::solve::problem::{Problem, Settings, Solution, Solver, Status};
-use crate::{Error, Result};
+use crate::{memory, Error, Result};
 
 /// The shift as a part of the diagonal: above rounding in the factorization, below the smallest eigenvalue of
 /// well posed problems up to some 100k vertices.
@@ -56,7 +56,7 @@ pub fn minimize(problem: &Problem<'_>, settings: &Settings, progress: &Progress)
     problem.check_shapes()?;
     let free = FreeOperator::new(problem.operator, &problem.fixed)?;
     let mut newton = Newton::new(problem, &free, settings.memory_limit)?;
-    let mut values = problem.target.clone();
+    let mut values = problem.target.copied()?;
     let mut total = Totals::default();
     for c in 0..values.n_columns {
         progress.check()?;
@@ -103,14 +103,16 @@ impl<'a> Newton<'a> {
         } else {
             NormalMatrix::stretched(&free.operator)?
         };
-        let mut cholesky = Cholesky::analyze(normal.pattern().clone(), memory_limit)?;
+        let mut cholesky = Cholesky::analyze(normal.pattern().copied()?, memory_limit)?;
         if free.free.is_empty() {
             return Ok(Self { problem, free, cholesky });
         }
-        let twice: Vec<f64> = free.free.iter().map(|&i| 2.0 * problem.fidelity[i as usize]).collect();
-        let mut values = Vec::new();
-        normal.assemble(&free.operator, &free.of_blocks(&problem.weights), &twice, &mut values);
-        let diagonal: Vec<f64> = normal.pattern().starts[..twice.len()].iter().map(|&s| values[s]).collect();
+        let twice: Vec<f64> =
+            memory::gathered(free.free.iter().map(|&i| 2.0 * problem.fidelity[i as usize]))?;
+        let mut values = memory::room(normal.pattern().rows.len())?;
+        normal.assemble(&free.operator, &free.of_blocks(&problem.weights)?, &twice, &mut values);
+        let starts = &normal.pattern().starts[..twice.len()];
+        let diagonal: Vec<f64> = memory::gathered(starts.iter().map(|&s| values[s]))?;
         let mean = diagonal.iter().map(|d| d.abs()).sum::<f64>() / diagonal.len() as f64;
         let scale = if mean > 0.0 { mean } else { 1.0 };
         let mut shift = match problem.linear_constraints {
@@ -132,6 +134,7 @@ impl<'a> Newton<'a> {
             }
             match cholesky.factorize(&values) {
                 Ok(()) => return Ok(Self { problem, free, cholesky }),
+                Err(error @ SolveError::Memory { .. }) => return Err(error.into()),
                 Err(_) if shift < largest => shift = (SHIFT_GROWTH * shift).max(SHIFT),
                 Err(_) if negative => return Err(not_convex()),
                 Err(error) => return Err(error.into()),
@@ -151,9 +154,8 @@ impl<'a> Newton<'a> {
             constraints.prepare(&mut self.cholesky, self.free.free.len())?;
         }
         // One step from the target, corrected to satisfy the constraints.
-        let gradient = self.gradient(u, target);
-        let mut point: Vec<[f64; 1]> = gradient.iter().map(|g| [-g]).collect();
-        self.cholesky.solve(&mut point);
+        let mut point = self.descent(u, target)?;
+        self.cholesky.solve(&mut point)?;
         point.iter_mut().zip(&self.free.free).for_each(|(x, &i)| x[0] += u[i as usize]);
         if let Some(constraints) = &mut constraints {
             constraints.correct(&mut point);
@@ -162,7 +164,7 @@ impl<'a> Newton<'a> {
         point.iter().zip(&self.free.free).for_each(|(x, &i)| u[i as usize] = x[0]);
         total.steps += 1;
 
-        let residual: Vec<[f64; 1]> = self.gradient(u, target).into_iter().map(|g| [-g]).collect();
+        let residual = self.descent(u, target)?;
         let mut descending = Descending { newton: self, u, target, constraints, progress };
         let run = descend(&mut descending, residual, |_| 2.0 * ENOUGH * ENOUGH.sqrt() * scale, MOST_STEPS)?;
         // In the kernel up to rounding there is nothing to gain; clearly below it, everything.
@@ -181,13 +183,13 @@ impl<'a> Newton<'a> {
         Ok(Some(LinearConstraints::new(matrix, right, self.free, &[c], &|i| [target[i]])?))
     }
 
-    /// The gradient on the free rows.
-    fn gradient(&self, u: &[f64], target: &[f64]) -> Vec<f64> {
-        let mut all = self.problem.operator.normal_times(&self.problem.weights, u);
+    /// What leads down, the gradient with the other sign, on the free rows.
+    fn descent(&self, u: &[f64], target: &[f64]) -> Result<Vec<[f64; 1]>> {
+        let mut all = self.problem.operator.normal_times(&self.problem.weights, u)?;
         for (i, g) in all.iter_mut().enumerate() {
             *g += 2.0 * self.problem.fidelity[i] * (u[i] - target[i]);
         }
-        self.free.free.iter().map(|&i| all[i as usize]).collect()
+        Ok(memory::gathered(self.free.free.iter().map(|&i| [-all[i as usize]]))?)
     }
 
     fn objective(&self, u: &[f64], target: &[f64]) -> f64 {
@@ -220,17 +222,14 @@ struct Descending<'a, 'b> {
 
 impl Quadratic<1> for Descending<'_, '_> {
     /// The second derivative times a direction, both on the free rows.
-    fn times(&mut self, direction: &[[f64; 1]], out: &mut Vec<[f64; 1]>) -> Result<()> {
+    fn times(&mut self, direction: &[[f64; 1]]) -> Result<Vec<[f64; 1]>> {
         self.progress.check()?;
         let (problem, free) = (self.newton.problem, &self.newton.free.free);
-        let mut whole = vec![0.0; self.u.len()];
+        let mut whole = memory::repeated(0.0, self.u.len())?;
         direction.iter().zip(free).for_each(|(d, &i)| whole[i as usize] = d[0]);
-        let product = problem.operator.normal_times(&problem.weights, &whole);
-        out.clear();
-        out.extend(
-            free.iter().map(|&i| i as usize).map(|i| [product[i] + 2.0 * problem.fidelity[i] * whole[i]]),
-        );
-        Ok(())
+        let product = problem.operator.normal_times(&problem.weights, &whole)?;
+        let entry = |&i: &u32| product[i as usize] + 2.0 * problem.fidelity[i as usize] * whole[i as usize];
+        Ok(memory::gathered(free.iter().map(|i| [entry(i)]))?)
     }
 
     /// The factored matrix's inverse times the residual, projected on the kernel of the constraints,
@@ -238,34 +237,40 @@ impl Quadratic<1> for Descending<'_, '_> {
     ///
     /// What the constraints hold is taken out of the residual first: left in, its rounding would outgrow the
     /// rest (Gould, Hribar and Nocedal 2001, section 6).
-    fn precondition(&mut self, residual: &mut [[f64; 1]]) -> Vec<[f64; 1]> {
-        let mut z = residual.to_vec();
-        self.newton.cholesky.solve(&mut z);
+    fn precondition(&mut self, residual: &mut [[f64; 1]]) -> Result<Vec<[f64; 1]>> {
+        let mut z = memory::twin(residual)?;
+        self.newton.cholesky.solve(&mut z)?;
         if let Some(constraints) = &self.constraints {
             for _ in 0..PROJECTIONS {
                 let held: Vec<[f64; 1]> = constraints.correct(&mut z).into_iter().map(|y| [-y[0]]).collect();
                 constraints.add_transposed(&held, residual);
                 z.copy_from_slice(residual);
-                self.newton.cholesky.solve(&mut z);
+                self.newton.cholesky.solve(&mut z)?;
             }
             constraints.correct(&mut z);
         }
-        z
+        Ok(z)
     }
 
     /// The residual is computed anew: that is iterative refinement. A step up is rounding,
     /// which has the last word.
-    fn go(&mut self, far: f64, direction: &[[f64; 1]], _: &[[f64; 1]], residual: &mut [[f64; 1]]) -> bool {
+    fn go(
+        &mut self,
+        far: f64,
+        direction: &[[f64; 1]],
+        _: &[[f64; 1]],
+        residual: &mut [[f64; 1]],
+    ) -> Result<bool> {
         let free = &self.newton.free.free;
         let before = self.newton.objective(self.u, self.target);
-        let old: Vec<f64> = free.iter().map(|&i| self.u[i as usize]).collect();
+        let old: Vec<f64> = memory::gathered(free.iter().map(|&i| self.u[i as usize]))?;
         direction.iter().zip(free).for_each(|(d, &i)| self.u[i as usize] += far * d[0]);
         if self.newton.objective(self.u, self.target) > before {
             old.iter().zip(free).for_each(|(x, &i)| self.u[i as usize] = *x);
-            return false;
+            return Ok(false);
         }
-        residual.iter_mut().zip(self.newton.gradient(self.u, self.target)).for_each(|(r, g)| r[0] = -g);
-        true
+        residual.copy_from_slice(&self.newton.descent(self.u, self.target)?);
+        Ok(true)
     }
 }
 

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use crate::block_rows::BLOCK;
 use crate::error::SolveError;
+use crate::memory;
 use crate::solve::cones::{norm, Block};
 use crate::solve::constraints::LinearConstraints;
 use crate::solve::free_operator::FreeOperator;
@@ -76,12 +77,13 @@ impl<'a, const K: usize> Reduced<'a, K> {
         let row_of = |i: usize| -> [f64; K] {
             std::array::from_fn(|c| columns.get(c).map_or(0.0, |&column| problem.target.column(column)[i]))
         };
-        let target: Vec<[f64; K]> = free.free.iter().map(|&i| row_of(i as usize)).collect();
-        let fidelity: Vec<f64> = free.free.iter().map(|&i| problem.fidelity[i as usize]).collect();
-        let has_fidelity_everywhere = fidelity.iter().all(|a| *a > 0.0);
+        let target: Vec<[f64; K]> = memory::gathered(free.free.iter().map(|&i| row_of(i as usize)))?;
+        let fidelity = memory::gathered(free.free.iter().map(|&i| problem.fidelity[i as usize]))?;
+        let has_fidelity_everywhere = fidelity.iter().all(|a: &f64| *a > 0.0);
         let mut constant = Vec::new();
         let mut offset = 0.0;
         if let Some(blocks) = &free.blocks {
+            constant = memory::room(blocks.len())?;
             let mut left = blocks.iter().peekable();
             for b in 0..problem.operator.n_blocks() {
                 let mut sum = [[0.0; K]; BLOCK];
@@ -102,7 +104,7 @@ impl<'a, const K: usize> Reduced<'a, K> {
             None => None,
             Some((matrix, right)) => Some(LinearConstraints::new(matrix, right, free, columns, &row_of)?),
         };
-        let weights = free.of_blocks(&problem.weights);
+        let weights = free.of_blocks(&problem.weights)?;
         Ok(Self {
             free,
             n_columns: columns.len(),
@@ -135,19 +137,31 @@ impl<'a, const K: usize> Reduced<'a, K> {
         self.constant.get(b).copied().unwrap_or([[0.0; K]; BLOCK])
     }
 
-    /// `out = H u + c`.
-    pub fn apply(&self, u: &[[f64; K]], out: &mut Vec<Block<K>>) {
-        self.add_product(|b| self.constant(b), u, out);
+    /// `H u + c`.
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub fn apply(&self, u: &[[f64; K]]) -> Result<Vec<Block<K>>, SolveError> {
+        self.product(|b| self.constant(b), u)
     }
 
-    /// `out = H u`, of a change of the point.
-    pub fn apply_change(&self, u: &[[f64; K]], out: &mut Vec<Block<K>>) {
-        self.add_product(|_| [[0.0; K]; BLOCK], u, out);
+    /// `H u`, of a change of the point.
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub fn apply_change(&self, u: &[[f64; K]]) -> Result<Vec<Block<K>>, SolveError> {
+        self.product(|_| [[0.0; K]; BLOCK], u)
     }
 
-    fn add_product(&self, to: impl Fn(usize) -> Block<K> + Sync, u: &[[f64; K]], out: &mut Vec<Block<K>>) {
+    fn product(
+        &self,
+        to: impl Fn(usize) -> Block<K> + Sync,
+        u: &[[f64; K]],
+    ) -> Result<Vec<Block<K>>, SolveError> {
+        let mut out = memory::room(self.n_blocks())?;
         let sums = (0..self.n_blocks()).into_par_iter().with_min_len(GRAIN);
-        sums.map(|b| self.block_added(to(b), b, u)).collect_into_vec(out);
+        sums.map(|b| self.block_added(to(b), b, u)).collect_into_vec(&mut out);
+        Ok(out)
     }
 
     /// Block `b` of `H u`.
@@ -166,13 +180,19 @@ impl<'a, const K: usize> Reduced<'a, K> {
         sum
     }
 
-    /// `out = Hᵀ y`, for a `y` given block by block.
-    pub fn apply_transposed(&self, y: impl Fn(usize) -> Block<K> + Sync, out: &mut Vec<[f64; K]>) {
+    /// `Hᵀ y`, for a `y` given block by block.
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub fn apply_transposed(
+        &self,
+        y: impl Fn(usize) -> Block<K> + Sync,
+    ) -> Result<Vec<[f64; K]>, SolveError> {
         let parts = Parts::of(self.n_blocks());
         let mut sums: Vec<Vec<[f64; K]>> = (0..parts.count)
             .into_par_iter()
             .map(|part| {
-                let mut sum = vec![[0.0; K]; self.n()];
+                let mut sum = memory::repeated([0.0; K], self.n())?;
                 for b in parts.range(part, self.n_blocks()) {
                     let at = y(b);
                     let (columns, values) = self.free.operator.block(b);
@@ -180,11 +200,11 @@ impl<'a, const K: usize> Reduced<'a, K> {
                         add_outer_transposed(&mut sum[column as usize], value, &at);
                     }
                 }
-                sum
+                Ok(sum)
             })
-            .collect();
+            .collect::<Result<_, SolveError>>()?;
         gather(&mut sums, self.n());
-        *out = sums.swap_remove(0);
+        Ok(sums.swap_remove(0))
     }
 
     /// The objective at `u`, where `h = H u + c`.

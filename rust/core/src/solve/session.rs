@@ -11,7 +11,7 @@ use crate::solve::free_operator::FreeOperator;
 use crate::solve::outcome::{Outcome, Warm};
 use crate::solve::problem::{Coupling, Problem, Settings, Solution, Solver, Status};
 use crate::solve::reduced::Reduced;
-use crate::{Error, Result};
+use crate::{memory, Error, Result};
 
 /// At most this many columns in one joint norm.
 pub const MAX_JOINT_COLUMNS: usize = 16;
@@ -103,7 +103,7 @@ impl Session {
         self.prepare(problem)?;
         let stored = std::mem::take(&mut self.warm);
         let fits = stored.len() == groups.len();
-        let mut total = Total::new(problem, method);
+        let mut total = Total::new(problem, method)?;
         let call = Call { method, settings, progress };
         for (g, columns) in groups.iter().enumerate() {
             progress.check()?;
@@ -151,7 +151,7 @@ impl Session {
         };
         let reduced = Reduced::<K>::new(problem, &structure.free, columns)?;
         if reduced.n() == 0 {
-            total.add_fixed(&reduced);
+            total.add_fixed(&reduced)?;
             return Ok(());
         }
         let outcome = match call.method {
@@ -165,7 +165,8 @@ impl Session {
                     empty => empty.insert(System::new(&structure.free, call.settings.memory_limit)?),
                 };
                 let before = system.n_factorizations();
-                let warm = warm.and_then(|w| w.restore(structure.free.operator.n_blocks()));
+                let n_blocks = structure.free.operator.n_blocks();
+                let warm = warm.map(|w| w.restore(n_blocks)).transpose()?.flatten();
                 let outcome = fast::minimize(reduced, system, warm, call.settings, call.progress)?;
                 total.factorisations += system.n_factorizations() - before;
                 outcome
@@ -179,20 +180,17 @@ impl Session {
 
 impl StoredWarm {
     fn new<const K: usize>(warm: Warm<K>) -> Self {
-        let flat = |blocks: Vec<[[f64; K]; BLOCK]>| blocks.as_flattened().as_flattened().to_vec();
+        let flat = |blocks: Vec<[[f64; K]; BLOCK]>| blocks.into_flattened().into_flattened();
         Self { columns: K, z: flat(warm.z), p: flat(warm.p), length: warm.length }
     }
 
-    fn restore<const K: usize>(&self, n_blocks: usize) -> Option<Warm<K>> {
+    fn restore<const K: usize>(&self, n_blocks: usize) -> Result<Option<Warm<K>>> {
         if self.columns != K || self.length.len() != n_blocks {
-            return None;
+            return Ok(None);
         }
-        let blocks = |flat: &[f64]| {
-            flat.chunks_exact(BLOCK * K)
-                .map(|b| std::array::from_fn(|r| std::array::from_fn(|c| b[r * K + c])))
-                .collect()
-        };
-        Some(Warm { z: blocks(&self.z), p: blocks(&self.p), length: self.length.clone() })
+        let block = |b: &[f64]| std::array::from_fn(|r| std::array::from_fn(|c| b[r * K + c]));
+        let blocks = |flat: &[f64]| memory::gathered(flat.chunks_exact(BLOCK * K).map(block));
+        Ok(Some(Warm { z: blocks(&self.z)?, p: blocks(&self.p)?, length: memory::twin(&self.length)? }))
     }
 }
 
@@ -209,9 +207,9 @@ struct Total {
 }
 
 impl Total {
-    fn new(problem: &Problem<'_>, method: Method) -> Self {
-        Self {
-            values: problem.target.clone(),
+    fn new(problem: &Problem<'_>, method: Method) -> Result<Self> {
+        Ok(Self {
+            values: problem.target.copied()?,
             primal: 0.0,
             dual: 0.0,
             floor: 0.0,
@@ -222,7 +220,7 @@ impl Total {
                 Method::Fast => Solver::Fast,
                 Method::Clarabel(solver) => solver,
             },
-        }
+        })
     }
 
     fn add<const K: usize>(&mut self, outcome: &Outcome<K>, free: &[u32], columns: &[usize]) {
@@ -240,11 +238,12 @@ impl Total {
     }
 
     /// Everything is fixed: the objective is a constant and its own bound.
-    fn add_fixed<const K: usize>(&mut self, reduced: &Reduced<'_, K>) {
-        let constant: Vec<_> = (0..reduced.n_blocks()).map(|b| reduced.constant(b)).collect();
+    fn add_fixed<const K: usize>(&mut self, reduced: &Reduced<'_, K>) -> Result<()> {
+        let constant: Vec<_> = memory::gathered((0..reduced.n_blocks()).map(|b| reduced.constant(b)))?;
         let objective = reduced.objective(&[], &constant);
         self.primal += objective;
         self.dual += objective;
+        Ok(())
     }
 
     fn into_solution(self) -> Solution {

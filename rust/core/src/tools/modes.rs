@@ -12,7 +12,7 @@ use crate::operators::{cotangent_laplacian, voronoi_mass, Energy, EnergyForm};
 use crate::progress::{Progress, Report};
 use crate::solve::eigen::{mass_dot, Eigenpairs, Pencil};
 use crate::solve::{solve, Coupling, Problem, Session, Settings, Solution, Solver, Status};
-use crate::{Error, Result};
+use crate::{memory, Error, Result};
 
 /// Eigenvalues below this part of the largest one computed belong to the kernel of an energy: those of the
 /// kernel come out at 1e-16 and less, the first of the others at 1e-3 and more.
@@ -76,7 +76,7 @@ pub fn vibration_modes(
     let length = mesh.unit();
     let measured = mesh.measured(length)?;
     let (mesh, form) = options.energy.on(&measured)?;
-    let whole = voronoi_mass(mesh.connectivity(), mesh.edge_lengths());
+    let whole = voronoi_mass(mesh.connectivity(), mesh.edge_lengths())?;
     let unseen = unseen(&mesh, &form);
     // A vertex that costs no energy would be a mode of its own.
     let counts = |i: usize| !unseen.as_ref().is_some_and(|unseen| unseen[i]);
@@ -126,7 +126,7 @@ impl Sequence<'_> {
         self.report(0, count, "modes of the squares", None);
         let weights = self.weights_of_squares();
         let start = self.pencil(&weights).smallest(count, self.progress)?;
-        let (mut modes, mut status) = (self.kernel(&start), Status::Solved);
+        let (mut modes, mut status) = (self.kernel(&start)?, Status::Solved);
         let mut solver = Session::new();
         while modes.len() < count {
             if self.progress.is_finishing() {
@@ -168,24 +168,28 @@ impl Sequence<'_> {
     }
 
     /// The functions without energy among the eigenvectors `found`, ordered by their Dirichlet energy.
-    fn kernel(&self, found: &Eigenpairs) -> Vec<Vec<f64>> {
+    fn kernel(&self, found: &Eigenpairs) -> Result<Vec<Vec<f64>>> {
         let largest = found.values.last().copied().unwrap_or(0.0).max(self.pencil(&[]).scale);
         let within = found.values.iter().take_while(|value| **value <= KERNEL * largest).count();
         let basis: Vec<&[f64]> = (0..within).map(|j| found.vectors.column(j)).collect();
-        let laplacian = cotangent_laplacian(self.mesh.connectivity(), self.mesh.edge_lengths());
-        let times = |u: &[f64]| -> Vec<f64> {
-            laplacian.outer_iterator().map(|row| row.iter().map(|(j, value)| value * u[j]).sum()).collect()
+        let laplacian = cotangent_laplacian(self.mesh.connectivity(), self.mesh.edge_lengths())?;
+        let times = |u: &[f64]| {
+            let mut product = memory::room(u.len())?;
+            let along =
+                |row: sprs::CsVecView<'_, f64>| row.iter().map(|(j, value)| value * u[j]).sum::<f64>();
+            product.extend(laplacian.outer_iterator().map(along));
+            Ok(product)
         };
-        let images: Vec<Vec<f64>> = basis.iter().map(|u| times(u)).collect();
+        let images: Vec<Vec<f64>> = basis.iter().map(|u| times(u)).collect::<Result<_>>()?;
         let inner = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
         let projected = images.iter().map(|y| basis.iter().map(|x| inner(x, y)).collect()).collect();
         let (_, rotation) = symmetric_eigen(projected);
         let combine = |coefficients: &Vec<f64>| {
-            let mut sum = vec![0.0; self.mass.len()];
+            let mut sum = memory::repeated(0.0, self.mass.len())?;
             for (x, c) in basis.iter().zip(coefficients) {
                 sum.iter_mut().zip(*x).for_each(|(s, x)| *s += c * x);
             }
-            sum
+            Ok(sum)
         };
         rotation.iter().map(combine).collect()
     }

@@ -86,7 +86,7 @@ impl ScalarProblem<'_> {
         }
         let measured = self.mesh.measured(length)?;
         let (mesh, form) = options.energy.on(&measured)?;
-        let mass = voronoi_mass(mesh.connectivity(), mesh.edge_lengths());
+        let mass = voronoi_mass(mesh.connectivity(), mesh.edge_lengths())?;
         // With a fidelity or constraints, what the energy does not see is theirs.
         let mut open =
             unseen(&mesh, &form).filter(|_| fidelity == 0.0 && options.linear_constraints.is_none());
@@ -145,8 +145,8 @@ fn sharpened(
         if progress.is_finishing() {
             break;
         }
-        let norms = block_norms(problem.operator, &solution.values, options.coupling);
-        problem.weights = sharpened_weights(&norms, &areas, &base, options.sharpness);
+        let norms = block_norms(problem.operator, &solution.values, options.coupling)?;
+        problem.weights = sharpened_weights(&norms, &areas, &base, options.sharpness)?;
         let (iterations, factorisations) = (solution.iterations, solution.factorisations);
         solution = solve(problem, options.solve.solver, settings, progress)?;
         solution.iterations += iterations;

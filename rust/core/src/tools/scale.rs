@@ -1,6 +1,6 @@
 //! The unit of length in which weights are meant, and the sizes of a shape.
 
-use crate::mesh::{edge_lengths, triangle, Connectivity};
+use crate::mesh::{rows_of_lengths, triangle, Connectivity};
 
 /// A cube's side over the root mean square distance of its surface from its center:
 /// 0.25 + 2/12 for a side of 1.
@@ -40,7 +40,7 @@ impl Scale {
 /// rotations do not change), and the area.
 pub(super) fn extent(connectivity: &Connectivity, points: &[[f64; 3]]) -> (f64, f64) {
     let (mut total, mut first, mut second) = (0.0, [0.0; 3], 0.0);
-    for (face, l) in connectivity.faces().iter().zip(edge_lengths(connectivity.faces(), points)) {
+    for (face, l) in connectivity.faces().iter().zip(rows_of_lengths(connectivity.faces(), points)) {
         let area = triangle::area(l);
         let center: [f64; 3] =
             std::array::from_fn(|c| face.iter().map(|&v| points[v as usize][c]).sum::<f64>() / 3.0);

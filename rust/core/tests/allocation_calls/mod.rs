@@ -10,15 +10,16 @@ use ridgeform_core::remesh::{remesh, RemeshOptions};
 use ridgeform_core::shapes::{cylinder, grid, Shape};
 use ridgeform_core::solve::Solver;
 use ridgeform_core::tools::{
-    denoise, diffusion_curves, fill_holes, interpolate, parts, segment, smooth_curves, stylize, trace_curves,
-    vibration_modes, DenoiseOptions, DiffusionCurvesOptions, EnergyOptions, FillHolesOptions, ModeOptions,
-    PartsOptions, ScalarOptions, SegmentOptions, SolveOptions, StylizeOptions,
+    denoise, diffusion_curves, facet, fill_holes, interpolate, parts, restore, segment, smooth_curves,
+    stylize, trace_curves, vibration_modes, DenoiseOptions, DiffusionCurvesOptions, EnergyOptions,
+    FacetOptions, FillHolesOptions, ModeOptions, PartsOptions, RestoreOptions, ScalarOptions, SegmentOptions,
+    SolveOptions, StylizeOptions,
 };
 use ridgeform_core::{Progress, Result};
 
 /// Each call, and how many vertices a side of its mesh has:
 /// those that take little are asked for on large meshes only.
-pub const CALLS: [(&str, usize); 13] = [
+pub const CALLS: [(&str, usize); 15] = [
     ("stylize", 75),
     ("denoise", 75),
     ("denoise 3 columns", 75),
@@ -28,6 +29,8 @@ pub const CALLS: [(&str, usize); 13] = [
     ("vibration_modes", 75),
     ("segment", 60),
     ("parts", 115),
+    ("facet", 110),
+    ("restore", 60),
     ("fill_holes", 210),
     ("remesh", 165),
     ("diffusion_curves", 60),
@@ -69,7 +72,7 @@ impl Given {
         Self {
             known: Columns { n_rows: pins.len(), n_columns: 1, data },
             curve: points.iter().copied().step_by(100).collect(),
-            points: Columns::from_points(&points),
+            points: Columns::from_points(&points).unwrap(),
             mesh,
             heights,
             pins,
@@ -106,6 +109,11 @@ impl Given {
             }
             "segment" => segment(&self.mesh, None, &SegmentOptions::default(), &progress).map(drop),
             "parts" => parts(&self.mesh, &PartsOptions::default(), &progress).map(drop),
+            "facet" => {
+                let options = FacetOptions { facets: Some(2000), ..FacetOptions::default() };
+                facet(&self.mesh, None, &options, &progress).map(drop)
+            }
+            "restore" => restore(&self.mesh, &RestoreOptions::default(), &progress).map(drop),
             "fill_holes" => {
                 let options = FillHolesOptions { iterations: 1, outer: true, ..FillHolesOptions::default() };
                 fill_holes(&self.mesh, &options, &progress).map(drop)

@@ -68,6 +68,7 @@ impl Case {
         let mesh = shape.mesh().unwrap();
         let connectivity = mesh.connectivity();
         let operator = HessianPattern::new(connectivity)
+            .unwrap()
             .assemble(connectivity, mesh.edge_lengths(), Dual::Barycentric)
             .unwrap();
         let n = operator.n_columns;
@@ -95,7 +96,7 @@ impl Case {
         };
         if !interpolates {
             case.fidelity =
-                voronoi_mass(connectivity, mesh.edge_lengths()).iter().map(|m| alpha * m).collect();
+                voronoi_mass(connectivity, mesh.edge_lengths()).unwrap().iter().map(|m| alpha * m).collect();
             data.add_noise(&mut case.target, random);
             case.name +=
                 &format!(", noise {noise:.1e}, fidelity {:.1e}", alpha * amplitude * size(&mesh).powi(2));
@@ -111,7 +112,8 @@ impl Case {
             Class::Sharpened => {
                 let areas: Vec<f64> = mesh.edge_lengths().iter().map(|&l| triangle::area(l)).collect();
                 let norms = norms(&case.operator, &case.target);
-                case.weights = sharpened_weights(&norms, &areas, &case.weights, 0.2 + 0.8 * random.uniform());
+                case.weights =
+                    sharpened_weights(&norms, &areas, &case.weights, 0.2 + 0.8 * random.uniform()).unwrap();
             }
             _ => {}
         }
@@ -192,7 +194,7 @@ impl Case {
         if count == 0 {
             return;
         }
-        let mass = voronoi_mass(mesh.connectivity(), mesh.edge_lengths());
+        let mass = voronoi_mass(mesh.connectivity(), mesh.edge_lengths()).unwrap();
         let total: f64 = mass.iter().sum();
         let mut rows = TriMat::new((count, self.fixed.len()));
         let mut right = vec![0.0; count];

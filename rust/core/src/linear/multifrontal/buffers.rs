@@ -4,6 +4,8 @@
 use std::sync::{Mutex, PoisonError};
 
 use super::padded::Padded;
+use crate::error::SolveError;
+use crate::memory;
 
 /// What one thread needs for the fronts of a subtree.
 #[derive(Debug, Default)]
@@ -31,13 +33,14 @@ pub(crate) struct Stack {
 
 impl Stack {
     /// `len` more numbers, of any value.
-    pub(crate) fn push(&mut self, len: usize) -> &mut [f64] {
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub(crate) fn push(&mut self, len: usize) -> Result<&mut [f64], SolveError> {
         let begin = self.top;
+        memory::grow(&mut self.values, begin + len, 0.0)?;
         self.top += len;
-        if self.values.len() < self.top {
-            self.values.resize(self.top, 0.0);
-        }
-        &mut self.values[begin..self.top]
+        Ok(&mut self.values[begin..self.top])
     }
 
     /// The last `len` numbers.
@@ -71,10 +74,14 @@ impl Workspace {
 
     /// Makes `buffer` hold `len` numbers of any value: the smallest free buffer that does,
     /// or a new one for the largest.
-    pub(crate) fn take(&self, len: usize, buffer: &mut Vec<f64>) {
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub(crate) fn take(&self, len: usize, buffer: &mut Vec<f64>) -> Result<(), SolveError> {
         if len == 0 {
             // Roots leave nothing, and a mesh can have as many as vertices.
-            return buffer.clear();
+            buffer.clear();
+            return Ok(());
         }
         let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
         let fits = |x: &Vec<f64>| (x.len() < len, x.len().abs_diff(len));
@@ -83,8 +90,9 @@ impl Workspace {
         drop(spare);
         if buffer.len() < len {
             *buffer = Vec::new();
-            *buffer = vec![0.0; len];
+            *buffer = memory::repeated(0.0, len)?;
         }
+        Ok(())
     }
 
     /// Gives a buffer back.

@@ -323,7 +323,7 @@ mod tests {
         {
             let (mut panel, mut update) = (Padded::default(), vec![f64::NAN; update_len(m - k)]);
             let stride = Padded::stride_of(m - k);
-            panel.clear(m, k);
+            panel.clear(m, k).unwrap();
             for j in 0..k {
                 for i in j..m {
                     panel.values[j * panel.stride + i] = entry(i, j, m);
@@ -350,7 +350,7 @@ mod tests {
     fn a_pivot_that_is_not_positive_is_told() {
         for bad in [0, 3, 5, 66] {
             let (mut panel, mut update) = (Padded::default(), vec![0.0; update_len(3)]);
-            panel.clear(70, 67);
+            panel.clear(70, 67).unwrap();
             for j in 0..67 {
                 panel.values[j * panel.stride + j] = if j == bad { -1.0 } else { 1.0 };
             }

@@ -18,22 +18,31 @@ use dense::Front;
 use rayon::prelude::*;
 pub(super) use tree::Tree;
 
+use crate::error::SolveError;
 use crate::linear::triangular::Panels;
 
 /// Factors the matrix with these values (one per entry of the pattern) into `factor`, panel by panel as in
-/// `panels`; `None` when it is not positive definite.
-#[must_use]
+/// `panels`.
+///
+/// # Errors
+/// [`SolveError::Factorization`] when it is not positive definite, [`SolveError::Memory`].
 pub(super) fn factorize(
     tree: &Tree,
     panels: &Panels,
     values: &[f64],
     factor: &mut [f64],
     workspace: &Workspace,
-) -> Option<()> {
+) -> Result<(), SolveError> {
     let numeric = Numeric { tree, panels, values, workspace };
     numeric
         .subtrees(tree.children(panels.count()), 0, factor)
         .map(|left| left.into_iter().for_each(|x| workspace.give(x)))
+}
+
+/// A pivot is not positive.
+fn not_definite() -> SolveError {
+    let reason = "the matrix is not positive definite; fix more vertices or raise the fidelity".into();
+    SolveError::Factorization { reason }
 }
 
 struct Numeric<'n> {
@@ -46,7 +55,7 @@ struct Numeric<'n> {
 impl Numeric<'_> {
     /// Factors subtrees that follow each other, and returns what is left of each;
     /// `factor` starts with panel `begin`.
-    fn subtrees(&self, roots: &[u32], begin: usize, factor: &mut [f64]) -> Option<Vec<Vec<f64>>> {
+    fn subtrees(&self, roots: &[u32], begin: usize, factor: &mut [f64]) -> Result<Vec<Vec<f64>>, SolveError> {
         let mut rest = factor;
         let mut at = self.panels.values[begin];
         let mut segments = Vec::with_capacity(roots.len());
@@ -62,42 +71,46 @@ impl Numeric<'_> {
 
     /// Factors a subtree into `factor`, which starts with its first panel,
     /// and returns what is left for the parent of its root.
-    fn subtree(&self, root: usize, factor: &mut [f64]) -> Option<Vec<f64>> {
+    fn subtree(&self, root: usize, factor: &mut [f64]) -> Result<Vec<f64>, SolveError> {
         let first = self.tree.first[root] as usize;
         let base = self.panels.values[first];
         let mut update = Vec::new();
         if self.tree.is_split[root] {
             let (below, own) = factor.split_at_mut(self.panels.values[root] - base);
             let left = self.subtrees(self.tree.children(root), first, below)?;
-            self.workspace.take(padded::update_len(self.panels.below(root).len()), &mut update);
+            self.workspace.take(padded::update_len(self.panels.below(root).len()), &mut update)?;
             let mut work = self.workspace.work();
             let children: Vec<&[f64]> = left.iter().map(Vec::as_slice).collect();
             let done = self.front(root, own, &children, &mut update, &mut work.panel);
             self.workspace.back(work);
             left.into_iter().for_each(|x| self.workspace.give(x));
-            return done.then_some(update);
+            return done.map(|()| update);
         }
         let mut work = self.workspace.work();
-        let done = (first..root).all(|s| {
-            let out = self.panels.values[s] - base..self.panels.values[s + 1] - base;
-            self.stacked(s, &mut factor[out], &mut work, None)
-        });
-        self.workspace.take(padded::update_len(self.panels.below(root).len()), &mut update);
-        let done = done
-            && self.stacked(
-                root,
-                &mut factor[self.panels.values[root] - base..],
-                &mut work,
-                Some(&mut update),
-            );
+        let done = (first..root)
+            .try_for_each(|s| {
+                let out = self.panels.values[s] - base..self.panels.values[s + 1] - base;
+                self.stacked(s, &mut factor[out], &mut work, None)
+            })
+            .and_then(|()| {
+                self.workspace.take(padded::update_len(self.panels.below(root).len()), &mut update)?;
+                let own = &mut factor[self.panels.values[root] - base..];
+                self.stacked(root, own, &mut work, Some(&mut update))
+            });
         work.clear();
         self.workspace.back(work);
-        done.then_some(update)
+        done.map(|()| update)
     }
 
     /// One front of a subtree that runs on one thread: takes what is left of its children from one stack, and
     /// leaves its own on the other, or in `update`.
-    fn stacked(&self, s: usize, out: &mut [f64], work: &mut Work, update: Option<&mut [f64]>) -> bool {
+    fn stacked(
+        &self,
+        s: usize,
+        out: &mut [f64],
+        work: &mut Work,
+        update: Option<&mut [f64]>,
+    ) -> Result<(), SolveError> {
         let children = self.tree.children(s);
         let [even, odd] = &mut work.stacks;
         let (own, other) = if self.tree.stack[s] == 0 { (even, odd) } else { (odd, even) };
@@ -111,15 +124,14 @@ impl Numeric<'_> {
         }
         let update = match update {
             Some(update) => update,
-            None => own.push(padded::update_len(self.panels.below(s).len())),
+            None => own.push(padded::update_len(self.panels.below(s).len()))?,
         };
         let done = self.front(s, out, &left, update, &mut work.panel);
         other.pop(children.iter().map(lengths).sum());
         done
     }
 
-    /// Assembles and eliminates one front, writes its columns into `out`, and what is left into `update`;
-    /// `false` when a pivot is not positive.
+    /// Assembles and eliminates one front, writes its columns into `out`, and what is left into `update`.
     fn front(
         &self,
         s: usize,
@@ -127,11 +139,11 @@ impl Numeric<'_> {
         left: &[&[f64]],
         update: &mut [f64],
         panel: &mut padded::Padded,
-    ) -> bool {
+    ) -> Result<(), SolveError> {
         let n_columns = self.panels.begin[s + 1] - self.panels.begin[s];
         let n_below = self.panels.below(s).len();
         let n_rows = n_columns + n_below;
-        panel.clear(n_rows, n_columns);
+        panel.clear(n_rows, n_columns)?;
         let entries = self.tree.starts[s]..self.tree.starts[s + 1];
         for (&source, &target) in self.tree.source[entries.clone()].iter().zip(&self.tree.target[entries]) {
             panel.values[target as usize] += self.values[source as usize];
@@ -144,7 +156,7 @@ impl Numeric<'_> {
             assembly::add_to_panel(relative(child), from, n_columns, panel);
         }
         if !(Front { panel, update, n_rows, n_columns }.eliminate()) {
-            return false;
+            return Err(not_definite());
         }
         for (out, column) in out.chunks_exact_mut(n_rows).zip(panel.values.chunks_exact(panel.stride)) {
             out.copy_from_slice(&column[..n_rows]);
@@ -153,6 +165,6 @@ impl Numeric<'_> {
         for (&child, from) in self.tree.children(s).iter().zip(left) {
             assembly::add_to_update(relative(child), from, n_columns, update, stride);
         }
-        true
+        Ok(())
     }
 }

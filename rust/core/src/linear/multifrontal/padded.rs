@@ -1,5 +1,8 @@
 //! How fronts are stored: dense, column by column, padded to whole vector registers.
 
+use crate::error::SolveError;
+use crate::memory;
+
 /// Columns that are brought up to date and eliminated together.
 pub(super) const COLUMNS: usize = 4;
 
@@ -37,16 +40,18 @@ impl Padded {
     }
 
     /// Becomes a matrix whose lower triangle is zero. What was above the diagonal may stay: nothing reads it.
-    pub(crate) fn clear(&mut self, n_rows: usize, n_columns: usize) {
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub(crate) fn clear(&mut self, n_rows: usize, n_columns: usize) -> Result<(), SolveError> {
         self.stride = Self::stride_of(n_rows);
         let len = Self::len_of(n_rows, n_columns);
-        if self.values.len() < len {
-            self.values.resize(len, 0.0);
-        }
+        memory::grow(&mut self.values, len, 0.0)?;
         for (j, column) in self.values[..len].chunks_mut(self.stride.max(1)).enumerate() {
             let from = (j / ALIGNMENT * ALIGNMENT).min(column.len());
             column[from..].fill(0.0);
         }
+        Ok(())
     }
 }
 

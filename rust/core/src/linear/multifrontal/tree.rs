@@ -53,17 +53,17 @@ impl Tree {
         for s in 0..count {
             panel_of[panels.begin[s]..panels.begin[s + 1]].fill(s as u32);
         }
-        let parents: Vec<u32> =
-            (0..count).map(|s| panels.below(s).first().map_or(NONE, |&row| panel_of[row as usize])).collect();
+        let parent = |s: usize| panels.below(s).first().map_or(NONE, |&row| panel_of[row as usize]);
+        let parents: Vec<u32> = memory::gathered((0..count).map(parent))?;
         let mut tree = Self::default();
-        tree.find_children(&parents);
-        let mut size = vec![1u32; count];
+        tree.find_children(&parents)?;
+        let mut size = memory::repeated(1u32, count)?;
         for (s, &parent) in parents.iter().enumerate() {
             if parent != NONE {
                 size[parent as usize] += size[s];
             }
         }
-        tree.first = (0..count as u32).zip(&size).map(|(s, size)| s + 1 - size).collect();
+        tree.first = memory::gathered((0..count).zip(&size).map(|(s, size)| s as u32 + 1 - size))?;
         let is_postorder = (0..count).all(|s| {
             let mut next = tree.first[s];
             tree.children(s).iter().all(|&c| std::mem::replace(&mut next, c + 1) == tree.first[c as usize])
@@ -74,7 +74,7 @@ impl Tree {
                 reason: "the ordering of the matrix is no postorder".into(),
             });
         }
-        tree.split(panels, &parents);
+        tree.split(panels, &parents)?;
         tree.find_relative(panels, &parents)?;
         tree.find_targets(pattern, order, panels, &panel_of)?;
         Ok(tree)
@@ -86,18 +86,19 @@ impl Tree {
         self.children.of(s)
     }
 
-    fn find_children(&mut self, parents: &[u32]) {
+    fn find_children(&mut self, parents: &[u32]) -> Result<(), SolveError> {
         let count = parents.len();
         let of = |parent: u32| if parent == NONE { count } else { parent as usize };
-        self.children = Buckets::new(count + 1, |visit| {
+        self.children = Buckets::try_new(count + 1, |visit| {
             (0..).zip(parents).for_each(|(s, &parent)| visit(of(parent), s));
-        });
+        })?;
+        Ok(())
     }
 
     /// Finds where subtrees are split, and on which stack every front leaves what is left.
-    fn split(&mut self, panels: &Panels, parents: &[u32]) {
+    fn split(&mut self, panels: &Panels, parents: &[u32]) -> Result<(), SolveError> {
         let count = parents.len();
-        let mut work: Vec<f64> = (0..count).map(|s| panels.multiplications(s)).collect();
+        let mut work: Vec<f64> = memory::gathered((0..count).map(|s| panels.multiplications(s)))?;
         let mut total = 0.0;
         for s in 0..count {
             match parents[s] {
@@ -105,9 +106,9 @@ impl Tree {
                 parent => work[parent as usize] += work[s],
             }
         }
-        let mut depth = vec![0; count];
-        self.is_split = vec![false; count];
-        self.stack = vec![0; count];
+        let mut depth = memory::repeated(0, count)?;
+        self.is_split = memory::repeated(false, count)?;
+        self.stack = memory::repeated(0, count)?;
         for s in (0..count).rev() {
             let parent = parents[s] as usize;
             if parents[s] != NONE {
@@ -118,6 +119,7 @@ impl Tree {
             self.is_split[s] =
                 total > SHARED && work[s] > SPLIT * total && parent_is_split && depth[s] < DEEPEST;
         }
+        Ok(())
     }
 
     /// The most numbers that wait for their parents at once when the panels follow each other,

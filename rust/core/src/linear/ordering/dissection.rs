@@ -24,7 +24,7 @@ const GRAIN: usize = 4096;
 /// [`SolveError::Factorization`] when the ordering of a part fails.
 pub fn nested_dissection(pattern: &LowerPattern) -> Result<Vec<u32>, SolveError> {
     let mut order: Vec<u32> = (0..pattern.n as u32).collect();
-    dissect(&Graph::new(pattern), &mut order)?;
+    dissect(&Graph::new(pattern)?, &mut order)?;
     Ok(order)
 }
 
@@ -143,7 +143,7 @@ mod tests {
 
     #[test]
     fn separators_separate() {
-        let graph = Graph::new(&grid(60));
+        let graph = Graph::new(&grid(60)).unwrap();
         let side = separator(&graph, &mut Random::new(1));
         let count = |s: u8| side.iter().filter(|&&x| x == s).count();
         assert!(count(0) > graph.n() / 4 && count(1) > graph.n() / 4, "{} and {}", count(0), count(1));

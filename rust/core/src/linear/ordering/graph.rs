@@ -1,7 +1,9 @@
 //! A weighted graph, its coarser versions and its parts.
 
 use crate::buckets::Buckets;
+use crate::error::SolveError;
 use crate::linear::pattern::LowerPattern;
+use crate::memory;
 use crate::random::Random;
 
 /// An undirected graph with weights on vertices and edges; every edge stands at both of its ends.
@@ -22,20 +24,25 @@ const NONE: u32 = u32::MAX;
 
 impl Graph {
     /// The graph of a symmetric matrix; all weights are one.
-    #[must_use]
-    pub(super) fn new(pattern: &LowerPattern) -> Self {
-        let (starts, neighbors) = Buckets::new(pattern.n, |visit| {
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub(super) fn new(pattern: &LowerPattern) -> Result<Self, SolveError> {
+        let (starts, neighbors) = Buckets::try_new(pattern.n, |visit| {
             for j in 0..pattern.n {
                 for &i in pattern.rows[pattern.starts[j]..pattern.starts[j + 1]].iter().filter(|&&i| i != j) {
                     visit(i, j as u32);
                     visit(j, i as u32);
                 }
             }
-        })
+        })?
         .into_parts();
-        let starts = starts.into_iter().map(|start| start as u32).collect();
-        let edges = vec![1; neighbors.len()];
-        Self { starts, neighbors, edges, weights: vec![1; pattern.n] }
+        Ok(Self {
+            starts: memory::gathered(starts.into_iter().map(|start| start as u32))?,
+            edges: memory::repeated(1, neighbors.len())?,
+            neighbors,
+            weights: memory::repeated(1, pattern.n)?,
+        })
     }
 
     /// Number of vertices.

@@ -3,6 +3,7 @@
 use super::{Run, FACTORIZATION, RESIDUAL_GOAL};
 use crate::error::SolveError;
 use crate::linear::conjugate_gradients::{add, conjugate_gradients};
+use crate::memory;
 use crate::progress::Progress;
 use crate::solve::certificate::spread;
 use crate::solve::cones::Block;
@@ -92,7 +93,8 @@ impl<const K: usize> Run<'_, '_, K> {
         last_primal: f64,
         progress: &Progress,
     ) -> Result<()> {
-        let z = (0..self.r.len()).map(|b| self.sweep.split(&self.reduced.weights, &self.r, b).1).collect();
+        let multipliers = |b| self.sweep.split(&self.reduced.weights, &self.r, b).1;
+        let z = memory::gathered((0..self.r.len()).map(multipliers))?;
         let mut steps = Steps { z, factored: Vec::new(), is_near: false };
         let n_cones = self.reduced.weights.iter().filter(|w| **w > 0.0).count().max(1) as f64;
         let mut aim = self.first_aim(settings, last_primal);
@@ -115,9 +117,8 @@ impl<const K: usize> Run<'_, '_, K> {
             idle = if self.gap() < IDLE * before { 0 } else { idle + 1 };
             aim = aim.min(NEXT_AIM * self.gap()).max(least_aim(settings));
         }
-        let mut h = Vec::new();
-        self.reduced.apply(&self.u, &mut h);
-        self.sweep = Sweep::new(&self.reduced, &self.r, |b| (h[b], steps.z[b]));
+        let h = self.reduced.apply(&self.u)?;
+        self.sweep = Sweep::new(&self.reduced, &self.r, |b| (h[b], steps.z[b]))?;
         if self.is_certified(settings) || progress.is_finishing() {
             return Ok(());
         }
@@ -128,42 +129,39 @@ impl<const K: usize> Run<'_, '_, K> {
 
     /// One step and the bounds that come with it; `false` when no step downwards was found.
     fn step(&mut self, settings: &Settings, steps: &mut Steps<K>, barrier: f64) -> Result<bool> {
-        let model = Model::new(&self.reduced, &self.u, &steps.z, barrier);
-        let mut z = model.slope().to_vec();
+        let model = Model::new(&self.reduced, &self.u, &steps.z, barrier)?;
+        let mut z = memory::twin(model.slope())?;
         let is_new = !steps.is_near;
         if is_new {
             self.system.factorize_stiff(&mut self.reduced, model.stiffness())?;
         }
         self.y.clear();
-        let mut step = self.lacking(&z, None);
+        let mut step = self.lacking(&z, None)?;
         if is_new {
-            self.system.solve_change(&self.reduced, &mut step);
+            self.system.solve_change(&self.reduced, &mut step)?;
             steps.is_near = true;
         } else {
             let found = conjugate_gradients(
-                |x, out| model.times(&self.reduced, x, out),
-                |x| {
-                    self.system.solve_change(&self.reduced, x);
-                },
+                |x| Ok(model.times(&self.reduced, x)?),
+                |x| Ok(self.system.solve_change(&self.reduced, x).map(drop)?),
                 step,
                 GRADIENT_GOAL,
                 MOST_GRADIENTS,
-            );
+            )?;
             step = found.solution;
             steps.is_near = found.iterations < LONG;
         }
-        self.keep_constraints(&mut step);
-        let mut change = Vec::new();
-        self.reduced.apply_change(&step, &mut change);
+        self.keep_constraints(&mut step)?;
+        let change = self.reduced.apply_change(&step)?;
         follow(model.stiffness(), &change, &mut z);
-        self.correct(settings, if is_new { model.stiffness() } else { &steps.factored }, &step, &mut z);
-        self.bound_at(&z);
+        self.correct(settings, if is_new { model.stiffness() } else { &steps.factored }, &step, &mut z)?;
+        self.bound_at(&z)?;
         clip(&self.reduced, &mut z);
         if self.reduced.has_fidelity_everywhere {
-            self.bound_at(&z);
+            self.bound_at(&z)?;
         }
         steps.z = z;
-        let found = model.descend(&self.reduced, &self.u, &step, &change);
+        let found = model.descend(&self.reduced, &self.u, &step, &change)?;
         if is_new {
             steps.factored = model.into_stiffness();
         }
@@ -174,14 +172,15 @@ impl<const K: usize> Run<'_, '_, K> {
     }
 
     /// Corrects a step so that the linear constraints hold at its end, whatever rounding made of them before.
-    fn keep_constraints(&self, step: &mut [[f64; K]]) {
-        let Some(constraints) = &self.reduced.constraints else { return };
-        let mut end = self.u.clone();
+    fn keep_constraints(&self, step: &mut [[f64; K]]) -> Result<()> {
+        let Some(constraints) = &self.reduced.constraints else { return Ok(()) };
+        let mut end = memory::twin(&self.u)?;
         add(1.0, step, &mut end);
-        let before = end.clone();
+        let before = memory::twin(&end)?;
         constraints.correct(&mut end);
         add(-1.0, &before, &mut end);
         add(1.0, &end, step);
+        Ok(())
     }
 
     /// Corrects a dual point for what its equations lack, with the stiffness that is `factored`.
@@ -191,32 +190,31 @@ impl<const K: usize> Run<'_, '_, K> {
         factored: &[Stiffness],
         step: &[[f64; K]],
         z: &mut [Block<K>],
-    ) {
+    ) -> Result<()> {
         let spread = spread(&self.u);
         let negligible = NEGLIGIBLE * settings.tolerance.unwrap_or(RESIDUAL_GOAL) * self.scale();
         for _ in 0..MOST_CORRECTIONS {
-            let mut rest = self.lacking(z, Some(step));
+            let mut rest = self.lacking(z, Some(step))?;
             let left: f64 =
                 rest.iter().map(|row| row.iter().zip(spread).map(|(x, s)| x.abs() * s).sum::<f64>()).sum();
             if left <= negligible {
                 break;
             }
-            let y = self.system.solve_change(&self.reduced, &mut rest);
+            let y = self.system.solve_change(&self.reduced, &mut rest)?;
             if self.y.is_empty() {
                 self.y = y;
             } else {
                 add(1.0, &y, &mut self.y);
             }
-            let mut change = Vec::new();
-            self.reduced.apply_change(&rest, &mut change);
+            let change = self.reduced.apply_change(&rest)?;
             follow(factored, &change, z);
         }
+        Ok(())
     }
 
     /// What the dual equations lack: `2a(t − u − step) − Hᵀz − Aᵀy`.
-    fn lacking(&self, z: &[Block<K>], step: Option<&[[f64; K]]>) -> Vec<[f64; K]> {
-        let mut out = Vec::new();
-        self.reduced.apply_transposed(|b| z[b], &mut out);
+    fn lacking(&self, z: &[Block<K>], step: Option<&[[f64; K]]>) -> Result<Vec<[f64; K]>> {
+        let mut out = self.reduced.apply_transposed(|b| z[b])?;
         self.add_constraints(&mut out);
         for (i, row) in out.iter_mut().enumerate() {
             let twice = 2.0 * self.reduced.fidelity[i];
@@ -225,14 +223,14 @@ impl<const K: usize> Run<'_, '_, K> {
                 *g = twice * (self.reduced.target[i][c] - at) - *g;
             }
         }
-        out
+        Ok(out)
     }
 
-    fn bound_at(&mut self, z: &[Block<K>]) {
-        let mut g = Vec::new();
-        self.reduced.apply_transposed(|b| z[b], &mut g);
+    fn bound_at(&mut self, z: &[Block<K>]) -> Result<()> {
+        let mut g = self.reduced.apply_transposed(|b| z[b])?;
         self.add_constraints(&mut g);
         self.bound_from(&dual_point(&self.reduced, z), &g);
+        Ok(())
     }
 }
 

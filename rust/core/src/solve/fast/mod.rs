@@ -23,7 +23,7 @@ use crate::solve::fast::system::System;
 use crate::solve::outcome::{Outcome, Warm};
 use crate::solve::problem::{Problem, Settings, Status};
 use crate::solve::reduced::Reduced;
-use crate::Result;
+use crate::{memory, Result};
 
 /// Iterations between two looks at the certificate and the stopping rules.
 const CHECK_EVERY: usize = 3;
@@ -69,8 +69,7 @@ pub fn minimize<const K: usize>(
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Outcome<K>> {
-    let mut h = Vec::new();
-    reduced.apply(&reduced.target, &mut h);
+    let h = reduced.apply(&reduced.target)?;
     let floor = reduced.floor(&h);
     let primal = reduced.objective(&reduced.target, &h);
     if primal <= settings.tolerance.unwrap_or(RESIDUAL_GOAL) * floor && reduced.constraints.is_none() {
@@ -125,7 +124,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         progress: &Progress,
     ) -> Result<Self> {
         let (r, next_reweighting) = match &warm {
-            Some(warm) => (reweighted(&warm.length, &reduced.weights), REWEIGHT_WARM),
+            Some(warm) => (reweighted(&warm.length, &reduced.weights)?, REWEIGHT_WARM),
             None => (uniform(&mut reduced, system, &h, progress)?, REWEIGHT_COLD),
         };
         if warm.is_some() {
@@ -134,9 +133,9 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         let sweep = Sweep::new(&reduced, &r, |b| match &warm {
             Some(warm) => (warm.z[b], scaled(reduced.weights[b], &warm.p[b])),
             None => ([[0.0; K]; BLOCK], [[0.0; K]; BLOCK]),
-        });
-        let best = Best { u: reduced.target.clone(), primal: f64::INFINITY, dual: 0.0 };
-        let (u, previous) = (reduced.target.clone(), Vec::new());
+        })?;
+        let best = Best { u: memory::twin(&reduced.target)?, primal: f64::INFINITY, dual: 0.0 };
+        let (u, previous) = (memory::twin(&reduced.target)?, memory::twin(&reduced.target)?);
         Ok(Self {
             reduced,
             system,
@@ -166,13 +165,13 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             }
             iterations += 1;
             self.previous.clone_from(&self.u);
-            self.y = self.system.solve(&self.reduced, self.sweep.right(), &mut self.u);
+            self.y = self.system.solve(&self.reduced, self.sweep.right(), &mut self.u)?;
             let check = iterations % CHECK_EVERY == 0 || iterations == max;
             let sums = self.sweep.advance(&self.reduced, &self.r, &self.u, check);
             let primal = self.reduced.offset + sums.norms + self.reduced.fidelity_term(&self.u);
             self.offer(primal);
             if check {
-                self.bound(&sums, settings);
+                self.bound(&sums, settings)?;
                 if self.is_done(settings, last_check.primal, &sums) {
                     status = Status::Solved;
                     break;
@@ -198,21 +197,21 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
                 }
             }
         }
-        Ok(self.outcome(iterations, status))
+        self.outcome(iterations, status)
     }
 
     /// New penalties from the lengths that the blocks have now; split variables and multipliers stay.
     fn reweight(&mut self) -> Result<()> {
-        let r = reweighted(&self.lengths(), &self.reduced.weights);
+        let r = reweighted(&self.lengths()?, &self.reduced.weights)?;
         self.system.factorize(&mut self.reduced, &r)?;
-        self.sweep = self.under(&r);
+        self.sweep = self.under(&r)?;
         self.r = r;
         Ok(())
     }
 
     /// The same split variables and multipliers under other penalties.
-    fn under(&self, r: &[f64]) -> Sweep<K> {
-        Sweep::new(&self.reduced, r, |b| self.sweep.split(&self.reduced.weights, &self.r, b))
+    fn under(&self, r: &[f64]) -> Result<Sweep<K>> {
+        Ok(Sweep::new(&self.reduced, r, |b| self.sweep.split(&self.reduced.weights, &self.r, b))?)
     }
 
     /// Takes the present point, of this objective, if it is the best so far.
@@ -232,16 +231,17 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
 
     /// Lower bounds from `p + R (H u + c − z)` and, where there is fidelity everywhere, from the multipliers
     /// themselves, which are never too long.
-    fn bound(&mut self, sums: &Sums, settings: &Settings) {
-        let mut g = self.sweep.from_equations().to_vec();
+    fn bound(&mut self, sums: &Sums, settings: &Settings) -> Result<()> {
+        let mut g = memory::twin(self.sweep.from_equations())?;
         self.add_constraints(&mut g);
         self.refine_if_worth(&g, settings);
         self.bound_from(&sums.from_equations, &g);
         if self.reduced.has_fidelity_everywhere {
-            let mut g = self.sweep.multipliers().to_vec();
+            let mut g = memory::twin(self.sweep.multipliers())?;
             self.add_constraints(&mut g);
             self.bound_from(&sums.multipliers, &g);
         }
+        Ok(())
     }
 
     /// Asks the linear system for refined solutions once what it leaves over would show in the gap. `g` is
@@ -315,22 +315,22 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
     }
 
     /// The typical length of `(H u + c)_b` and `z_b`.
-    fn lengths(&self) -> Vec<f64> {
-        let mut h = Vec::new();
-        self.reduced.apply(&self.u, &mut h);
+    fn lengths(&self) -> Result<Vec<f64>> {
+        let h = self.reduced.apply(&self.u)?;
         let z = |b| self.sweep.split(&self.reduced.weights, &self.r, b).0;
-        h.iter().enumerate().map(|(b, h)| 0.5 * (norm(h) + norm(&z(b)))).collect()
+        Ok(memory::gathered(h.iter().enumerate().map(|(b, h)| 0.5 * (norm(h) + norm(&z(b)))))?)
     }
 
-    fn outcome(self, iterations: usize, status: Status) -> Outcome<K> {
-        let length = self.lengths();
+    fn outcome(self, iterations: usize, status: Status) -> Result<Outcome<K>> {
+        let length = self.lengths()?;
         let weights = &self.reduced.weights;
-        let split = weights.iter().enumerate().map(|(b, &w)| {
-            let (z, p) = self.sweep.split(weights, &self.r, b);
-            (z, if w > 0.0 { scaled(1.0 / w, &p) } else { p })
-        });
-        let (z, p) = split.unzip();
-        Outcome {
+        let (mut z, mut p) = (memory::room(weights.len())?, memory::room(weights.len())?);
+        for (b, &w) in weights.iter().enumerate() {
+            let (own, multipliers) = self.sweep.split(weights, &self.r, b);
+            z.push(own);
+            p.push(if w > 0.0 { scaled(1.0 / w, &multipliers) } else { multipliers });
+        }
+        Ok(Outcome {
             u: self.best.u,
             primal: self.best.primal,
             dual: self.best.dual,
@@ -338,6 +338,6 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             iterations,
             status,
             warm: Some(Warm { z, p, length }),
-        }
+        })
     }
 }

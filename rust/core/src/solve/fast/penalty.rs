@@ -3,7 +3,7 @@
 use crate::solve::cones::{norm, scaled, Block};
 use crate::solve::fast::system::System;
 use crate::solve::reduced::Reduced;
-use crate::{Progress, Result};
+use crate::{memory, Progress, Result};
 
 /// The product of penalty and typical block length, in units of the weight, at which alternating directions
 /// converge fastest (0.2 to 1 measured alike).
@@ -34,13 +34,16 @@ const SMOOTH_SHARE: f64 = 5.0 / 6.0;
 const MOST_ATTEMPTS: usize = 6;
 
 /// Penalties `R_b = BALANCE · w_b / length_b`, lengths clipped around their mean.
-#[must_use]
-pub fn reweighted(lengths: &[f64], weights: &[f64]) -> Vec<f64> {
+///
+/// # Errors
+/// [`crate::error::SolveError::Memory`].
+pub fn reweighted(lengths: &[f64], weights: &[f64]) -> Result<Vec<f64>> {
     let mean = weighted_mean(lengths, weights);
     if mean <= 0.0 {
-        return weights.to_vec();
+        return Ok(memory::twin(weights)?);
     }
-    lengths.iter().zip(weights).map(|(g, w)| BALANCE * w / g.clamp(CLIP[0] * mean, CLIP[1] * mean)).collect()
+    let penalty = |(g, w): (&f64, &f64)| BALANCE * w / g.clamp(CLIP[0] * mean, CLIP[1] * mean);
+    Ok(memory::gathered(lengths.iter().zip(weights).map(penalty))?)
 }
 
 /// The penalties `R = ρ w` to start with: `ρ · mean ‖H u(ρ) + c‖ ≈ BALANCE`, where `u(ρ)` is the quadratic
@@ -58,28 +61,25 @@ pub fn uniform<const K: usize>(
     progress: &Progress,
 ) -> Result<Vec<f64>> {
     let has_fidelity = reduced.fidelity.iter().any(|a| *a > 0.0);
-    let mut scale = if has_fidelity { first_scale(reduced, h) } else { 1.0 };
+    let mut scale = if has_fidelity { first_scale(reduced, h)? } else { 1.0 };
     let weights = reduced.weights.clone();
-    let penalties = |scale: f64| -> Vec<f64> { weights.iter().map(|w| scale * w).collect() };
+    let penalties = |scale: f64| memory::gathered(weights.iter().map(|w| scale * w));
     let mut attempts = 0;
     loop {
         progress.check()?;
-        let r = penalties(scale);
+        let r = penalties(scale)?;
         system.factorize(reduced, &r)?;
         attempts += 1;
         if attempts == MOST_ATTEMPTS || progress.is_finishing() {
             return Ok(r);
         }
-        let mut right = Vec::new();
-        reduced.apply_transposed(|b| scaled(-r[b], &reduced.constant(b)), &mut right);
-        let mut u = reduced.target.clone();
-        system.solve(reduced, &right, &mut u);
-        let mut smooth = Vec::new();
-        reduced.apply(&u, &mut smooth);
-        let next = balance_for(reduced, &smooth);
+        let right = reduced.apply_transposed(|b| scaled(-r[b], &reduced.constant(b)))?;
+        let mut u = memory::twin(&reduced.target)?;
+        system.solve(reduced, &right, &mut u)?;
+        let next = balance_for(reduced, &reduced.apply(&u)?)?;
         if !has_fidelity {
             system.rescale(next / scale);
-            return Ok(penalties(next));
+            return Ok(penalties(next)?);
         }
         if next < GOOD_ENOUGH * scale && scale < GOOD_ENOUGH * next {
             return Ok(r);
@@ -91,14 +91,10 @@ pub fn uniform<const K: usize>(
 /// A guess at the scale, before anything is known but the target: what balances the target itself is far too
 /// little where there is noise, by a factor of thousands on fine meshes, so what would balance [`FOLDS`] over
 /// the whole surface counts for the most of it.
-fn first_scale<const K: usize>(reduced: &Reduced<'_, K>, h: &[Block<K>]) -> f64 {
-    let noisy = balance_for(reduced, h);
+fn first_scale<const K: usize>(reduced: &Reduced<'_, K>, h: &[Block<K>]) -> Result<f64> {
+    let noisy = balance_for(reduced, h)?;
     let smooth = BALANCE * h.len() as f64 / (FOLDS * deviation(&reduced.target) * mean_norm(reduced));
-    if smooth.is_finite() && smooth > noisy {
-        noisy * (smooth / noisy).powf(SMOOTH_SHARE)
-    } else {
-        noisy
-    }
+    Ok(if smooth.is_finite() && smooth > noisy { noisy * (smooth / noisy).powf(SMOOTH_SHARE) } else { noisy })
 }
 
 /// The standard deviation of the rows, all columns together.
@@ -119,14 +115,10 @@ fn mean_norm<const K: usize>(reduced: &Reduced<'_, K>) -> f64 {
     (0..operator.n_blocks()).map(norm).sum::<f64>() / operator.n_blocks().max(1) as f64
 }
 
-fn balance_for<const K: usize>(reduced: &Reduced<'_, K>, h: &[Block<K>]) -> f64 {
-    let lengths: Vec<f64> = h.iter().map(norm).collect();
+fn balance_for<const K: usize>(reduced: &Reduced<'_, K>, h: &[Block<K>]) -> Result<f64> {
+    let lengths: Vec<f64> = memory::gathered(h.iter().map(norm))?;
     let mean = weighted_mean(&lengths, &reduced.weights);
-    if mean > 0.0 && mean.is_finite() {
-        BALANCE / mean
-    } else {
-        1.0
-    }
+    Ok(if mean > 0.0 && mean.is_finite() { BALANCE / mean } else { 1.0 })
 }
 
 fn weighted_mean(values: &[f64], weights: &[f64]) -> f64 {

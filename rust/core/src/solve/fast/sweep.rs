@@ -9,6 +9,8 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::block_rows::BLOCK;
+use crate::error::SolveError;
+use crate::memory;
 use crate::solve::certificate::DualPoint;
 use crate::solve::cones::{combine, norm, shrink, Block};
 use crate::solve::reduced::{add_outer, add_outer_transposed, gather, Parts, Reduced};
@@ -42,8 +44,14 @@ pub struct Sums {
 
 impl<const K: usize> Sweep<K> {
     /// Starts from `z` and `p` of each block, under the penalties `r`.
-    #[must_use]
-    pub fn new(reduced: &Reduced<'_, K>, r: &[f64], start: impl Fn(usize) -> (Block<K>, Block<K>)) -> Self {
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub fn new(
+        reduced: &Reduced<'_, K>,
+        r: &[f64],
+        start: impl Fn(usize) -> (Block<K>, Block<K>),
+    ) -> Result<Self, SolveError> {
         let join = |(b, &r): (usize, &f64)| {
             let (z, p) = start(b);
             if r > 0.0 {
@@ -55,16 +63,26 @@ impl<const K: usize> Sweep<K> {
         Self::resume(reduced, r, |b| join((b, &r[b])))
     }
 
-    /// Starts from `v = z + p/R` of each block.
-    #[must_use]
-    pub fn resume(reduced: &Reduced<'_, K>, r: &[f64], state: impl Fn(usize) -> Block<K>) -> Self {
-        let state = (0..r.len()).map(state).collect();
-        let none = vec![Vec::new(); Parts::of(r.len()).count];
-        let mut sweep = Self { state, right: none.clone(), from_equations: none.clone(), multipliers: none };
-        let mut right = Vec::new();
-        reduced.apply_transposed(|b| sweep.next_right(reduced, r, b), &mut right);
-        sweep.right[0] = right;
-        sweep
+    /// Starts from `v = z + p/R` of each block, and takes all that later passes need.
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub fn resume(
+        reduced: &Reduced<'_, K>,
+        r: &[f64],
+        state: impl Fn(usize) -> Block<K>,
+    ) -> Result<Self, SolveError> {
+        let n_multipliers = if reduced.has_fidelity_everywhere { reduced.n() } else { 0 };
+        let parts = |n| (0..Parts::of(r.len()).count).map(|_| memory::room(n)).collect::<Result<_, _>>();
+        let mut sweep = Self {
+            state: memory::gathered((0..r.len()).map(state))?,
+            right: parts(reduced.n())?,
+            from_equations: parts(reduced.n())?,
+            multipliers: parts(n_multipliers)?,
+        };
+        let right = reduced.apply_transposed(|b| sweep.next_right(reduced, r, b))?;
+        sweep.right[0].extend_from_slice(&right);
+        Ok(sweep)
     }
 
     /// `R(z − c) − p` of block `b`.
@@ -261,7 +279,7 @@ mod tests {
         };
         let free = FreeOperator::new(&operator, &problem.fixed).unwrap();
         let reduced = Reduced::<1>::new(&problem, &free, &[0]).unwrap();
-        let mut sweep = Sweep::resume(&reduced, &[], |_| [[0.0]; BLOCK]);
+        let mut sweep = Sweep::resume(&reduced, &[], |_| [[0.0]; BLOCK]).unwrap();
         sweep.advance(&reduced, &[], &reduced.target, true);
         for sums in [sweep.right(), sweep.from_equations(), sweep.multipliers()] {
             assert_eq!(sums, [[0.0]; 3]);
@@ -298,20 +316,18 @@ mod tests {
         let p: Vec<Block<2>> = z.iter().zip(w).map(|(z, w)| scaled(w / norm(z).max(1e-300), z)).collect();
         let u: Vec<[f64; 2]> = (0..reduced.n()).map(|i| [(i as f64).sin(), (2.0 * i as f64).cos()]).collect();
 
-        let mut sweep = Sweep::new(&reduced, &r, |b| (z[b], p[b]));
-        let mut expected = Vec::new();
+        let mut sweep = Sweep::new(&reduced, &r, |b| (z[b], p[b])).unwrap();
         let next = |z: &Block<2>, p: &Block<2>, b: usize| {
             combine(1.0, &combine(r[b], z, -r[b], &reduced.constant(b)), -1.0, p)
         };
-        reduced.apply_transposed(|b| next(&z[b], &p[b], b), &mut expected);
+        let expected = reduced.apply_transposed(|b| next(&z[b], &p[b], b)).unwrap();
         let close = |a: &[[f64; 2]], b: &[[f64; 2]]| {
             a.iter().flatten().zip(b.iter().flatten()).all(|(x, y)| (x - y).abs() < 1e-9)
         };
         assert!(close(sweep.right(), &expected));
 
         let sums = sweep.advance(&reduced, &r, &u, true);
-        let mut h = Vec::new();
-        reduced.apply(&u, &mut h);
+        let h = reduced.apply(&u).unwrap();
         let (mut q, mut apart) = (DualPoint::default(), 0.0);
         let mut q_at = vec![[[0.0; 2]; BLOCK]; m];
         let after: Vec<(Block<2>, Block<2>)> = (0..m)
@@ -332,11 +348,11 @@ mod tests {
             assert!(norm(&combine(1.0, &found_z, -1.0, z)) < 1e-12, "z of block {b}");
             assert!(norm(&combine(1.0, &found_p, -1.0, p)) < 1e-11, "p of block {b}");
         }
-        reduced.apply_transposed(|b| next(&after[b].0, &after[b].1, b), &mut expected);
+        let expected = reduced.apply_transposed(|b| next(&after[b].0, &after[b].1, b)).unwrap();
         assert!(close(sweep.right(), &expected));
-        reduced.apply_transposed(|b| after[b].1, &mut expected);
+        let expected = reduced.apply_transposed(|b| after[b].1).unwrap();
         assert!(close(sweep.multipliers(), &expected));
-        reduced.apply_transposed(|b| q_at[b], &mut expected);
+        let expected = reduced.apply_transposed(|b| q_at[b]).unwrap();
         assert!(close(sweep.from_equations(), &expected));
         let norms: f64 = h.iter().zip(w).map(|(h, w)| w * norm(h)).sum();
         assert!((sums.norms - norms).abs() < 1e-9 * norms);

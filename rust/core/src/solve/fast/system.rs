@@ -4,7 +4,6 @@
 use crate::block_rows::BlockRows;
 use crate::error::SolveError;
 use crate::linear::cholesky::Cholesky;
-use crate::linear::pattern::LowerPattern;
 use crate::memory;
 use crate::solve::free_operator::FreeOperator;
 use crate::solve::normal_matrix::NormalMatrix;
@@ -39,10 +38,10 @@ impl System {
     /// [`SolveError::Memory`] when the factor does not fit into `memory_limit` bytes.
     pub fn new(free: &FreeOperator, memory_limit: Option<usize>) -> Result<Self, SolveError> {
         let normal = NormalMatrix::stretched(&free.operator)?;
-        let LowerPattern { n, starts, rows } = normal.pattern();
-        let pattern = LowerPattern { n: *n, starts: memory::twin(starts)?, rows: memory::twin(rows)? };
+        let pattern = normal.pattern().copied()?;
+        let values = memory::room(pattern.rows.len())?;
         let cholesky = Cholesky::analyze(pattern, memory_limit)?;
-        Ok(Self { normal, cholesky, values: Vec::new(), proximal: Vec::new(), scale: 1.0, refined: false })
+        Ok(Self { normal, cholesky, values, proximal: Vec::new(), scale: 1.0, refined: false })
     }
 
     /// Whether the matrix of `operator`, of the same pattern as the one before, has this pattern as well.
@@ -66,7 +65,7 @@ impl System {
         reduced: &mut Reduced<'_, K>,
         r: &[f64],
     ) -> Result<(), SolveError> {
-        let twice: Vec<f64> = reduced.fidelity.iter().map(|a| 2.0 * a).collect();
+        let twice: Vec<f64> = memory::gathered(reduced.fidelity.iter().map(|a| 2.0 * a))?;
         self.normal.assemble(&reduced.free.operator, r, &twice, &mut self.values);
         self.factorize_values(reduced, &twice)
     }
@@ -80,7 +79,7 @@ impl System {
         reduced: &mut Reduced<'_, K>,
         stiffness: &[Stiffness],
     ) -> Result<(), SolveError> {
-        let twice: Vec<f64> = reduced.fidelity.iter().map(|a| 2.0 * a).collect();
+        let twice: Vec<f64> = memory::gathered(reduced.fidelity.iter().map(|a| 2.0 * a))?;
         self.normal.assemble_stiff(&reduced.free.operator, stiffness, &twice, &mut self.values);
         self.factorize_values(reduced, &twice)
     }
@@ -91,18 +90,18 @@ impl System {
         twice: &[f64],
     ) -> Result<(), SolveError> {
         let starts = &self.normal.pattern().starts;
-        let diagonal: Vec<f64> = starts[..twice.len()].iter().map(|&s| self.values[s]).collect();
+        let diagonal: Vec<f64> = memory::gathered(starts[..twice.len()].iter().map(|&s| self.values[s]))?;
         let mean = diagonal.iter().sum::<f64>() / diagonal.len().max(1) as f64;
         let scale = if mean > 0.0 { mean } else { 1.0 };
         for attempt in 0..PROXIMAL_ATTEMPTS {
             let least = PROXIMAL * PROXIMAL_GROWTH.powi(attempt) * scale;
-            self.proximal = twice.iter().map(|a| (least - a).max(0.0)).collect();
+            self.proximal = memory::gathered(twice.iter().map(|a| (least - a).max(0.0)))?;
             for ((&s, d), p) in starts.iter().zip(&diagonal).zip(&self.proximal) {
                 self.values[s] = d + p;
             }
             match self.cholesky.factorize(&self.values) {
-                Err(error) if attempt + 1 == PROXIMAL_ATTEMPTS => return Err(error),
-                Err(_) => {}
+                Err(SolveError::Factorization { .. }) if attempt + 1 < PROXIMAL_ATTEMPTS => {}
+                Err(error) => return Err(error),
                 Ok(()) => break,
             }
         }
@@ -120,8 +119,12 @@ impl System {
     }
 
     /// `right − matrix · u` of the matrix that was factored.
-    fn residual<const K: usize>(&self, right: &[[f64; K]], u: &[[f64; K]]) -> Vec<[f64; K]> {
-        let mut out = right.to_vec();
+    fn residual<const K: usize>(
+        &self,
+        right: &[[f64; K]],
+        u: &[[f64; K]],
+    ) -> Result<Vec<[f64; K]>, SolveError> {
+        let mut out = memory::twin(right)?;
         let pattern = self.normal.pattern();
         for j in 0..pattern.n {
             let column = pattern.starts[j]..pattern.starts[j + 1];
@@ -134,7 +137,7 @@ impl System {
                 }
             }
         }
-        out
+        Ok(out)
     }
 
     /// Turns the factored matrix into `factor` times itself: all penalties scaled alike,
@@ -152,53 +155,64 @@ impl System {
 
     /// Solves `(2a + HᵀRH) u + Aᵀy = 2a·t + right`, `A u = b`; `u` holds the last iterate before and the
     /// solution after. Returns `y`.
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
     pub fn solve<const K: usize>(
         &mut self,
         reduced: &Reduced<'_, K>,
         right: &[[f64; K]],
         u: &mut [[f64; K]],
-    ) -> Vec<[f64; K]> {
+    ) -> Result<Vec<[f64; K]>, SolveError> {
         for (i, (x, row)) in u.iter_mut().zip(right).enumerate() {
             let (a, p) = (2.0 * reduced.fidelity[i], self.proximal[i]);
             let target = &reduced.target[i];
             *x = std::array::from_fn(|c| (row[c] + a * target[c] + p * x[c]) / self.scale);
         }
         if self.refined {
-            let mut right = u.to_vec();
+            let mut right = memory::room(self.normal.pattern().n)?;
+            right.extend_from_slice(u);
             right.resize(self.normal.pattern().n, [0.0; K]);
-            let mut solution = right.clone();
-            self.substitute(reduced.n_columns, &mut solution);
-            let mut rest = self.residual(&right, &solution);
-            self.substitute(reduced.n_columns, &mut rest);
+            let mut solution = memory::twin(&right)?;
+            self.substitute(reduced.n_columns, &mut solution)?;
+            let mut rest = self.residual(&right, &solution)?;
+            self.substitute(reduced.n_columns, &mut rest)?;
             for ((u, x), rest) in u.iter_mut().zip(&solution).zip(&rest) {
                 *u = std::array::from_fn(|c| x[c] + rest[c]);
             }
         } else {
-            self.substitute(reduced.n_columns, u);
+            self.substitute(reduced.n_columns, u)?;
         }
         let mut y = reduced.constraints.as_ref().map_or_else(Vec::new, |constraints| constraints.correct(u));
         y.iter_mut().flatten().for_each(|y| *y *= self.scale);
-        y
+        Ok(y)
     }
 
     /// The change of a solution that makes up for `rest` missing on the right side, in place,
     /// and the change of `y`.
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
     pub fn solve_change<const K: usize>(
         &mut self,
         reduced: &Reduced<'_, K>,
         rest: &mut [[f64; K]],
-    ) -> Vec<[f64; K]> {
+    ) -> Result<Vec<[f64; K]>, SolveError> {
         rest.iter_mut().flatten().for_each(|x| *x /= self.scale);
-        self.substitute(reduced.n_columns, rest);
+        self.substitute(reduced.n_columns, rest)?;
         let mut y = reduced
             .constraints
             .as_ref()
             .map_or_else(Vec::new, |constraints| constraints.correct_change(rest));
         y.iter_mut().flatten().for_each(|y| *y *= self.scale);
-        y
+        Ok(y)
     }
 
-    fn substitute<const K: usize>(&mut self, n_columns: usize, right: &mut [[f64; K]]) {
+    fn substitute<const K: usize>(
+        &mut self,
+        n_columns: usize,
+        right: &mut [[f64; K]],
+    ) -> Result<(), SolveError> {
         match n_columns {
             3 => self.cholesky.solve_columns::<3, K>(right),
             _ => self.cholesky.solve_columns::<K, K>(right),

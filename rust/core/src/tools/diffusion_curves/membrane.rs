@@ -11,7 +11,7 @@ use crate::linear::Columns;
 use crate::mesh::{Connectivity, CutMesh};
 use crate::operators::{cotangent_laplacian, mollify, voronoi_mass};
 use crate::progress::Progress;
-use crate::Result;
+use crate::{memory, Result};
 
 /// Right sides solved at once.
 const LANES: usize = 4;
@@ -30,11 +30,11 @@ impl Membrane {
     pub(super) fn new(cut: &CutMesh, lengths: &[[f64; 3]]) -> Result<Self> {
         let n = cut.n_copies();
         let connectivity = Connectivity::new(cut.faces.clone(), n)?;
-        let mass = voronoi_mass(&connectivity, lengths);
+        let mass = voronoi_mass(&connectivity, lengths)?;
         let mut lengths = lengths.to_vec();
         mollify(&connectivity, &mut lengths);
         let (connectivity, lengths, _) = delaunay_flips(&connectivity, &lengths);
-        let mut laplacian = cotangent_laplacian(&connectivity, &lengths);
+        let mut laplacian = cotangent_laplacian(&connectivity, &lengths)?;
         for v in 0..n {
             let range = laplacian.indptr().outer_inds_sz(v);
             let (mut sum, mut diagonal) = (0.0, None);
@@ -175,9 +175,9 @@ fn solve(cholesky: &mut Cholesky, right: &mut Columns, progress: &Progress) -> R
         progress.check()?;
         let lanes = LANES.min(right.n_columns - first);
         let at = |i: usize, c: usize| if c < lanes { (first + c) * n + i } else { first * n + i };
-        let mut rows: Vec<[f64; LANES]> =
-            (0..n).map(|i| std::array::from_fn(|c| right.data[at(i, c)])).collect();
-        cholesky.solve(&mut rows);
+        let row = |i: usize| std::array::from_fn(|c| right.data[at(i, c)]);
+        let mut rows: Vec<[f64; LANES]> = memory::gathered((0..n).map(row))?;
+        cholesky.solve(&mut rows)?;
         for (i, row) in rows.iter().enumerate() {
             (0..lanes).for_each(|c| right.data[at(i, c)] = row[c]);
         }

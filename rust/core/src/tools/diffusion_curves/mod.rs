@@ -171,7 +171,7 @@ fn in_their_unit(
     let sides = borders.sides(&fit);
     let conditions = Conditions::new(connectivity, &table, &cut, &curves);
     let redrawn = conditions.solve(connectivity, &cut, &mut harmonic, Some(&sides), progress)?;
-    let mass = voronoi_mass(connectivity, mesh.edge_lengths());
+    let mass = voronoi_mass(connectivity, mesh.edge_lengths())?;
     let error = mean_squared_error(&redrawn.colors, colors, &mass);
     let n_numbers = borders.n_numbers(&curves, knots.as_deref());
     Ok(DiffusionCurves { curves, starts, redrawn, sides, error, n_numbers })

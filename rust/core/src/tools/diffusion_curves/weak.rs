@@ -18,7 +18,7 @@ struct Trial<'a> {
 /// first, as many at once as have no region in common. Finishing stops with what is reached.
 pub(super) fn merge_weak(paint: &Paint<'_>, labels: &mut [i32]) -> Result<()> {
     let mesh = paint.mesh;
-    let trial = Trial { paint, mass: voronoi_mass(mesh.connectivity(), mesh.edge_lengths()) };
+    let trial = Trial { paint, mass: voronoi_mass(mesh.connectivity(), mesh.edge_lengths())? };
     let scale = paint.scale();
     let found = trial.run(labels)?;
     let mut errors = trial.errors(&found, labels);

@@ -101,7 +101,7 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point]) -> Result
             })
             .collect();
         cholesky.factorize(&values)?;
-        cholesky.solve(&mut multipliers);
+        cholesky.solve(&mut multipliers)?;
         let mut moves: Vec<Point> = (0..targets.len()).map(pull).collect();
         let mut turns: Vec<Point> = turning.iter().map(fall).collect();
         for (k, (i, [multiplier])) in incidences.iter().zip(&multipliers).enumerate() {

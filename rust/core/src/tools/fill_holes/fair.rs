@@ -42,7 +42,7 @@ pub(super) fn fair(region: &mut Region, ridge: f64, progress: &Progress) -> Resu
         operator: &joined,
         weights,
         fidelity: vec![0.0; joined.n_columns],
-        target: Columns::from_points(region.mesh.positions()),
+        target: Columns::from_points(region.mesh.positions())?,
         fixed: region.fixed(),
         linear_constraints: None,
         coupling: Coupling::Joint,

@@ -19,7 +19,7 @@ pub(super) fn smooth(region: &mut Region, energy: Energy, rounds: usize, progres
             operator: &form.operator,
             weights: form.weights,
             fidelity: vec![0.0; region.mesh.n_vertices()],
-            target: Columns::from_points(region.mesh.positions()),
+            target: Columns::from_points(region.mesh.positions())?,
             fixed: region.fixed(),
             linear_constraints: None,
             coupling: Coupling::Joint,

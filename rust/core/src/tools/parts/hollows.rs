@@ -14,7 +14,7 @@ use super::surface::Surface;
 use super::thickness::thickness;
 use crate::mesh::vector::{dot, sub, unit};
 use crate::progress::Progress;
-use crate::Result;
+use crate::{memory, Result};
 
 /// The faces as a graph whose edges cost what borders cost.
 ///
@@ -23,7 +23,7 @@ use crate::Result;
 pub(super) fn border_graph(surface: &Surface, progress: &Progress) -> Result<Graph> {
     let flow = |length: f64, distance: f64| length / distance.max(f64::MIN_POSITIVE);
     let links: Vec<Link> = surface.joints.iter().map(|j| (j.faces, flow(j.length, j.distance))).collect();
-    let smooth = diffused(&surface.areas, &links, BEND_SCALE, surface.normals.clone());
+    let smooth = diffused(&surface.areas, &links, BEND_SCALE, memory::twin(&surface.normals)?)?;
     let normals: Vec<_> = smooth.into_iter().map(unit).collect();
     progress.check()?;
     let thickness = thickness(surface, &normals, &links, THICKNESS_SCALE, progress)?;

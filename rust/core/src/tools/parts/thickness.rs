@@ -44,7 +44,7 @@ pub(super) fn thickness(
         masses[f as usize] = mass;
         right[f as usize] = [mass * (logarithm - mean)];
     }
-    Ok(diffused(&masses, links, length, right).into_iter().map(|[x]| mean + x).collect())
+    Ok(diffused(&masses, links, length, right)?.into_iter().map(|[x]| mean + x).collect())
 }
 
 /// Faces at equal steps of area, or all where there are few.

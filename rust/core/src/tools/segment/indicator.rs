@@ -56,7 +56,7 @@ impl Functional<'_> {
     pub(super) fn minimize(&self, progress: &Progress) -> Result<Minimizer> {
         let surface = self.surface;
         let operator = self.operator()?;
-        let mass = voronoi_mass(surface.connectivity, &surface.lengths);
+        let mass = voronoi_mass(surface.connectivity, &surface.lengths)?;
         let mut run = Run {
             functional: self,
             operator: &operator,
@@ -89,7 +89,7 @@ impl Functional<'_> {
     /// The Hessian of the surface.
     fn operator(&self) -> Result<BlockRows> {
         let (connectivity, lengths) = (self.surface.connectivity, &self.surface.lengths);
-        Ok(HessianPattern::new(connectivity).assemble(connectivity, lengths, Dual::Barycentric)?)
+        HessianPattern::new(connectivity)?.assemble(connectivity, lengths, Dual::Barycentric)
     }
 
     /// The minimizer over `v` alone, for the last `ε` and the values as they are:
@@ -107,7 +107,7 @@ impl Functional<'_> {
         }
         Ok(Minimizer {
             values: self.values.clone(),
-            indicator: step.minimize(&block_norms(&operator, self.values, Coupling::Joint))?,
+            indicator: step.minimize(&block_norms(&operator, self.values, Coupling::Joint)?)?,
             fidelity: self.fidelity,
             alternations: 1,
             status: Status::Solved,
@@ -167,7 +167,7 @@ impl Run<'_> {
                 self.reached.status = Status::Stopped;
                 return Ok(());
             }
-            let norms = block_norms(self.operator, &self.reached.values, Coupling::Joint);
+            let norms = block_norms(self.operator, &self.reached.values, Coupling::Joint)?;
             let v = self.step.minimize(&norms)?;
             let change = self.mean_squared_change(&v);
             self.reached.indicator = v;

@@ -4,7 +4,7 @@ use super::surface::Surface;
 use crate::linear::cholesky::Cholesky;
 use crate::linear::pattern::LowerPattern;
 use crate::operators::face_laplacian_weights;
-use crate::Result;
+use crate::{memory, Result};
 
 /// `v ← argmin vᵀ (diag ‖(H u)_f‖ + λ ε L + λ/(4ε) M_F) v − λ/(2ε) 1ᵀ M_F v` (Rowe et al. 2024, supplement
 /// E), for one `ε` after the other. `λ` is times a cost for each face, and for each edge the mean of both.
@@ -26,7 +26,10 @@ impl IndicatorStep {
     pub(super) fn new(surface: &Surface<'_>, length_weight: f64, face_costs: &[f64]) -> Result<Self> {
         let m = surface.n_faces();
         let weights = face_laplacian_weights(surface.connectivity, &surface.lengths, &surface.centroids);
-        let (mut starts, mut rows, mut laplacian) = (vec![0], Vec::new(), Vec::new());
+        let most = m + surface.connectivity.edges().count();
+        let (mut starts, mut rows) = (memory::room(m + 1)?, memory::room(most)?);
+        let mut laplacian = memory::room(most)?;
+        starts.push(0);
         for f in 0..m {
             let mut column: Vec<(usize, f64)> = Vec::with_capacity(3);
             let mut diagonal = 0.0;
@@ -46,12 +49,12 @@ impl IndicatorStep {
             }
             starts.push(rows.len());
         }
-        let weighted_areas =
-            surface.areas.iter().zip(face_costs).map(|(area, cost)| length_weight * cost * area).collect();
+        let weighted = surface.areas.iter().zip(face_costs).map(|(area, cost)| length_weight * cost * area);
+        let weighted_areas = memory::gathered(weighted)?;
         Ok(Self {
             cholesky: Cholesky::analyze(LowerPattern { n: m, starts, rows }, None)?,
             weighted_areas,
-            values: laplacian.clone(),
+            values: memory::twin(&laplacian)?,
             laplacian,
             epsilon: 1.0,
         })
@@ -76,10 +79,11 @@ impl IndicatorStep {
         for ((&start, norm), &area) in starts.iter().zip(norms).zip(&self.weighted_areas) {
             self.values[start] += norm + pull(area);
         }
-        let mut v: Vec<[f64; 1]> = self.weighted_areas.iter().map(|&area| [pull(area)]).collect();
+        let mut v: Vec<[f64; 1]> = memory::gathered(self.weighted_areas.iter().map(|&area| [pull(area)]))?;
         self.cholesky.factorize(&self.values)?;
-        self.cholesky.solve(&mut v);
+        self.cholesky.solve(&mut v)?;
         // Exactly, 0 < v ≤ 1 by the maximum principle.
-        Ok(v.into_iter().map(|[v]| v.clamp(0.0, 1.0)).collect())
+        v.iter_mut().for_each(|[v]| *v = v.clamp(0.0, 1.0));
+        Ok(v.into_flattened())
     }
 }

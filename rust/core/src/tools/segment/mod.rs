@@ -49,7 +49,7 @@ use crate::progress::Progress;
 use crate::solve::Settings;
 use crate::tools::answer;
 use crate::unit::Unit;
-use crate::Result;
+use crate::{memory, Result};
 use constants::{BEND, LEAST_EPSILON};
 use copies::Copies;
 use exact::coarse_planes;
@@ -120,7 +120,7 @@ fn given_back(working: &Working<'_>, values: Option<&Columns>, found: Segmentati
     Ok(Segmentation {
         boundary_edges: found.boundary_edges.iter().map(|edge| edge.map(|v| working.original(v))).collect(),
         values: match values {
-            None => Columns::from_points(&working.positions(&found.values.to_points()?)),
+            None => Columns::from_points(&working.positions(&found.values.to_points()?))?,
             Some(_) => found.values,
         },
         ..found
@@ -184,8 +184,10 @@ fn whole(
         return Err(MeshError::NoFaces.into());
     }
     let signal = values.map(Normalized::of);
-    let start =
-        signal.as_ref().map_or_else(|| Columns::from_points(&surface.positions), |s| s.values.clone());
+    let start = match &signal {
+        Some(signal) => signal.values.copied()?,
+        None => Columns::from_points(&surface.positions)?,
+    };
     let plain = values.is_none() && options.fidelity.is_none() && options.method == SegmentMethod::Fitted;
     let exact = if plain { coarse_planes(&surface, BEND * options.length_weight) } else { None };
     let is_exact = exact.is_some();
@@ -228,16 +230,19 @@ fn whole(
     let hierarchy = passes.hierarchy(&merging, &leaves, &labels)?;
     let labels = hierarchy.labels_at(n_segments)?;
     let unscaled = |columns: &Columns| match &signal {
-        Some(signal) => signal.restored(columns),
+        Some(signal) => Ok(signal.restored(columns)),
         None if is_exact => Columns::from_points(positions),
-        None => Columns { data: columns.data.iter().map(|x| unit * x).collect(), ..columns.clone() },
+        None => {
+            let data = memory::gathered(columns.data.iter().map(|x| unit * x))?;
+            Ok(Columns { data, ..*columns })
+        }
     };
     Ok(Segmentation {
         boundary_edges: boundary_edges(mesh, &labels),
         labels,
         n_segments,
         indicator: found.indicator,
-        values: unscaled(&found.values),
+        values: unscaled(&found.values)?,
         hierarchy,
         noise: noise * signal.as_ref().map_or(unit, |s| s.range),
         fidelity: found.fidelity,

@@ -34,7 +34,10 @@ pub(super) fn segment_part(
         vertices.iter().map(|&v| positions[v as usize]).collect(),
         faces.iter().map(|&f| all[f as usize].map(|v| place[v as usize])).collect(),
     )?;
-    let whole = values.cloned().unwrap_or_else(|| Columns::from_points(positions));
+    let whole = match values {
+        Some(values) => values.copied()?,
+        None => Columns::from_points(positions)?,
+    };
     let some = |columns: &Columns| Columns {
         n_rows: vertices.len(),
         n_columns: columns.n_columns,

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use crate::mesh::partition::Partition;
 use crate::mesh::{vector, Connectivity};
 use crate::tools::scale::extent;
+use crate::{memory, Result};
 
 /// Faces that meet at less than this angle lie in one plane to the eye (radians; 2 degrees), where the
 /// smallest facet that one would count has room for no more than the two.
@@ -41,17 +42,22 @@ pub struct Flatness {
 
 impl Flatness {
     /// Measures the surface with these faces and `points`. Faces without area take no part.
-    #[must_use]
-    pub fn of(connectivity: &Connectivity, points: &[[f64; 3]]) -> Self {
+    ///
+    /// # Errors
+    /// [`crate::error::SolveError::Memory`].
+    pub fn of(connectivity: &Connectivity, points: &[[f64; 3]]) -> Result<Self> {
         let faces = connectivity.faces();
         let corners = |f: usize| faces[f].map(|v| points[v as usize]);
-        let vectors: Vec<_> =
-            (0..faces.len()).into_par_iter().map(|f| vector::area_vector(corners(f))).collect();
-        let areas: Vec<f64> = vectors.iter().map(|&n| vector::norm(n)).collect();
+        let mut vectors = memory::room(faces.len())?;
+        (0..faces.len())
+            .into_par_iter()
+            .map(|f| vector::area_vector(corners(f)))
+            .collect_into_vec(&mut vectors);
+        let areas: Vec<f64> = memory::gathered(vectors.iter().map(|&n| vector::norm(n)))?;
         let total: f64 = areas.iter().sum();
         let width = (SEEN * total).sqrt();
         let rounding = ROUNDING * extent(connectivity, points).0;
-        let mut is_flat = vec![true; faces.len()];
+        let mut is_flat = memory::repeated(true, faces.len())?;
         let mut facets = Partition::new(faces.len());
         let (mut bend, mut soft) = (0.0, 0.0);
         for h in connectivity.edges() {
@@ -78,8 +84,8 @@ impl Flatness {
                 is_flat[g] = false;
             }
         }
-        let mut sizes = vec![0.0; faces.len()];
-        let mut counts = vec![0_u32; faces.len()];
+        let mut sizes = memory::repeated(0.0, faces.len())?;
+        let mut counts = memory::repeated(0_u32, faces.len())?;
         for (f, area) in areas.iter().enumerate() {
             let root = facets.root(f as u32) as usize;
             sizes[root] += area;
@@ -89,12 +95,12 @@ impl Flatness {
             sizes.iter().zip(&counts).filter(|(_, count)| **count > 1).map(|(size, _)| size).sum();
         let flat: f64 = areas.iter().zip(&is_flat).filter(|(_, is)| **is).map(|(area, _)| area).sum();
         let part = |of: f64, whole: f64| if whole > 0.0 { of / whole + 0.0 } else { 0.0 };
-        Self {
+        Ok(Self {
             flat_share: part(flat, total),
             soft_share: part(soft, bend),
             plane_share: part(planes, total),
             n_facets: sizes.iter().filter(|&&size| size >= SEEN * total && size > 0.0).count(),
-        }
+        })
     }
 }
 

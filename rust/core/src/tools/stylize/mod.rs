@@ -17,12 +17,12 @@ use crate::error::MeshError;
 use crate::intrinsic::delaunay_flips_carrying;
 use crate::linear::Columns;
 use crate::memory::Tool;
-use crate::mesh::{edge_lengths, triangle, Connectivity, Mesh, Working};
+use crate::mesh::{rows_of_lengths, triangle, Connectivity, Mesh, Working};
 use crate::operators::{mollify, voronoi_mass, HessianPattern};
 use crate::progress::{Progress, Report};
 use crate::solve::{solve, Coupling, Problem, Session, Settings, Solution, Solver, Status};
 use crate::unit::Unit;
-use crate::Result;
+use crate::{memory, Result};
 
 /// A step that moves the vertices by less than this part of the shape's size (root mean square) moves
 /// nothing.
@@ -126,7 +126,10 @@ impl<'a> Flow<'a> {
         working: Option<&'a Working<'a>>,
     ) -> Result<Self> {
         let connectivity = mesh.connectivity();
-        let base = options.ridge_weights.clone().unwrap_or_else(|| vec![1.0; connectivity.n_faces()]);
+        let base = match &options.ridge_weights {
+            Some(weights) => memory::twin(weights)?,
+            None => memory::repeated(1.0, connectivity.n_faces())?,
+        };
         let (size, area) = extent(connectivity, start);
         if size <= 0.0 {
             return Err(MeshError::NoFaces.into());
@@ -136,23 +139,23 @@ impl<'a> Flow<'a> {
             Scale::Length(length) => Scale::Length(unit.measure(length)),
             relative => relative,
         };
-        let flatness = Flatness::of(connectivity, start);
+        let flatness = Flatness::of(connectivity, start)?;
         Ok(Self {
             options,
             working,
             connectivity,
             scale,
             around: Surroundings::of(corners.map(|&v| &start[v as usize])),
-            points: start.to_vec(),
+            points: memory::twin(start)?,
             base,
-            pattern: HessianPattern::new(connectivity),
+            pattern: HessianPattern::new(connectivity)?,
             solver: Session::new(),
             size,
             area,
             start,
             pace: Pace::new(options.movement, options.flat_share, &flatness),
             result: Stylized {
-                vertices: start.to_vec(),
+                vertices: memory::twin(start)?,
                 energy: Vec::new(),
                 gap: Vec::new(),
                 solver_iterations: Vec::new(),
@@ -171,7 +174,7 @@ impl<'a> Flow<'a> {
             self.result.status = FlowStatus::Settled;
             return Ok(self.result);
         }
-        let weights = self.free_areas(&step);
+        let weights = self.free_areas(&step)?;
         let mut inaccurate = false;
         for done in 0..n_steps {
             progress.check()?;
@@ -196,7 +199,7 @@ impl<'a> Flow<'a> {
             let movement = root_mean_square(&self.points, &moved);
             self.points = moved;
             step = self.prepare()?;
-            self.result.vertices.clone_from(&self.points);
+            self.result.vertices.copy_from_slice(&self.points);
             self.result.energy.push(step.energy());
             self.result.gap.push(solution.gap);
             self.result.solver_iterations.push(solution.iterations);
@@ -206,7 +209,7 @@ impl<'a> Flow<'a> {
                 Some(working) => progress.set_snapshot(&working.positions(&self.points)),
                 None => progress.set_snapshot(&self.points),
             }
-            let flatness = Flatness::of(self.connectivity, &self.points);
+            let flatness = Flatness::of(self.connectivity, &self.points)?;
             self.result.flatness[1] = flatness;
             let moved = weighted_distance(self.start, &self.points, &weights) / self.area.sqrt();
             let end = self.pace.after(moved, &flatness);
@@ -238,19 +241,20 @@ impl<'a> Flow<'a> {
     }
 
     /// What each vertex counts when the movement is measured: its area, nothing where it is held.
-    fn free_areas(&self, step: &Step) -> Vec<f64> {
-        let fixed = self.fixed(step);
-        step.mass.iter().zip(fixed).map(|(mass, fixed)| if fixed { 0.0 } else { *mass }).collect()
+    fn free_areas(&self, step: &Step) -> Result<Vec<f64>> {
+        let fixed = self.fixed(step)?;
+        let free = step.mass.iter().zip(fixed).map(|(mass, fixed)| if fixed { 0.0 } else { *mass });
+        Ok(memory::gathered(free)?)
     }
 
     /// Which vertices do not move.
-    fn fixed(&self, step: &Step) -> Vec<bool> {
+    fn fixed(&self, step: &Step) -> Result<Vec<bool>> {
         let is_fixed = |i: usize| {
             self.options.fixed.as_ref().is_some_and(|f| f[i])
                 || self.options.strength.as_ref().is_some_and(|s| s[i] <= 0.0)
                 || step.mass[i] <= 0.0
         };
-        (0..self.points.len()).map(is_fixed).collect()
+        Ok(memory::gathered((0..self.points.len()).map(is_fixed))?)
     }
 
     fn has_collapsed(&self, moved: &[[f64; 3]]) -> bool {
@@ -260,16 +264,17 @@ impl<'a> Flow<'a> {
 
     /// Operator, mass and unit of the shape as it is now.
     fn prepare(&mut self) -> Result<Step> {
-        let mut lengths = edge_lengths(self.connectivity.faces(), &self.points);
+        let mut lengths: Vec<[f64; 3]> =
+            memory::gathered(rows_of_lengths(self.connectivity.faces(), &self.points))?;
         let unit = self.scale.unit(self.connectivity, &self.points, &lengths);
         let flipped;
-        let mut base = self.base.clone();
+        let mut base = memory::twin(&self.base)?;
         let (connectivity, pattern) = if self.options.delaunay {
             mollify(self.connectivity, &mut lengths);
             let (connectivity, flipped_lengths, _) =
                 delaunay_flips_carrying(self.connectivity, &lengths, &mut base);
             lengths = flipped_lengths;
-            let pattern = HessianPattern::new(&connectivity);
+            let pattern = HessianPattern::new(&connectivity)?;
             flipped = (connectivity, pattern);
             (&flipped.0, &flipped.1)
         } else {
@@ -277,9 +282,9 @@ impl<'a> Flow<'a> {
         };
         mollify(connectivity, &mut lengths);
         let operator = pattern.assemble(connectivity, &lengths, self.options.dual)?;
-        let areas = lengths.iter().map(|&l| triangle::area(l)).collect();
-        let mass = voronoi_mass(connectivity, &lengths);
-        let norms = block_norms(&operator, &Columns::from_points(&self.points), self.options.coupling);
+        let areas = memory::gathered(lengths.iter().map(|&l| triangle::area(l)))?;
+        let mass = voronoi_mass(connectivity, &lengths)?;
+        let norms = block_norms(&operator, &Columns::from_points(&self.points)?, self.options.coupling)?;
         Ok(Step { operator, areas, base, mass, norms, unit })
     }
 
@@ -288,16 +293,13 @@ impl<'a> Flow<'a> {
         let fidelity = self.pace.factor() * self.options.fidelity / step.unit.powi(3);
         let strength = self.options.strength.as_ref();
         let n = self.points.len();
-        let fixed = self.fixed(step);
+        let fixed = self.fixed(step)?;
+        let pull = |i: usize| fidelity * step.mass[i] / strength.map_or(1.0, |s| s[i]);
         let problem = Problem {
             operator: &step.operator,
-            weights: sharpened_weights(&step.norms, &step.areas, &step.base, self.options.sharpness),
-            fidelity: (0..n)
-                .map(
-                    |i| if fixed[i] { 0.0 } else { fidelity * step.mass[i] / strength.map_or(1.0, |s| s[i]) },
-                )
-                .collect(),
-            target: Columns::from_points(&self.points),
+            weights: sharpened_weights(&step.norms, &step.areas, &step.base, self.options.sharpness)?,
+            fidelity: memory::gathered((0..n).map(|i| if fixed[i] { 0.0 } else { pull(i) }))?,
+            target: Columns::from_points(&self.points)?,
             fixed,
             linear_constraints: None,
             coupling: self.options.coupling,
