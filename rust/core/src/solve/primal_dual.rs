@@ -52,6 +52,9 @@ impl Stiffness {
     }
 }
 
+/// A point and its objective.
+type Point<const K: usize> = (Vec<[f64; K]>, f64);
+
 /// The equations of the central path, linear around a point, for problems in one column.
 #[derive(Debug)]
 pub(super) struct Model<const K: usize> {
@@ -139,7 +142,7 @@ impl<const K: usize> Model<K> {
         u: &[[f64; K]],
         step: &[[f64; K]],
         change: &[Block<K>],
-    ) -> Result<Option<(Vec<[f64; K]>, f64)>, SolveError> {
+    ) -> Result<Option<Point<K>>, SolveError> {
         let before = self.value(reduced, u, &self.h);
         let mut part = 1.0;
         for _ in 0..=HALVINGS {
