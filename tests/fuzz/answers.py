@@ -187,7 +187,7 @@ def facet(mesh: ridgeform.Mesh, given: Given, sane: bool) -> None:
     assert starts[0] == 0
     assert starts[-1] == len(found.polygon_vertices)
     assert found.status in ("solved", "stopped")
-    if crowded(mesh.faces) == (0, 0) and is_plain(mesh):
+    if crowded(mesh.faces) == (0, 0) and not len(mesh.report.nonmanifold_vertices) and is_plain(mesh):
         assert crowded(found.faces) == (0, 0)
         if not ridgeform.boundary_loops(mesh):
             assert not ridgeform.boundary_loops(ridgeform.Mesh(found.vertices, found.faces))

@@ -201,13 +201,10 @@ pub enum SolveError {
         /// What the factorization reported.
         reason: String,
     },
-    /// The factor of the linear system does not fit.
-    #[error("the factorization needs {} of memory, more than {}; raise memory_limit, keep more values fixed \
-        or reduce the mesh",
-        readable(*needed),
-        limit.map_or("there is".into(), |limit| format!("the limit of {}", readable(limit))))]
+    /// The factor of the linear system does not fit, or the system gives nothing for another array.
+    #[error("{}", solve_memory_text(*needed, *limit))]
     Memory {
-        /// Bytes for the factor and the work on it.
+        /// Bytes for the factor and the work on it, or for the array.
         needed: usize,
         /// The limit in bytes that was given; without one the system refused.
         limit: Option<usize>,
@@ -230,6 +227,21 @@ pub enum SolveError {
         /// Why.
         reason: String,
     },
+}
+
+fn solve_memory_text(needed: usize, limit: Option<usize>) -> String {
+    let needed = readable(needed);
+    match limit {
+        Some(limit) => format!(
+            "the factorization needs {needed} of memory, more than the limit of {}; raise memory_limit, keep \
+            more values fixed or reduce the mesh",
+            readable(limit)
+        ),
+        None => format!(
+            "another {needed} of memory are needed, more than there is; free memory, keep more values fixed \
+            or reduce the mesh"
+        ),
+    }
 }
 
 fn memory_text(what: &str, needed: usize, limit: usize, is_given: bool, fits: usize) -> String {

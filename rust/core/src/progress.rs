@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, TryLockError};
 use std::time::{Duration, Instant};
 
 use crate::unit::Unit;
-use crate::{Error, Result};
+use crate::{memory, Error, Result};
 
 /// What a running call last said of itself.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -32,7 +32,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 #[derive(Debug, Default)]
 struct State {
     report: Report,
-    snapshot: Option<Arc<[[f64; 3]]>>,
+    snapshot: Option<Arc<Vec<[f64; 3]>>>,
     n_snapshots: usize,
     surface: Option<Arc<Surface>>,
 }
@@ -129,25 +129,26 @@ impl Progress {
         self.with(|state| state.report.clone()).unwrap_or_default()
     }
 
-    /// Publish the vertices after a finished flow step.
+    /// Publish the vertices after a finished flow step; where there is no room for them, the last ones stay.
     pub fn set_snapshot(&self, vertices: &[[f64; 3]]) {
-        let vertices = vertices.iter().map(|p| p.map(|x| self.unit.restore(x))).collect();
+        let restored = vertices.iter().map(|p| p.map(|x| self.unit.restore(x)));
+        let Ok(vertices) = memory::gathered(restored) else { return };
         self.with(|state| {
-            state.snapshot = Some(vertices);
+            state.snapshot = Some(Arc::new(vertices));
             state.n_snapshots += 1;
         });
     }
 
     /// The vertices after the last finished flow step.
     #[must_use]
-    pub fn snapshot(&self) -> Option<Arc<[[f64; 3]]>> {
+    pub fn snapshot(&self) -> Option<Arc<Vec<[f64; 3]>>> {
         self.with(|state| state.snapshot.clone()).flatten()
     }
 
     /// The same, with how many were published through this handle: for one flow the number of the step,
     /// from 1.
     #[must_use]
-    pub fn numbered_snapshot(&self) -> Option<(usize, Arc<[[f64; 3]]>)> {
+    pub fn numbered_snapshot(&self) -> Option<(usize, Arc<Vec<[f64; 3]>>)> {
         self.with(|state| state.snapshot.clone().map(|vertices| (state.n_snapshots, vertices))).flatten()
     }
 
@@ -187,7 +188,7 @@ mod tests {
     fn a_state_that_is_never_released_is_given_up() {
         let progress = Progress::new();
         progress.set_snapshot(&[[1.0, 2.0, 3.0]]);
-        assert_eq!(progress.snapshot().as_deref(), Some(&[[1.0, 2.0, 3.0]][..]));
+        assert_eq!(progress.snapshot().as_deref(), Some(&vec![[1.0, 2.0, 3.0]]));
         let watcher = progress.clone();
         let held = progress.state.lock();
         assert_eq!(std::thread::spawn(move || watcher.snapshot()).join().ok(), Some(None));

@@ -32,6 +32,9 @@ const LARGE: usize = 128 << 10;
 /// So many of a call are tried, evenly spread.
 const TRIED: usize = 3;
 
+/// So many functions say where an allocation was asked for.
+const NAMED: usize = 4;
+
 /// Runs a case in the child: prints how it ended.
 fn run(name: &str, which: usize) {
     let (_, side) = CALLS.into_iter().find(|(call, _)| *call == name).unwrap();
@@ -61,12 +64,12 @@ enum End {
     Fault(String),
 }
 
-/// The innermost function of a backtrace that is not of the standard library, and who called it.
+/// The innermost functions of a backtrace that are not of the standard library, and who called them.
 fn culprit(backtrace: &str) -> String {
     let frames = backtrace.lines().filter_map(|line| line.trim().split_once(": ")).map(|(_, frame)| frame);
-    let own =
-        frames.filter(|frame| ["ridgeform_core", "faer", "clarabel"].iter().any(|name| frame.contains(name)));
-    own.take(4).collect::<Vec<_>>().join(" < ")
+    let owners = ["ridgeform_core", "faer", "clarabel", "rayon"];
+    let own = frames.filter(|frame| owners.iter().any(|name| frame.contains(name)));
+    own.take(NAMED).collect::<Vec<_>>().join(" < ")
 }
 
 fn end_of(name: &str, which: usize) -> End {

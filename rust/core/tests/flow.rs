@@ -179,7 +179,7 @@ fn progress_cancels_finishes_and_shows_every_step() {
     let mesh = bumpy().mesh().unwrap();
     let progress = Progress::new();
     let result = stylize(&mesh, &strong(3), &progress).unwrap();
-    assert_eq!(progress.snapshot().as_deref(), Some(&result.vertices[..]));
+    assert_eq!(progress.snapshot().as_deref(), Some(&result.vertices));
     let report = progress.last_report();
     assert_eq!((report.iteration, report.fraction, report.energy), (3, 1.0, result.energy.last().copied()));
     progress.finish();

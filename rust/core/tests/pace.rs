@@ -160,7 +160,7 @@ fn flatness_of_known_shapes() {
 fn round_shapes_are_flat_nowhere_however_dense() {
     for density in 2..=6 {
         let shape = shapes::icosphere(density);
-        let ball = Flatness::of(shape.mesh().unwrap().connectivity(), &shape.vertices);
+        let ball = Flatness::of(shape.mesh().unwrap().connectivity(), &shape.vertices).unwrap();
         assert_eq!((ball.flat_share, ball.plane_share), (0.0, 0.0), "{density}");
     }
 }
@@ -174,7 +174,8 @@ fn planes_are_flat_however_dense_and_rounded() {
             let cube = rounded(shapes::cube(density).rotated(AXIS, 0.8));
             let sheet = shapes::grid(density, density).map(|[x, y, z]| [x, stretch * y, z]);
             let sheet = rounded(sheet.rotated(AXIS, 0.8));
-            let of = |shape: &Shape| Flatness::of(shape.mesh().unwrap().connectivity(), &shape.vertices);
+            let of =
+                |shape: &Shape| Flatness::of(shape.mesh().unwrap().connectivity(), &shape.vertices).unwrap();
             let (cube, sheet) = (of(&cube), of(&sheet));
             assert_eq!((cube.n_facets, sheet.n_facets), (6, 1), "{density} {stretch}");
             assert!(sheet.flat_share > 0.999 && cube.plane_share > 0.999);

@@ -112,7 +112,7 @@ pub(crate) fn voronoi_mass<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Bound<
 pub(crate) fn cotangent_laplacian(py: Python<'_>, mesh: &Mesh) -> PyResult<SparseMatrix> {
     let mesh = mesh.inner();
     let matrix = doorway::call_sized(py, mesh.demand(Tool::Laplacian), || {
-        Ok(operators::cotangent_laplacian(mesh.connectivity(), mesh.measured(mesh.unit())?.edge_lengths())?)
+        operators::cotangent_laplacian(mesh.connectivity(), mesh.measured(mesh.unit())?.edge_lengths())
     })?;
     SparseMatrix::new(py, matrix)
 }

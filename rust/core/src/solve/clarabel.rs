@@ -47,7 +47,7 @@ pub fn minimize<const K: usize>(
     progress: &Progress,
 ) -> Result<Outcome<K>> {
     let n_columns = reduced.n_columns;
-    let program = Program::new(reduced);
+    let program = Program::new(reduced)?;
     let tolerance = settings.tolerance.map_or(1e-9, |t| (MARGIN * t).clamp(1e-11, 1e-3));
     let options = DefaultSettings {
         verbose: false,
@@ -187,27 +187,34 @@ struct Program<const K: usize> {
 }
 
 impl<const K: usize> Program<K> {
-    fn new(reduced: &Reduced<'_, K>) -> Self {
+    fn new(reduced: &Reduced<'_, K>) -> Result<Self> {
         let (n, m, k) = (reduced.n(), reduced.n_blocks(), reduced.n_columns);
         let n_variables = k * n + m;
-        let mut linear = vec![0.0; n_variables];
-        let mut diagonal = Vec::new();
+        let mut linear = memory::repeated(0.0, n_variables)?;
+        let (mut at, mut values) = (memory::room(k * n)?, memory::room(k * n)?);
         for c in 0..k {
             for (i, a) in reduced.fidelity.iter().enumerate() {
                 linear[c * n + i] = -2.0 * a * reduced.target[i][c];
                 if *a > 0.0 {
-                    diagonal.push((c * n + i, 2.0 * a));
+                    at.push(c * n + i);
+                    values.push(2.0 * a);
                 }
             }
         }
         linear[k * n..].copy_from_slice(&reduced.weights);
-        let (at, values): (Vec<usize>, Vec<f64>) = diagonal.into_iter().unzip();
-        let quadratic = CscMatrix::new_from_triplets(n_variables, n_variables, at.clone(), at, values);
+        let twice = memory::twin(&at)?;
+        let quadratic = CscMatrix::new_from_triplets(n_variables, n_variables, twice, at, values);
 
         // Clarabel's rows are `A x + s = b, s in cones`: equalities first,
         // then (s_b, H u + c) of every block.
-        let (mut row, mut column, mut value, mut right) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        let mut cones = Vec::new();
+        let of_constraints = |rows: &[Vec<(u32, f64)>]| rows.iter().map(|row| k * row.len()).sum::<usize>();
+        let n_equal = reduced.constraints.as_ref().map_or(0, |constraints| k * constraints.len());
+        let n_entries = reduced.constraints.as_ref().map_or(0, |c| of_constraints(c.rows()))
+            + m
+            + BLOCK * k * reduced.free.operator.columns.len();
+        let (mut row, mut column) = (memory::room(n_entries)?, memory::room(n_entries)?);
+        let (mut value, mut right) = (memory::room(n_entries)?, memory::room(n_equal + m * (1 + BLOCK * k))?);
+        let mut cones = memory::room(m + 1)?;
         let mut n_equalities = 0;
         if let Some(constraints) = &reduced.constraints {
             for (entries, b) in constraints.rows().iter().zip(&constraints.right) {
@@ -243,7 +250,7 @@ impl<const K: usize> Program<K> {
             cones.push(SecondOrderConeT(1 + BLOCK * k));
         }
         let rows = CscMatrix::new_from_triplets(right.len(), n_variables, row, column, value);
-        Self { quadratic, linear, rows, right, cones, n_columns: k, n_equalities }
+        Ok(Self { quadratic, linear, rows, right, cones, n_columns: k, n_equalities })
     }
 
     /// Clarabel's dual variables as `q` (one block each) and `y` (one row per constraint).

@@ -34,14 +34,20 @@ impl<const K: usize> LinearConstraints<K> {
         columns: &[usize],
         fixed_row: &dyn Fn(usize) -> [f64; K],
     ) -> Result<Self, SolveError> {
-        let matrix = matrix.to_csr();
+        let by_rows;
+        let matrix = if matrix.is_csr() {
+            matrix
+        } else {
+            by_rows = matrix.to_csr();
+            &by_rows
+        };
         let mut rows = Vec::new();
         let mut rights = Vec::new();
         for (p, row) in matrix.outer_iterator().enumerate() {
             let mut rest: [f64; K] =
                 std::array::from_fn(|c| columns.get(c).map_or(0.0, |&k| right.column(k)[p]));
             let size = rest.iter().fold(1.0f64, |a, x| a.max(x.abs()));
-            let mut kept = Vec::new();
+            let mut kept = memory::room(row.nnz())?;
             for (i, &value) in row.iter() {
                 match free.place[i] {
                     Some(k) => kept.push((k, value)),

@@ -1,6 +1,6 @@
 //! Vibration modes: orthonormal functions of least energy, one after the other (Rowe et al. 2024, eq. (38)).
 
-use sprs::{CsMat, TriMat};
+use sprs::CsMat;
 
 use super::unseen::{extend, unseen};
 use super::{EnergyOptions, SolveOptions};
@@ -124,7 +124,7 @@ impl Sequence<'_> {
 
     fn l1(&self, count: usize) -> Result<(Vec<Vec<f64>>, Status)> {
         self.report(0, count, "modes of the squares", None);
-        let weights = self.weights_of_squares();
+        let weights = self.weights_of_squares()?;
         let start = self.pencil(&weights).smallest(count, self.progress)?;
         let (mut modes, mut status) = (self.kernel(&start)?, Status::Solved);
         let mut solver = Session::new();
@@ -142,12 +142,13 @@ impl Sequence<'_> {
 
     /// The weights with which the squared norms sum to the integral of a squared density: for the norms of
     /// faces, which carry the area, over the area.
-    fn weights_of_squares(&self) -> Vec<f64> {
+    fn weights_of_squares(&self) -> Result<Vec<f64>> {
         if self.form.energy != Energy::L1Hessian {
-            return self.form.weights.clone();
+            return Ok(memory::twin(&self.form.weights)?);
         }
         let areas = self.mesh.edge_lengths().iter().map(|&l| triangle::area(l));
-        self.form.weights.iter().zip(areas).map(|(w, area)| if area > 0.0 { w / area } else { 0.0 }).collect()
+        let over = |(w, area): (&f64, f64)| if area > 0.0 { w / area } else { 0.0 };
+        Ok(memory::gathered(self.form.weights.iter().zip(areas).map(over))?)
     }
 
     fn pencil<'b>(&'b self, weights: &'b [f64]) -> Pencil<'b> {
@@ -203,7 +204,7 @@ impl Sequence<'_> {
         solver: &mut Session,
     ) -> Result<(Vec<f64>, Status)> {
         let enough = self.settings.tolerance.unwrap_or(1e-4);
-        let mut direction = orthonormal(self.mass, start.to_vec(), modes);
+        let mut direction = orthonormal(self.mass, memory::twin(start)?, modes);
         let mut energy = self.form.evaluate(&direction)?;
         let mut status = Status::Solved;
         solver.forget();
@@ -211,7 +212,7 @@ impl Sequence<'_> {
             self.report(modes.len(), count, "modes", Some(energy));
             let solution = self.alternate(&direction, modes, solver)?;
             status = solution.status;
-            let moved = orthonormal(self.mass, solution.values.column(0).to_vec(), modes);
+            let moved = orthonormal(self.mass, memory::twin(solution.values.column(0))?, modes);
             let lower = self.form.evaluate(&moved)?;
             if lower < energy {
                 direction = moved;
@@ -233,11 +234,11 @@ impl Sequence<'_> {
         right.push(1.0);
         let problem = Problem {
             operator: &self.form.operator,
-            weights: self.form.weights.clone(),
-            fidelity: vec![0.0; n],
-            target: Columns::from_column(direction.to_vec()),
-            fixed: self.mass.iter().map(|m| *m == 0.0).collect(),
-            linear_constraints: Some((self.products(modes, direction), Columns::from_column(right))),
+            weights: memory::twin(&self.form.weights)?,
+            fidelity: memory::repeated(0.0, n)?,
+            target: Columns::from_column(memory::twin(direction)?),
+            fixed: memory::gathered(self.mass.iter().map(|m| *m == 0.0))?,
+            linear_constraints: Some((self.products(modes, direction)?, Columns::from_column(right))),
             coupling: Coupling::Joint,
         };
         match self.options.solve.solver {
@@ -247,14 +248,20 @@ impl Sequence<'_> {
     }
 
     /// The rows `uᵀ M` for every one of `modes`, then for `direction`.
-    fn products(&self, modes: &[Vec<f64>], direction: &[f64]) -> CsMat<f64> {
-        let mut rows = TriMat::new((modes.len() + 1, self.mass.len()));
-        for (p, u) in modes.iter().map(Vec::as_slice).chain([direction]).enumerate() {
+    fn products(&self, modes: &[Vec<f64>], direction: &[f64]) -> Result<CsMat<f64>> {
+        let n_rows = modes.len() + 1;
+        let n_entries = n_rows * self.mass.iter().filter(|m| **m > 0.0).count();
+        let (mut starts, mut columns) = (memory::room(n_rows + 1)?, memory::room(n_entries)?);
+        let mut values = memory::room(n_entries)?;
+        starts.push(0);
+        for u in modes.iter().map(Vec::as_slice).chain([direction]) {
             for (i, (m, x)) in self.mass.iter().zip(u).enumerate().filter(|(_, (m, _))| **m > 0.0) {
-                rows.add_triplet(p, i, m * x);
+                columns.push(i);
+                values.push(m * x);
             }
+            starts.push(columns.len());
         }
-        rows.to_csr()
+        Ok(CsMat::new((n_rows, self.mass.len()), starts, columns, values))
     }
 
     /// The modes with linearly extrapolated values at the `unseen` vertices,

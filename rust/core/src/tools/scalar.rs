@@ -1,5 +1,7 @@
 //! What denoising and interpolation have in common: one energy on a mesh, minimized under conditions.
 
+use std::borrow::Cow;
+
 use sprs::CsMat;
 
 use super::answer;
@@ -14,7 +16,7 @@ use crate::operators::{voronoi_mass, Energy};
 use crate::progress::{Progress, Report};
 use crate::solve::{quadratic, solve, Coupling, Problem, Settings, Solution};
 use crate::unit::Unit;
-use crate::{Error, Result};
+use crate::{memory, Error, Result};
 
 /// Reweighted rounds after the first solution: the weights hardly change after the third.
 const SHARPENING_ROUNDS: usize = 3;
@@ -95,9 +97,12 @@ impl ScalarProblem<'_> {
         }
         let mut problem = Problem {
             operator: &form.operator,
-            weights: form.weights.clone(),
-            fidelity: mass.iter().map(|m| fidelity * m).collect(),
-            target: self.target.measured(value).into_owned(),
+            weights: memory::twin(&form.weights)?,
+            fidelity: memory::gathered(mass.iter().map(|m| fidelity * m))?,
+            target: match self.target.measured(value) {
+                Cow::Borrowed(target) => target.copied()?,
+                Cow::Owned(target) => target,
+            },
             fixed: self.fixed,
             linear_constraints: options
                 .linear_constraints
@@ -130,8 +135,8 @@ fn sharpened(
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Solution> {
-    let base = problem.weights.clone();
-    let areas: Vec<f64> = mesh.edge_lengths().iter().map(|&l| triangle::area(l)).collect();
+    let base = memory::twin(&problem.weights)?;
+    let areas: Vec<f64> = memory::gathered(mesh.edge_lengths().iter().map(|&l| triangle::area(l)))?;
     let rounds = if options.sharpness > 0.0 { 1 + SHARPENING_ROUNDS } else { 1 };
     let mut solution = solve(problem, options.solve.solver, settings, progress)?;
     for round in 1..rounds {
