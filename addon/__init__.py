@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ridgeform: piecewise flat meshes with crisp ridges, in Blender."""
 
-from . import check, registry
-from .framework import job, wheel
+from . import batch, check, job, registry
+from .framework import wheel
 
-__all__ = ("check", "job", "register", "unregister")
+__all__ = ("batch", "check", "job", "register", "unregister")
 """For scripts: `bl_ext.user_default.ridgeform.job.last_summary()` says what the last run did, `check.last()`
-what the last check found."""
+what the last check found, and `batch.main(arguments)` is the batch command."""
 
 
 def register() -> None:

@@ -1,5 +1,6 @@
 """The installed extension: enabled, used, disabled and enabled again, removed."""
 
+import importlib
 import importlib.metadata
 import subprocess
 import sys
@@ -87,3 +88,10 @@ def test_install_over_itself_and_remove(extension_zip, tmp_path):
     )
     assert done.returncode == 0, done.stdout + done.stderr
     assert not list(tmp_path.rglob("_native*")), "the wheel was left behind"
+
+
+@pytest.mark.parametrize(("name", "call"), [("job", "last_summary"), ("check", "last"), ("batch", "main")])
+def test_what_scripts_ask_is_found_by_import(name, call):
+    module = importlib.import_module(f"{EXTENSION}.{name}")
+    assert callable(getattr(module, call))
+    assert getattr(sys.modules[EXTENSION], name) is module
