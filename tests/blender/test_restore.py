@@ -105,3 +105,27 @@ def test_nothing_to_move_is_refused():
     obj.vertex_groups.new(name="Empty")
     with pytest.raises(RuntimeError, match="may move"):
         bpy.ops.ridgeform.restore(strength_group="Empty")
+
+
+def test_node_trees_read_the_surfaces():
+    """Geometry nodes see the faces of one surface as the attribute says."""
+    obj = kit.bumpy_box()
+    restore()
+    tree = bpy.data.node_groups.new("First Surface", "GeometryNodeTree")
+    for way in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    kinds = ("NodeGroupInput", "NodeGroupOutput", "GeometryNodeInputNamedAttribute", "FunctionNodeCompare")
+    given, made, number, is_first = (tree.nodes.new(kind) for kind in kinds)
+    chosen = tree.nodes.new("GeometryNodeSeparateGeometry")
+    number.data_type = is_first.data_type = "INT"
+    is_first.operation, chosen.domain = "EQUAL", "FACE"
+    number.inputs["Name"].default_value = "ridgeform_surface"
+    numbers = [socket for socket in is_first.inputs if socket.enabled]
+    tree.links.new(next(socket for socket in number.outputs if socket.enabled), numbers[0])
+    tree.links.new(is_first.outputs["Result"], chosen.inputs["Selection"])
+    tree.links.new(given.outputs["Geometry"], chosen.inputs["Geometry"])
+    tree.links.new(chosen.outputs["Selection"], made.inputs["Geometry"])
+    obj.modifiers.new("First Surface", "NODES").node_group = tree
+    seen = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    assert len(seen.polygons) == (values_of(obj.data, "ridgeform_surface") == 0).sum()
+    assert 0 < len(seen.polygons) < len(obj.data.polygons)
