@@ -202,6 +202,25 @@ def facets() -> None:
     pictures.sheet(PICTURES / "facets.png", [row], captions=[captions], text_pixels=15)
 
 
+def segment() -> None:
+    """A noisy part as it is and in the segments of the defaults, for a slider."""
+    import pictures  # noqa: PLC0415
+    import ridgeform  # noqa: PLC0415
+    from known_shapes import segment_shapes  # noqa: PLC0415
+
+    from addon.framework.settings import defaults_of  # noqa: PLC0415
+    from addon.segments.settings import SegmentSettings, segment_options  # noqa: PLC0415
+
+    part = segment_shapes.SHAPES["fan part"](1)
+    noisy, triangles = part.noisy(PART_NOISE, 0).vertices, part.faces
+    options = segment_options(defaults_of(SegmentSettings))
+    labels = ridgeform.segment(ridgeform.Mesh(noisy, triangles), **options).labels
+    look = {"view": PART_VIEW, "size": (440, 380), "frame": noisy}
+    row = [pictures.render(noisy, triangles, **look)]
+    row.append(pictures.render(noisy, triangles, color=colors_of(labels), **look))
+    pictures.sheet(PICTURES / "segment_part.png", [row])
+
+
 def facet() -> None:
     """Spot as it is and in facets, for a slider."""
     import pictures  # noqa: PLC0415
@@ -214,8 +233,8 @@ def facet() -> None:
     pictures.sheet(PICTURES / "facet_spot.png", [row])
 
 
-def surface_colors(labels: np.ndarray) -> np.ndarray:
-    """A color for each face, by the number of its surface; clay for those that have none."""
+def colors_of(labels: np.ndarray) -> np.ndarray:
+    """A color for each face, by its label; clay for those that have none (-1)."""
     import pictures  # noqa: PLC0415
 
     from addon.segments.slots import color_of  # noqa: PLC0415
@@ -236,14 +255,14 @@ def restored() -> None:
     found = ridgeform.restore(mesh)
     look = {"view": PART_VIEW, "size": (300, 260), "frame": noisy}
     row = [pictures.render(points, part.faces, **look) for points in (noisy, found.vertices)]
-    row.append(pictures.render(found.vertices, part.faces, color=surface_colors(found.labels), **look))
+    row.append(pictures.render(found.vertices, part.faces, color=colors_of(found.labels), **look))
     captions = ["a scan", "restored", f"its {len(found.surfaces)} surfaces"]
     pictures.sheet(PICTURES / "restore.png", [row], captions=[captions], text_pixels=15)
     row, captions = [], []
     for factor in NOISE_FACTORS:
         made = ridgeform.restore(mesh, noise=factor * found.noise)
         print(factor, made, flush=True)
-        row.append(pictures.render(made.vertices, part.faces, color=surface_colors(made.labels), **look))
+        row.append(pictures.render(made.vertices, part.faces, color=colors_of(made.labels), **look))
         captions.append(f"Noise {factor:g} times: {len(made.surfaces)} surfaces")
     pictures.sheet(PICTURES / "restore_noise.png", [row], captions=[captions], text_pixels=15)
 
@@ -263,6 +282,7 @@ DRAWN = {
     "noisy_cube": noisy_cube,
     "attributes": attributes,
     "segments": segments,
+    "segment": segment,
     "facets": facets,
     "facet": facet,
     "restore": restored,

@@ -142,6 +142,8 @@ def draw(folder: Path) -> dict[str, str]:
             redrawn = _shown(vertices, faces, brightness * found.corners, unit)
             pictures.append((f"redrawn, {_decibels(found.psnr)}", redrawn))
     panels.page(folder / "curves.png", pictures, 3, shades=32)
+    # The last of them, for a slider in the manual.
+    panels.page(folder / "curves_spot.png", pictures[-3:], 3, shades=32)
     header = ["paint", "regions", "curves", "numbers", "PSNR", "without least squares", "off the borders"]
     return {"curves": table(header, rows)}
 
