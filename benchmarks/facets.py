@@ -22,6 +22,7 @@ from build_wheel import build_wheel
 from cells import grid
 from known_shapes.fill_measures import mean_and_rms, point_distances, samples
 from numpy.typing import NDArray
+from problems import load_obj
 from workspace import WHEEL_SITE
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -37,19 +38,6 @@ def bundled(name: str) -> Mesh:
     """A mesh that comes with the project."""
     with np.load(SOURCES / f"{name}.npz") as data:
         return data["vertices"].astype(float), data["faces"].astype(np.int64)
-
-
-def read_obj(path: Path) -> Mesh:
-    """Vertices and triangles of an OBJ file, polygons as fans."""
-    vertices, faces = [], []
-    for line in path.read_text(encoding="utf-8").splitlines():
-        kind, *words = line.split() or [""]
-        if kind == "v":
-            vertices.append([float(word) for word in words[:3]])
-        elif kind == "f":
-            ring = [int(word.split("/")[0]) - 1 for word in words]
-            faces += [[ring[0], ring[i], ring[i + 1]] for i in range(1, len(ring) - 1)]
-    return np.array(vertices), np.array(faces)
 
 
 def distances(mesh: Mesh, other: Mesh) -> tuple[float, float]:
@@ -161,7 +149,7 @@ def main() -> None:
         if tag in wheel.name or wheel.name.endswith("none-any.whl"):
             zipfile.ZipFile(wheel).extractall(scratch)
     sys.path.insert(0, scratch)
-    meshes = {path.stem: read_obj(path) for path in options.meshes}
+    meshes = {path.stem: load_obj(path) for path in options.meshes}
     meshes = meshes or {name: bundled(name) for name in ("bust", "spot", "spot_low_resolution")}
     rows = [row(name, mesh, count) for name, mesh in meshes.items() for count in COUNTS]
     table = grid(HEAD, rows)

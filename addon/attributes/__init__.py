@@ -7,50 +7,35 @@ from .denoise import Denoising
 from .interpolate import Interpolation
 from .modes import VibrationModes
 from .operator import RIDGEFORM_OT_show_attribute
-from .settings import (
-    DENOISE_PRESETS,
-    INTERPOLATE_PRESETS,
-    DenoiseSettings,
-    InterpolateSettings,
-    ModesSettings,
-)
+from .settings import DENOISE_PRESETS, INTERPOLATE_PRESETS
 
 FEATURE = Feature(
     tools=(
         Tool(
-            name="denoise_attribute",
-            label="Denoise Attribute",
             description="Smooth an attribute, color, or vertex group and keep its creases. In Edit Mode, "
             "only the selection",
             icon="MOD_SMOOTH",
             run=Denoising,
-            settings=DenoiseSettings,
             key="denoise",
             page="manual_attributes",
             group=ATTRIBUTES,
             presets=DENOISE_PRESETS,
         ),
         Tool(
-            name="interpolate_attribute",
-            label="Interpolate Attribute",
             description="Spread values of an attribute, color, or vertex group over the mesh, or fill in the "
             "selection",
             icon="MOD_DATA_TRANSFER",
             run=Interpolation,
-            settings=InterpolateSettings,
             key="interpolate",
             page="manual_attributes",
             group=ATTRIBUTES,
             presets=INTERPOLATE_PRESETS,
         ),
         Tool(
-            name="vibration_modes",
-            label="Vibration Modes",
             description="Store the functions on the surface that bend least, one after the other, as "
             "attributes",
             icon="MOD_WAVE",
             run=VibrationModes,
-            settings=ModesSettings,
             key="modes",
             page="manual_attributes",
             group=ATTRIBUTES,

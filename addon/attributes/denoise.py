@@ -15,13 +15,14 @@ from ..framework.sources import as_argument, varying_means
 from ..framework.surface import Surface
 from .attribute_run import AttributePart, AttributeRun, Solved, energy_on
 from .jumps import cut, jumping, note_on
-from .settings import denoise_fidelity_of
+from .settings import DenoiseSettings, denoise_fidelity_of
 
 
 class Denoising(AttributeRun):
     """One run of denoising."""
 
     name = "denoise_attribute"
+    takes = DenoiseSettings
     call = "denoise"
     suffix = "_denoised"
     done_word = "Denoised"

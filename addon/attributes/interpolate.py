@@ -17,12 +17,14 @@ from ..framework.sources import as_argument, refuse_mixed, refuse_non_finite, va
 from ..framework.surface import Surface
 from .attribute_run import AttributePart, AttributeRun, Solved, energy_on
 from .jumps import cut, jumping, note_on
+from .settings import InterpolateSettings
 
 
 class Interpolation(AttributeRun):
     """One run of interpolating."""
 
     name = "interpolate_attribute"
+    takes = InterpolateSettings
     call = "interpolate"
     suffix = "_interpolated"
     done_word = "Interpolated"

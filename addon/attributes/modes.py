@@ -16,7 +16,7 @@ from ..framework.job import Task
 from ..framework.run import Part, Run, meshes_phrase
 from ..framework.surface import Surface, half_notes, surface_of
 from .attribute_run import energy_on
-from .settings import energy_options
+from .settings import ModesSettings, energy_options
 
 PREFIX = "ridgeform_mode_"
 
@@ -40,6 +40,7 @@ class VibrationModes(Run):
     """One run of vibration modes, on whole meshes."""
 
     name = "vibration_modes"
+    takes = ModesSettings
     call = "vibration_modes"
     counted = "modes"
     needs = Needs(coordinates=False, selection=False)

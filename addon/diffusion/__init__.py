@@ -5,18 +5,14 @@ from ..framework.sidebar import ATTRIBUTES
 from ..framework.tool import Feature, Tool
 from . import operator
 from .coloring import RIDGEFORM_OT_color_diffusion_curves
-from .settings import DiffusionSettings
 from .tool import DiffusionCurves
 
 FEATURE = Feature(
     tools=(
         Tool(
-            name="diffusion_curves",
-            label="Diffusion Curves",
             description="Find the few curves, with a color on each side, that redraw the painted surface",
             icon="CURVE_DATA",
             run=DiffusionCurves,
-            settings=DiffusionSettings,
             key="diffusion",
             page="manual_diffusion_curves",
             group=ATTRIBUTES,

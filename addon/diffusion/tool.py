@@ -19,6 +19,7 @@ from ..framework.settings import chosen
 from ..framework.surface import Surface, half_notes, surface_of
 from . import curves_io, drawing
 from .layout import curve_points
+from .settings import DiffusionSettings
 from .sources import Colors, attribute_colors, image_colors
 
 EXACT = 120.0
@@ -41,6 +42,7 @@ class DiffusionCurves(Run):
     """One run of diffusion curves, on whole meshes."""
 
     name = "diffusion_curves"
+    takes = DiffusionSettings
     call = "diffusion_curves"
     needs = Needs(coordinates=False, selection=False)
 

@@ -3,19 +3,15 @@
 
 from ..framework import faceting
 from ..framework.tool import Feature, Tool
-from .settings import PRESETS, FacetSettings
+from .settings import PRESETS
 from .tool import Faceting
 
 FEATURE = Feature(
     tools=(
         Tool(
-            name="facet",
-            label="Facet",
             description="Make flat polygons with straight ridges of the selected meshes, as few as you want",
             icon="MESH_ICOSPHERE",
             run=Faceting,
-            settings=FacetSettings,
-            key="facet",
             page="manual_facet",
             finds="Planar, Low Poly, Decimate",
             quick=("mode", "facets", "error"),

@@ -16,7 +16,7 @@ from ..framework.faceting import Facetable, FacetMesh
 from ..framework.job import Task
 from ..framework.run import Part, Run, counted, meshes_phrase
 from ..framework.surface import group_weights, painted_edges, surface_of
-from .settings import by_count, by_error
+from .settings import FacetSettings, by_count, by_error
 
 
 @dataclass
@@ -40,6 +40,8 @@ class Faceting(Run):
     """One run of making facets."""
 
     name = "facet"
+    takes = FacetSettings
+    sums = ("facets", "facet", "")
     call = "facet"
 
     def prepare(self, obj: bpy.types.Object) -> FacetPart:
@@ -111,11 +113,6 @@ class Faceting(Run):
             f"{100.0 * entry['rms']:.2g} % of the size off, {entry['seconds']:.1f} s",
             *entry["warnings"],
         ]
-
-    @classmethod
-    def phrases(cls, done: Sequence[dict[str, object]]) -> list[str]:
-        """How many facets there are."""
-        return [counted(sum(entry["facets"] for entry in done), "facet")] if done else []
 
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """How many facets of which mesh, how far from it, time."""

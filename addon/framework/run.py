@@ -17,6 +17,7 @@ from ..blender.refusals import RefusedError
 from ..blender.selection import MOVES
 from .job import Job, Task, store_summary
 from .preflight import reason_too_large
+from .settings import Settings
 
 NOT_BEGUN = "not begun"
 FAILED = "failed"
@@ -47,12 +48,17 @@ class Run(ABC):
     """
 
     name: ClassVar[str]
-    """The tool's name in the summary."""
+    """The tool's name, in the summary as well."""
+    takes: ClassVar[type[Settings]]
+    """The settings that it is given values of."""
     call: ClassVar[str | None] = None
     """The call of the package whose memory is asked for before a run; `None` if it takes little more than the
     mesh does."""
     counted: ClassVar[str] = "iterations"
     """What the panel calls the steps of the summary."""
+    sums: ClassVar[tuple[str, str, str] | None] = None
+    """A figure that the batch command adds up over the meshes of a file: its name, what it counts, and what
+    became of that."""
     needs = MOVES
     """What it needs of a mesh."""
     in_object_mode: ClassVar[bool] = True
@@ -129,7 +135,10 @@ class Run(ABC):
     @classmethod
     def phrases(cls, done: Sequence[dict[str, object]]) -> list[str]:
         """What the batch command says of a file beside vertices, energies and gap, given the summaries."""
-        return []
+        if cls.sums is None or not done:
+            return []
+        figure, what, done_to_it = cls.sums
+        return [counted(sum(entry[figure] for entry in done), what) + done_to_it]
 
     def kept_settings(self) -> dict[str, object]:
         """Settings that a redo repeats with other values than those asked for."""

@@ -13,17 +13,15 @@ from .settings import Settings
 class Tool:
     """One thing that a modeler asks for: an operator with a panel, presets and a command, made from this."""
 
-    name: str
-    """The operator's: `bpy.ops.ridgeform.<name>`, and with dashes the word on the command line."""
-    label: str
-    """What the operator is called."""
     description: str
     """What it does, for tooltips and `--help`."""
     icon: str
     run: type[Run]
-    settings: type[Settings]
-    key: str
-    """What its panels and presets are named by."""
+    """What it does with some meshes; its name and settings are the tool's."""
+    label: str = ""
+    """What the operator is called, if not as its name says."""
+    key: str = ""
+    """What its panels and presets are named by, if not by the name."""
     scene: str = ""
     """The property of the scene with the panel's settings, if not `ridgeform_<key>`."""
     title: str = ""
@@ -47,6 +45,21 @@ class Tool:
     the default where it is not said."""
     draw_more: Callable[[object, object], None] | None = None
     """Draws what else is below the button, from a layout and the settings."""
+
+    def __post_init__(self) -> None:
+        """Fill in what follows from the name."""
+        object.__setattr__(self, "label", self.label or self.name.replace("_", " ").title())
+        object.__setattr__(self, "key", self.key or self.name)
+
+    @property
+    def name(self) -> str:
+        """The operator's: `bpy.ops.ridgeform.<name>`, and with dashes the word on the command line."""
+        return self.run.name
+
+    @property
+    def settings(self) -> type[Settings]:
+        """What can be set."""
+        return self.run.takes
 
     @property
     def idname(self) -> str:

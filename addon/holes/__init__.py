@@ -2,20 +2,16 @@
 """Fill Holes: patches, and what lies on a mesh continued into them."""
 
 from ..framework.tool import Feature, Tool
-from .settings import PRESETS, HoleSettings
+from .settings import PRESETS
 from .tool import HoleFilling
 
 FEATURE = Feature(
     tools=(
         Tool(
-            name="fill_holes",
-            label="Fill Holes",
             description="Fill holes and bring back the ridges that end there. In Edit Mode, those with a "
             "selected border edge",
             icon="MESH_GRID",
             run=HoleFilling,
-            settings=HoleSettings,
-            key="fill_holes",
             page="manual_holes",
             finds="Repair",
             scene="ridgeform_holes",

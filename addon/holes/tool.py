@@ -24,7 +24,7 @@ from .append import append
 from .clipping import Pieces
 from .extension import Extension, Source, extend
 from .reading import picked_edges, read_source, reference_coordinates
-from .settings import hole_options, ridge_mask
+from .settings import HoleSettings, hole_options, ridge_mask
 from .surroundings import Patch
 
 REFUSED = "refused"
@@ -62,6 +62,8 @@ class HoleFilling(Run):
     """One run of filling holes."""
 
     name = "fill_holes"
+    takes = HoleSettings
+    sums = ("holes", "hole", " filled")
     call = "mesh"
 
     def __init__(
@@ -155,11 +157,6 @@ class HoleFilling(Run):
             f"{counted(entry['ridge_edges'], 'ridge edge')}, {entry['seconds']:.1f} s",
             *entry["warnings"],
         ]
-
-    @classmethod
-    def phrases(cls, done: Sequence[dict[str, object]]) -> list[str]:
-        """How many holes were filled."""
-        return [f"{counted(sum(entry['holes'] for entry in done), 'hole')} filled"] if done else []
 
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """Holes, faces, ridges, time."""

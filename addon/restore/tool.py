@@ -18,7 +18,7 @@ from ..framework.run import Part, Run, counted, meshes_phrase
 from ..framework.surface import group_weights, surface_of
 from ..segments.layers import write
 from . import empties
-from .settings import restore_options
+from .settings import RestoreSettings, restore_options
 
 SURFACE = "ridgeform_surface"
 """The face attribute with the number of the surface, -1 for none."""
@@ -61,6 +61,7 @@ class Restoring(Run):
     """One run of restoring."""
 
     name = "restore"
+    takes = RestoreSettings
     call = "restore"
 
     def prepare(self, obj: bpy.types.Object) -> RestorePart:

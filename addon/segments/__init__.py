@@ -7,20 +7,16 @@ all others keep what they have.
 
 from ..framework.tool import Feature, Tool
 from .operator import RIDGEFORM_OT_restore_materials, draw_restore
-from .settings import PRESETS, SegmentSettings
+from .settings import PRESETS
 from .tool import Segmenting, forget
 
 FEATURE = Feature(
     tools=(
         Tool(
-            name="segment",
-            label="Segment",
             description="Divide meshes, or the selected faces, into the parts that a person would name, "
             "along their ridges",
             icon="MATERIAL",
             run=Segmenting,
-            settings=SegmentSettings,
-            key="segment",
             page="manual_segment",
             quick=("mode", "count"),
             presets=PRESETS,

@@ -26,7 +26,7 @@ from ..framework.surface import Surface, painted_ridges, surface_of
 from . import earlier, groups, layers, slots
 from .existing import border_weights
 from .objects import separate
-from .settings import by_count, of_parts, parts_options, segment_options
+from .settings import SegmentSettings, by_count, of_parts, parts_options, segment_options
 
 SUFFIX = "_sharpened"
 KEY_NAME = "Sharpened"
@@ -101,6 +101,8 @@ class Segmenting(Run):
     """One run of segmenting."""
 
     name = "segment"
+    takes = SegmentSettings
+    sums = ("segments", "segment", "")
     needs = Needs(coordinates=False)
 
     @property
@@ -225,11 +227,6 @@ class Segmenting(Run):
             f"{fewest} to {most} are possible, {entry['seconds']:.1f} s",
             *entry["warnings"],
         ]
-
-    @classmethod
-    def phrases(cls, done: Sequence[dict[str, object]]) -> list[str]:
-        """How many segments there are."""
-        return [counted(sum(entry["segments"] for entry in done), "segment")] if done else []
 
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """How many segments of which mesh, how many there might be, time."""

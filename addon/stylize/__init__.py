@@ -3,19 +3,16 @@
 
 from ..framework.tool import Feature, Tool
 from .operator import RIDGEFORM_OT_blend_result, draw_blend
-from .settings import PRESETS, StylizeSettings
+from .settings import PRESETS
 from .tool import Stylization
 
 FEATURE = Feature(
     tools=(
         Tool(
-            name="stylize",
             label="Stylize Flat",
             description="Make the selected meshes piecewise flat, with crisp ridges",
             icon="MOD_DECIM",
             run=Stylization,
-            settings=StylizeSettings,
-            key="stylize",
             title="Stylize",
             prominent=True,
             finds="Planar, Low Poly",

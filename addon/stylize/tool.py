@@ -20,7 +20,7 @@ from ..framework.surface import group_weights, painted_ridges, welded
 from . import finish, recorded, reduction
 from .finish import Source
 from .ridges import Edges
-from .settings import stylize_options
+from .settings import StylizeSettings, stylize_options
 
 
 @dataclass(kw_only=True)
@@ -35,6 +35,7 @@ class Stylization(Run):
     """One run of stylize: the flow on each mesh, its steps shown as they are done, then the finish."""
 
     name = "stylize"
+    takes = StylizeSettings
     call = "stylize"
     in_object_mode = False
 

@@ -10,10 +10,7 @@
 
 mod allocation_calls;
 
-use std::alloc::System;
-use std::process::Command;
-
-use allocation_calls::{multiply, shape_for, Given, CALLS};
+use allocation_calls::{in_a_child, multiply, shape_for, Given, CALLS};
 use cap::Cap;
 use rayon::prelude::*;
 use ridgeform_core::error::SolveError;
@@ -21,6 +18,7 @@ use ridgeform_core::memory::{Demand, Tool};
 use ridgeform_core::mesh::Mesh;
 use ridgeform_core::tools::filling_demand;
 use ridgeform_core::Error;
+use std::alloc::System;
 
 #[global_allocator]
 static ALLOCATOR: Cap<System> = Cap::new(System, usize::MAX);
@@ -80,12 +78,8 @@ fn run(name: &str, part: f64, scale: f64) {
 
 /// Runs a case in a child. Returns what was wrong with how it ended.
 fn fault_of(name: &str, part: f64, scale: f64) -> Option<String> {
-    let child = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "no_failed_allocation_ends_the_process", "--nocapture"])
-        .env(CASE, format!("{name}@{part}@{scale:e}"))
-        .env("RAYON_NUM_THREADS", "2")
-        .output()
-        .unwrap();
+    let case = format!("{name}@{part}@{scale:e}");
+    let child = in_a_child("no_failed_allocation_ends_the_process", CASE, &case, 2);
     let text = String::from_utf8_lossy(&child.stdout);
     let expected = match part {
         _ if part < ASKED => "outcome: refused",

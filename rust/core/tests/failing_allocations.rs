@@ -9,9 +9,7 @@
 
 mod allocation_calls;
 
-use std::process::Command;
-
-use allocation_calls::{multiply, shape_for, Given, CALLS};
+use allocation_calls::{in_a_child, multiply, shape_for, Given, CALLS};
 use rayon::prelude::*;
 use ridgeform_core::error::SolveError;
 use ridgeform_core::Error;
@@ -73,12 +71,7 @@ fn culprit(backtrace: &str) -> String {
 }
 
 fn end_of(name: &str, which: usize) -> End {
-    let child = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "a_failed_allocation_is_refused_or_known", "--nocapture"])
-        .env(CASE, format!("{name}@{which}"))
-        .env("RAYON_NUM_THREADS", "1")
-        .output()
-        .unwrap();
+    let child = in_a_child("a_failed_allocation_is_refused_or_known", CASE, &format!("{name}@{which}"), 1);
     let (text, errors) = (String::from_utf8_lossy(&child.stdout), String::from_utf8_lossy(&child.stderr));
     let outcome =
         text.lines().find_map(|line| line.split("outcome: ").nth(1)).and_then(|rest| rest.split_once(' '));

@@ -45,13 +45,13 @@ const LEAST_COSINE: f64 = 0.05;
 
 /// The mean plane of a rim.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Plane {
+pub(super) struct RimPlane {
     pub center: Point,
     /// To the side that a patch shows.
     pub normal: Point,
 }
 
-impl Plane {
+impl RimPlane {
     /// Through the center of gravity of the polygon's edges, along its area vector.
     fn of(points: &[Point]) -> Self {
         let n = points.len();
@@ -122,7 +122,7 @@ pub(super) fn lid(
             break;
         }
         let Some(plane) =
-            plane_of(polygon, &rim).or_else(|| any.then(|| Plane::of(&points_of(polygon, &rim))))
+            plane_of(polygon, &rim).or_else(|| any.then(|| RimPlane::of(&points_of(polygon, &rim))))
         else {
             continue;
         };
@@ -152,13 +152,13 @@ fn notches_area(polygon: &Polygon, rim: &Trimmed) -> f64 {
 }
 
 /// The mean plane of a rim that is planar and met steeply.
-fn plane_of(polygon: &Polygon, rim: &Trimmed) -> Option<Plane> {
+fn plane_of(polygon: &Polygon, rim: &Trimmed) -> Option<RimPlane> {
     let points = points_of(polygon, rim);
     let n = points.len();
     if n < 3 {
         return None;
     }
-    let plane = Plane::of(&points);
+    let plane = RimPlane::of(&points);
     let lengths: Vec<f64> = (0..n).map(|i| distance(points[i], points[(i + 1) % n])).collect();
     let total: f64 = lengths.iter().sum();
     let squares: f64 =
@@ -227,7 +227,7 @@ fn trimmed(polygon: &Polygon, depth: f64, is_taken: impl Fn(usize, usize) -> boo
 fn closed(
     polygon: &Polygon,
     rim: &Trimmed,
-    plane: Plane,
+    plane: RimPlane,
     rims: &Rims,
     options: &FillOptions,
     progress: &Progress,

@@ -8,7 +8,7 @@ use super::rims::Rims;
 use crate::mesh::vector::{distance, norm, Point};
 use crate::remesh::curves::Keep;
 use crate::remesh::isotropic::run;
-use crate::remesh::remesher::{Remesher, Surface};
+use crate::remesh::remesher::{Reference, Remesher};
 use crate::remesh::sizing::{growth, Sizing};
 use crate::remesh::{budget, guard, EditableMesh};
 use crate::{Progress, Result};
@@ -40,7 +40,7 @@ pub(super) fn refined(
     for (i, &normal) in polygon.outside.iter().enumerate() {
         mesh.set_beyond(i as u32, ((i + 1) % n) as u32, normal);
     }
-    let surface = Surface::of(&mesh);
+    let surface = Reference::of(&mesh);
     let rim_edges: Vec<f64> =
         (0..n).map(|i| distance(polygon.points[i], polygon.points[(i + 1) % n])).collect();
     let rim_length: f64 = rim_edges.iter().sum();

@@ -4,13 +4,12 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
+use super::constants::{BORDER, JUDGED_BY};
+use super::labels::{Labelling, Piece, NONE};
 use super::pieces::best;
-use super::{Domain, Labelling, Piece, BORDER, NONE};
+use super::Domain;
 use crate::progress::Progress;
 use crate::Result;
-
-/// Points that a merge is judged by before it is fitted to all.
-const JUDGED_BY: usize = 300;
 
 /// Merges as long as the energy falls.
 ///

@@ -2,28 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::{Domain, Labelling, FREE_MISFIT, NONE};
+use super::constants::{ENOUGH, FREE_MISFIT};
+use super::labels::{Labelling, Piece, NONE};
+use super::Domain;
 use crate::progress::Progress;
-use crate::surfaces::{fit, Fit, Kind, Samples, Surface};
+use crate::surfaces::{fit, FittedSurface, Kind, Samples, Surface};
 use crate::Result;
-
-/// Points that a kind is chosen by; what is chosen is then fitted to all.
-const ENOUGH: usize = 1000;
-
-/// What faces of one label have in common.
-#[derive(Debug, Clone, Default)]
-pub struct Piece {
-    /// Its faces, ascending.
-    pub faces: Vec<u32>,
-    /// Its surface; `None` where it is free.
-    pub surface: Option<Surface>,
-    /// 1 where the faces' normals point to where the surface's distance grows, else −1.
-    pub side: f64,
-    /// Root mean square distance of its vertices from the surface.
-    pub rms: f64,
-    /// What it costs with its parameters.
-    pub(super) energy: f64,
-}
 
 impl Piece {
     /// The piece of these faces on the surface that costs least, or free.
@@ -59,7 +43,7 @@ impl Piece {
 pub(super) fn best(domain: &Domain<'_>, samples: &Samples, limit: f64) -> Option<(Surface, f64)> {
     let thin = samples.thinned(ENOUGH);
     let price = |kind: Kind| domain.kappa * kind.n_parameters() as f64;
-    let mut found: Option<(Kind, Fit)> = None;
+    let mut found: Option<(Kind, FittedSurface)> = None;
     let mut least = limit;
     for kind in Kind::ALL {
         // More parameters than that cannot pay, however well they fit.

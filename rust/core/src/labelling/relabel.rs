@@ -1,11 +1,10 @@
 //! Faces at borders go to the piece with which the energy is least.
 
-use super::{Domain, Labelling, BORDER, NONE};
+use super::constants::{BORDER, GAIN, MOST_SWEEPS};
+use super::labels::{Labelling, NONE};
+use super::Domain;
 use crate::progress::Progress;
 use crate::Result;
-
-/// Sweeps over the faces at most.
-const MOST_SWEEPS: usize = 20;
 
 /// Lets faces change to a neighbor's piece, one at a time, as long as the energy falls. The surfaces stay.
 ///
@@ -43,7 +42,7 @@ fn improve(domain: &Domain<'_>, state: &mut Labelling, f: usize) -> bool {
             neighbors.iter().filter(|(other, _)| *other != label).map(|(_, length)| length).sum();
         domain.face_cost(f, state.pieces.get(label as usize)) + BORDER * border
     };
-    let (mut best, mut least) = (own, cost(own) - 1e-9);
+    let (mut best, mut least) = (own, cost(own) - GAIN);
     for &(label, _) in &neighbors {
         let candidate = cost(label);
         if candidate < least {

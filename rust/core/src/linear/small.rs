@@ -111,12 +111,35 @@ impl Quadric {
     /// pseudo-inverse keeps, eigenvalues above `drop` times the largest.
     #[must_use]
     pub fn determined(&self, drop: f64) -> Vec<([f64; 3], f64)> {
-        let pairs = eigen3(self.matrix);
-        let largest = pairs.iter().fold(0.0, |most: f64, pair| most.max(pair.0));
-        let along = |vector: [f64; 3]| (0..3).map(|i| vector[i] * self.right[i]).sum::<f64>();
-        let kept = pairs.into_iter().filter(|(value, _)| *value > drop * largest);
-        kept.map(|(value, vector)| (vector, along(vector) / value)).collect()
+        directions(self.matrix, self.right, drop)
     }
+
+    /// The point nearest to the origin of those that lie best, the directions left out that the planes leave
+    /// open.
+    #[must_use]
+    pub fn nearest(&self, drop: f64) -> [f64; 3] {
+        determined(self.matrix, self.right, drop)
+    }
+}
+
+/// The shortest solution of `matrix · x = right` for a symmetric positive semidefinite matrix, by the
+/// pseudo-inverse: of eigenvalues above `drop` times the largest.
+#[must_use]
+pub fn determined(matrix: [[f64; 3]; 3], right: [f64; 3], drop: f64) -> [f64; 3] {
+    let mut x = [0.0; 3];
+    for (vector, length) in directions(matrix, right, drop) {
+        x.iter_mut().zip(vector).for_each(|(x, v)| *x += length * v);
+    }
+    x
+}
+
+/// The directions that the pseudo-inverse keeps, with how far the solution is along each.
+fn directions(matrix: [[f64; 3]; 3], right: [f64; 3], drop: f64) -> Vec<([f64; 3], f64)> {
+    let pairs = eigen3(matrix);
+    let largest = pairs.iter().fold(0.0, |most: f64, pair| most.max(pair.0));
+    let along = |vector: [f64; 3]| (0..3).map(|i| vector[i] * right[i]).sum::<f64>();
+    let kept = pairs.into_iter().filter(|(value, _)| *value > drop * largest);
+    kept.map(|(value, vector)| (vector, along(vector) / value)).collect()
 }
 
 #[cfg(test)]

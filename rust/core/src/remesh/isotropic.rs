@@ -10,7 +10,7 @@ use crate::remesh::collapse::collapse_short_edges;
 use crate::remesh::curves::Keep;
 use crate::remesh::flips::equalize_valences;
 use crate::remesh::relax::relax_and_project;
-use crate::remesh::remesher::{Remesher, Surface};
+use crate::remesh::remesher::{Reference, Remesher};
 use crate::remesh::repair::remove_slivers;
 use crate::remesh::sizing::{Sizing, EQUILATERAL};
 use crate::remesh::split::split_long_edges;
@@ -115,7 +115,7 @@ fn in_its_unit(mesh: &Mesh, options: &RemeshOptions, progress: &Progress) -> Res
         }
     };
     let keep = Keep { fixed: &fixed, fixed_faces: true, feature_cosine, features: None };
-    let surface = Surface::of(&editable);
+    let surface = Reference::of(&editable);
     let mut remesher = Remesher::new(editable, &surface, &keep, |mesh, curves| {
         Sizing::uniform(edge_length, 0.0, mesh, curves)
     });

@@ -10,12 +10,12 @@ use crate::remesh::{guard, EditableMesh};
 
 /// A surface to stay on: triangles, their normals, and a tree to find the closest.
 #[derive(Debug)]
-pub(crate) struct Surface {
+pub(crate) struct Reference {
     tree: ClosestPoint,
     normals: Vec<Point>,
 }
 
-impl Surface {
+impl Reference {
     /// The surface that `mesh` is now.
     pub(crate) fn of(mesh: &EditableMesh) -> Self {
         let triangles: Vec<[Point; 3]> = mesh.faces().map(|(_, face)| mesh.corners(face)).collect();
@@ -39,7 +39,7 @@ impl Surface {
 #[derive(Debug)]
 pub(crate) struct Remesher<'a> {
     pub(crate) mesh: EditableMesh,
-    pub(crate) surface: &'a Surface,
+    pub(crate) surface: &'a Reference,
     pub(crate) curves: Curves,
     pub(crate) roles: Vec<Role>,
     /// A triangle of the surface close to each vertex.
@@ -51,7 +51,7 @@ impl<'a> Remesher<'a> {
     /// Starts on `mesh`.
     pub(crate) fn new(
         mesh: EditableMesh,
-        surface: &'a Surface,
+        surface: &'a Reference,
         keep: &Keep,
         make_sizing: impl Fn(&EditableMesh, &Curves) -> Sizing,
     ) -> Self {

@@ -20,14 +20,14 @@ const MOST_PARTS: usize = 4;
 /// How the blocks are cut into parts that threads take, each with sums of its own: by the number of blocks
 /// alone, so that results do not depend on the number of threads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Parts {
+pub(super) struct BlockRanges {
     /// Blocks in each part but the last.
     pub size: usize,
     /// Number of parts, at least one.
     pub count: usize,
 }
 
-impl Parts {
+impl BlockRanges {
     /// The parts of `m` blocks.
     #[must_use]
     pub(super) fn of(m: usize) -> Self {
@@ -188,7 +188,7 @@ impl<'a, const K: usize> Reduced<'a, K> {
         &self,
         y: impl Fn(usize) -> Block<K> + Sync,
     ) -> Result<Vec<[f64; K]>, SolveError> {
-        let parts = Parts::of(self.n_blocks());
+        let parts = BlockRanges::of(self.n_blocks());
         let mut sums: Vec<Vec<[f64; K]>> = (0..parts.count)
             .into_par_iter()
             .map(|part| {

@@ -1,5 +1,5 @@
-//! The fast solver for whole problems: fixed rows, joint or separate columns,
-//! and what one run leaves to the next.
+//! A session of solving: whole problems, with fixed rows and joint or separate columns, by the fast solver
+//! or Clarabel, and what one run leaves to the next.
 
 use crate::block_rows::BLOCK;
 use crate::linear::Columns;

@@ -1,16 +1,10 @@
 //! Where surfaces meet: the point on a curve of two or in a corner of three and more that is nearest to a
 //! start.
 
+use super::constants::{MEETING_ROUNDING, MEETING_STEPS, TANGENT};
 use super::Surface;
 use crate::linear::small::Quadric;
 use crate::mesh::vector::{add, distance, dot, norm, scale, sub, Point};
-
-/// Surfaces whose normals differ by less than about four degrees count as tangent: they do not say where
-/// along the normals' bisecting plane a point lies. That is the ratio of the eigenvalues, `tan²(θ / 2)`.
-const TANGENT: f64 = 1e-3;
-
-/// Newton's steps at most; five do for a part's surfaces.
-const MOST_STEPS: usize = 20;
 
 /// A point on all `surfaces` near `start`, by Newton's method: each step is the shortest to the tangent
 /// planes' common points (pseudo-inverse; what nearly tangent surfaces leave open stays as it is). Where no
@@ -22,22 +16,19 @@ pub fn meeting(surfaces: &[&Surface], start: Point, reach: f64) -> Option<Point>
         return Some(surface.project(start)).filter(|&p| distance(p, start) <= reach);
     }
     let mut point = start;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MEETING_STEPS {
         let mut quadric = Quadric::default();
         for surface in surfaces {
             let (distance, normal) = surface.distance(point);
             quadric.add(1.0, normal, -distance);
         }
-        let step = quadric
-            .determined(TANGENT)
-            .into_iter()
-            .fold([0.0; 3], |sum, (direction, length)| add(sum, scale(direction, length)));
+        let step = quadric.nearest(TANGENT);
         point = add(point, step);
         let moved = distance(point, start);
         if moved.is_nan() || moved > reach {
             return None;
         }
-        if norm(step) <= 1e-13 * (norm(point) + reach) {
+        if norm(step) <= MEETING_ROUNDING * (norm(point) + reach) {
             break;
         }
     }
@@ -57,9 +48,7 @@ fn nearest_along(surfaces: &[&Surface], start: Point, point: Point) -> Point {
         let (distance, normal) = surface.distance(moved);
         quadric.add(1.0, normal, -distance);
     }
-    let step =
-        quadric.determined(TANGENT).into_iter().fold([0.0; 3], |sum, (d, length)| add(sum, scale(d, length)));
-    let moved = add(moved, step);
+    let moved = add(moved, quadric.nearest(TANGENT));
     let off = |p: Point| surfaces.iter().map(|s| s.distance(p).0.abs()).fold(0.0, f64::max);
     let is_better = off(moved) <= off(point).max(1e-12 * norm(sub(start, point)));
     if is_better {

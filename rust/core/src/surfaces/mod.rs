@@ -2,13 +2,17 @@
 //! ([`Surface`]), their fits to points with noise ([`fit`]), and the curves and corners where several of them
 //! meet ([`meeting`]).
 
+mod constants;
 mod fit;
 mod meeting;
 mod motion;
+mod samples;
 mod starts;
 
-pub use fit::{fit, misfit, Fit, Samples, MOST_MISFIT};
+pub use constants::MOST_MISFIT;
+pub use fit::{fit, FittedSurface};
 pub use meeting::meeting;
+pub use samples::{misfit, Samples};
 
 use crate::mesh::vector::{add, cross, dot, norm, scale, sub, unit, Point};
 

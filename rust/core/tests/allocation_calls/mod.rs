@@ -1,6 +1,8 @@
 //! Every tool as the tests of failing allocations call it.
 #![allow(dead_code, unreachable_pub)]
 
+use std::process::{Command, Output};
+
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 use ridgeform_core::linear::Columns;
@@ -139,4 +141,14 @@ pub fn multiply() {
     let ones = Mat::<f64>::full(64, 64, 1.0);
     let mut product = Mat::<f64>::zeros(64, 64);
     matmul(&mut product, Accum::Replace, &ones, &ones, 1.0, Par::Seq);
+}
+
+/// What becomes of one test of this program in a process of its own, where `variable` names the case.
+pub fn in_a_child(test: &str, variable: &str, case: &str, threads: usize) -> Output {
+    Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", test, "--nocapture"])
+        .env(variable, case)
+        .env("RAYON_NUM_THREADS", threads.to_string())
+        .output()
+        .unwrap()
 }

@@ -1,6 +1,6 @@
 //! The end of a run by primal-dual steps, where alternating directions would take long.
 
-use super::{Run, FACTORIZATION, RESIDUAL_GOAL};
+use super::run::{Run, FACTORIZATION, RESIDUAL_GOAL};
 use crate::error::SolveError;
 use crate::linear::conjugate_gradients::{add, conjugate_gradients};
 use crate::memory;
@@ -9,11 +9,8 @@ use crate::solve::certificate::spread;
 use crate::solve::cones::Block;
 use crate::solve::fast::sweep::Sweep;
 use crate::solve::primal_dual::{clip, dual_point, follow, Model, Stiffness};
-use crate::solve::problem::{Problem, Settings};
+use crate::solve::problem::Settings;
 use crate::{Error, Result};
-
-/// Alternating directions go this far at least: the steps need few factorizations from where the ridges show.
-pub(super) const FIRST_STEPS: usize = 20;
 
 /// What the objective fell since the last look, this many times over,
 /// is an estimate of what it has still to fall.
@@ -79,10 +76,6 @@ impl<const K: usize> Run<'_, '_, K> {
         let fell = (last_primal - self.best.primal) / self.scale();
         let least = least_aim(settings);
         (STILL_TO_FALL * fell).clamp(least, self.gap().max(least))
-    }
-
-    fn scale(&self) -> f64 {
-        Problem::gap_scale(self.best.primal, self.floor)
     }
 
     /// Primal-dual steps as long as they gain; then back to alternating directions, with new penalties.

@@ -6,17 +6,18 @@
 
 mod finish;
 pub mod penalty;
+mod run;
 mod sweep;
 pub mod system;
 
 pub use sweep::Sweep;
 
-use finish::FIRST_STEPS;
+use run::{Best, Run, FACTORIZATION, FIRST_STEPS, RESIDUAL_GOAL};
 
 use crate::block_rows::BLOCK;
-use crate::progress::{Progress, Report};
-use crate::solve::certificate::{bound_along_ray, spread, DualPoint};
-use crate::solve::cones::{norm, scaled, Block};
+use crate::progress::Progress;
+use crate::solve::certificate::spread;
+use crate::solve::cones::{scaled, Block};
 use crate::solve::fast::penalty::{reweighted, uniform};
 use crate::solve::fast::sweep::Sums;
 use crate::solve::fast::system::System;
@@ -37,9 +38,6 @@ const MAX_ITERATIONS: usize = 3000;
 const STILL: f64 = 6e-5;
 const SPLIT_RESIDUAL: f64 = 2e-2;
 
-/// The true error that a run without a tolerance aims at.
-const RESIDUAL_GOAL: f64 = 1e-4;
-
 /// A gap this small also means a true error of about 1e-4: the bound is the slower of the two by a factor of
 /// ten (measured on the flow), so there is no need to wait for the residuals.
 const GAP_ENOUGH: f64 = 1e-3;
@@ -54,9 +52,6 @@ const REWEIGHT_COLD: usize = 10;
 
 /// A warm start brings good penalties along.
 const REWEIGHT_WARM: usize = 30;
-
-/// Iterations that cost as much as one factorization (12 to 20 measured, from 9k to 200k vertices).
-const FACTORIZATION: f64 = 15.0;
 
 /// Minimizes a reduced problem.
 ///
@@ -87,30 +82,10 @@ pub fn minimize<const K: usize>(
     Run::new(reduced, system, warm, h, floor, progress)?.iterate(settings, progress)
 }
 
-struct Run<'r, 's, const K: usize> {
-    reduced: Reduced<'r, K>,
-    system: &'s mut System,
-    r: Vec<f64>,
-    sweep: Sweep<K>,
-    u: Vec<[f64; K]>,
-    previous: Vec<[f64; K]>,
-    y: Vec<[f64; K]>,
-    floor: f64,
-    best: Best<K>,
-    next_reweighting: usize,
-    next_steps: usize,
-}
-
 /// What the last look at the certificate found.
 struct Checked {
     primal: f64,
     gap: f64,
-}
-
-struct Best<const K: usize> {
-    u: Vec<[f64; K]>,
-    primal: f64,
-    dual: f64,
 }
 
 impl<'r, 's, const K: usize> Run<'r, 's, K> {
@@ -200,35 +175,6 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         self.outcome(iterations, status)
     }
 
-    /// New penalties from the lengths that the blocks have now; split variables and multipliers stay.
-    fn reweight(&mut self) -> Result<()> {
-        let r = reweighted(&self.lengths()?, &self.reduced.weights)?;
-        self.system.factorize(&mut self.reduced, &r)?;
-        self.sweep = self.under(&r)?;
-        self.r = r;
-        Ok(())
-    }
-
-    /// The same split variables and multipliers under other penalties.
-    fn under(&self, r: &[f64]) -> Result<Sweep<K>> {
-        Ok(Sweep::new(&self.reduced, r, |b| self.sweep.split(&self.reduced.weights, &self.r, b))?)
-    }
-
-    /// Takes the present point, of this objective, if it is the best so far.
-    fn offer(&mut self, primal: f64) {
-        if primal < self.best.primal && self.u.iter().flatten().all(|x| x.is_finite()) {
-            self.best.primal = primal;
-            self.best.u.clone_from(&self.u);
-        }
-    }
-
-    /// Adds `Aᵀy`.
-    fn add_constraints(&self, g: &mut [[f64; K]]) {
-        if let Some(constraints) = &self.reduced.constraints {
-            constraints.add_transposed(&self.y, g);
-        }
-    }
-
     /// Lower bounds from `p + R (H u + c − z)` and, where there is fidelity everywhere, from the multipliers
     /// themselves, which are never too long.
     fn bound(&mut self, sums: &Sums, settings: &Settings) -> Result<()> {
@@ -263,19 +209,6 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         }
     }
 
-    fn bound_from(&mut self, q: &DualPoint, g: &[[f64; K]]) {
-        self.best.dual = self.best.dual.max(bound_along_ray(&self.reduced, q, &self.y, g, &self.u));
-    }
-
-    /// The relative gap of the best point.
-    fn gap(&self) -> f64 {
-        (self.best.primal - self.best.dual) / Problem::gap_scale(self.best.primal, self.floor)
-    }
-
-    fn is_certified(&self, settings: &Settings) -> bool {
-        settings.tolerance.is_some_and(|tolerance| self.gap() <= tolerance)
-    }
-
     fn is_done(&self, settings: &Settings, last_check: f64, sums: &Sums) -> bool {
         let scale = Problem::gap_scale(self.best.primal, self.floor);
         match settings.tolerance {
@@ -298,46 +231,5 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             }
             _ => f64::INFINITY,
         }
-    }
-
-    /// How far it is: digits of the gap won, out of the digits asked for.
-    fn report(&self, settings: &Settings, iterations: usize) -> Report {
-        let gap = self.gap();
-        // At least one digit, so that the logarithms are sound whatever was asked for.
-        let wanted = settings.tolerance.unwrap_or(RESIDUAL_GOAL).min(0.1);
-        Report {
-            fraction: if gap > wanted { (gap.ln() / wanted.ln()).clamp(0.0, 1.0) } else { 1.0 },
-            stage: "solving".into(),
-            iteration: iterations,
-            energy: Some(self.best.primal),
-            gap: Some(gap),
-        }
-    }
-
-    /// The typical length of `(H u + c)_b` and `z_b`.
-    fn lengths(&self) -> Result<Vec<f64>> {
-        let h = self.reduced.apply(&self.u)?;
-        let z = |b| self.sweep.split(&self.reduced.weights, &self.r, b).0;
-        Ok(memory::gathered(h.iter().enumerate().map(|(b, h)| 0.5 * (norm(h) + norm(&z(b)))))?)
-    }
-
-    fn outcome(self, iterations: usize, status: Status) -> Result<Outcome<K>> {
-        let length = self.lengths()?;
-        let weights = &self.reduced.weights;
-        let (mut z, mut p) = (memory::room(weights.len())?, memory::room(weights.len())?);
-        for (b, &w) in weights.iter().enumerate() {
-            let (own, multipliers) = self.sweep.split(weights, &self.r, b);
-            z.push(own);
-            p.push(if w > 0.0 { scaled(1.0 / w, &multipliers) } else { multipliers });
-        }
-        Ok(Outcome {
-            u: self.best.u,
-            primal: self.best.primal,
-            dual: self.best.dual,
-            floor: self.floor,
-            iterations,
-            status,
-            warm: Some(Warm { z, p, length }),
-        })
     }
 }

@@ -13,7 +13,7 @@ use crate::error::SolveError;
 use crate::memory;
 use crate::solve::certificate::DualPoint;
 use crate::solve::cones::{combine, norm, shrink, Block};
-use crate::solve::reduced::{add_outer, add_outer_transposed, gather, Parts, Reduced};
+use crate::solve::reduced::{add_outer, add_outer_transposed, gather, BlockRanges, Reduced};
 
 /// Over-relaxation: 1.5 to 1.8 is usual for alternating directions; 1.7 was the best measured.
 const RELAXATION: f64 = 1.7;
@@ -73,7 +73,8 @@ impl<const K: usize> Sweep<K> {
         state: impl Fn(usize) -> Block<K>,
     ) -> Result<Self, SolveError> {
         let n_multipliers = if reduced.has_fidelity_everywhere { reduced.n() } else { 0 };
-        let parts = |n| (0..Parts::of(r.len()).count).map(|_| memory::room(n)).collect::<Result<_, _>>();
+        let parts =
+            |n| (0..BlockRanges::of(r.len()).count).map(|_| memory::room(n)).collect::<Result<_, _>>();
         let mut sweep = Self {
             state: memory::gathered((0..r.len()).map(state))?,
             right: parts(reduced.n())?,
@@ -133,7 +134,7 @@ impl<const K: usize> Sweep<K> {
     }
 
     fn pass<const CHECK: bool>(&mut self, reduced: &Reduced<'_, K>, r: &[f64], u: &[[f64; K]]) -> Sums {
-        let parts = Parts::of(r.len());
+        let parts = BlockRanges::of(r.len());
         let n = reduced.n();
         let n_multipliers = if reduced.has_fidelity_everywhere { n } else { 0 };
         let sums: Vec<Sums> = self

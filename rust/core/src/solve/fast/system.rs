@@ -65,9 +65,7 @@ impl System {
         reduced: &mut Reduced<'_, K>,
         r: &[f64],
     ) -> Result<(), SolveError> {
-        let twice: Vec<f64> = memory::gathered(reduced.fidelity.iter().map(|a| 2.0 * a))?;
-        self.normal.assemble(&reduced.free.operator, r, &twice, &mut self.values);
-        self.factorize_values(reduced, &twice)
+        self.factorize_by(reduced, |normal, h, twice, out| normal.assemble(h, r, twice, out))
     }
 
     /// Factors the matrix for a stiffness per block.
@@ -79,16 +77,17 @@ impl System {
         reduced: &mut Reduced<'_, K>,
         stiffness: &[Stiffness],
     ) -> Result<(), SolveError> {
-        let twice: Vec<f64> = memory::gathered(reduced.fidelity.iter().map(|a| 2.0 * a))?;
-        self.normal.assemble_stiff(&reduced.free.operator, stiffness, &twice, &mut self.values);
-        self.factorize_values(reduced, &twice)
+        self.factorize_by(reduced, |normal, h, twice, out| normal.assemble_stiff(h, stiffness, twice, out))
     }
 
-    fn factorize_values<const K: usize>(
+    /// Factors the matrix that `assemble` sums up, given the operator and twice the fidelities.
+    fn factorize_by<const K: usize>(
         &mut self,
         reduced: &mut Reduced<'_, K>,
-        twice: &[f64],
+        assemble: impl FnOnce(&NormalMatrix, &BlockRows, &[f64], &mut Vec<f64>),
     ) -> Result<(), SolveError> {
+        let twice: Vec<f64> = memory::gathered(reduced.fidelity.iter().map(|a| 2.0 * a))?;
+        assemble(&self.normal, &reduced.free.operator, &twice, &mut self.values);
         let starts = &self.normal.pattern().starts;
         let diagonal: Vec<f64> = memory::gathered(starts[..twice.len()].iter().map(|&s| self.values[s]))?;
         let mean = diagonal.iter().sum::<f64>() / diagonal.len().max(1) as f64;

@@ -6,14 +6,14 @@ use super::sorting::{Paint, Sorted};
 use crate::mesh::partition::Partition;
 
 /// Vertices joined by edges over which colors hardly change.
-pub(super) struct Parts {
+pub(super) struct PaintedParts {
     /// A vertex of the part of each vertex, the same one for all of the part.
     pub root: Vec<usize>,
     /// Colors change by less than this over the edges that join.
     pub tolerance: f64,
 }
 
-impl Parts {
+impl PaintedParts {
     pub(super) fn new(paint: &Paint<'_>) -> Self {
         let connectivity = paint.mesh.connectivity();
         let jump = |h: usize| paint.distance(connectivity.tail(h) as usize, connectivity.head(h) as usize);
@@ -38,7 +38,7 @@ pub(super) fn add_patches(
     labels: &mut [i32],
 ) {
     let connectivity = paint.mesh.connectivity();
-    let Parts { root, tolerance } = Parts::new(paint);
+    let PaintedParts { root, tolerance } = PaintedParts::new(paint);
     let mut strange = vec![true; root.len()];
     root.iter().zip(&sorted.off).for_each(|(&r, off)| strange[r] &= *off > tolerance);
     let mut touching = vec![0; root.len()];

@@ -5,7 +5,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::constants::MIXING_STEPS;
-use super::patches::Parts;
+use super::patches::PaintedParts;
 use super::sorting::{neighbors, Paint};
 use crate::linear::Columns;
 use crate::ordered::Ordered;
@@ -50,7 +50,7 @@ pub(super) fn sharpened(paint: &Paint<'_>) -> Columns {
 /// Whether each vertex may be part of a blend.
 fn blends(paint: &Paint<'_>, around: &[Vec<u32>]) -> Vec<bool> {
     let colors = paint.colors;
-    let Parts { root, tolerance } = Parts::new(paint);
+    let PaintedParts { root, tolerance } = PaintedParts::new(paint);
     let flat = |v: usize| around[v].iter().all(|&u| paint.distance(v, u as usize) < tolerance);
     let flat: Vec<bool> = (0..root.len()).map(flat).collect();
     let mut wide = vec![false; root.len()];

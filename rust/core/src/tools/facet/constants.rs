@@ -74,3 +74,20 @@ pub(super) const COUNTS: usize = 4;
 
 /// The root mean square distance that facets keep where nothing is asked for.
 pub(super) const ERROR: f64 = 0.005;
+
+/// Faces with less than this part of their facet's area say nothing about its plane.
+pub(super) const LITTLE: f64 = 1e-3;
+
+/// Triangles cover a facet whose area they have to this part:
+/// what rounding leaves of a sum of areas, and far less than any triangle.
+pub(super) const COVERED: f64 = 1e-9;
+
+/// Asked after so many merges whether to stop: they take a few milliseconds.
+pub(super) const PATIENCE: usize = 1000;
+
+/// The number that is aimed at changes by no more than this from one time to the next, and this part of it:
+/// repairs that failed leave many triangles, which say little.
+pub(super) const CHANGE: [f64; 2] = [4.0, 0.2];
+
+/// Flattening goes on below [`FLAT`] to this part of it, which the last Newton step reaches anyway.
+pub(super) const FLATTEST: f64 = 1e-3;

@@ -2,14 +2,12 @@
 
 use rayon::prelude::*;
 
+use super::constants::LITTLE;
 use super::faults::Inspection;
 use super::moments::Moments;
 use super::shape::Shape;
 use crate::mesh::vector::{area_vector, centroid, dot, Point};
 use crate::remesh::closest::ClosestPoint;
-
-/// Faces with less than this part of their facet's area say nothing about its plane.
-const LITTLE: f64 = 1e-3;
 
 /// The faces of a mesh, shared out among facets.
 #[derive(Debug)]

@@ -3,16 +3,13 @@
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
 
-use super::constants::FLAT;
+use super::constants::{FLAT, PATIENCE};
 use super::moments::Moments;
 use super::regions::{Regions, Set};
 use crate::mesh::partition::Partition;
 use crate::ordered::Ordered;
 use crate::progress::{Progress, Report};
 use crate::Result;
-
-/// Asked after so many merges whether to stop.
-const PATIENCE: usize = 1000;
 
 /// A merge that might be made: its cost, the regions, and how often they had changed.
 type Offer = Reverse<(Ordered, Set, u32)>;

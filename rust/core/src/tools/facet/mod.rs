@@ -32,7 +32,7 @@ use crate::mesh::{Mesh, Working};
 use crate::progress::{Progress, Report};
 use crate::solve::Status;
 use crate::Result;
-use constants::COUNTS;
+use constants::{CHANGE, COUNTS};
 use count::Wanted;
 use faces::{Distances, Faces};
 use faults::Inspection;
@@ -231,8 +231,7 @@ impl<'a> Job<'a> {
             let (miss, next) = match wanted {
                 Wanted::Facets(wanted) => {
                     let off = wanted.clamp(fewest, most) as f64 - settled.shape.facets.len() as f64;
-                    // Repairs that failed leave many triangles, which say little.
-                    let most = 4.0 + 0.2 * count as f64;
+                    let most = CHANGE[0] + CHANGE[1] * count as f64;
                     let further = if off == 0.0 { 1.0 } else { off.clamp(-most, most).round() };
                     (off.abs() + settled.n_crossings() as f64, count as f64 + further)
                 }

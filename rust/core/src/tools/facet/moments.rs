@@ -26,7 +26,7 @@ impl Plane {
 
 /// The best plane of faces, and how well it fits.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Fit {
+pub(super) struct PlaneFit {
     pub plane: Plane,
     /// The integral of the squared distance.
     pub squared_distance: f64,
@@ -73,13 +73,13 @@ impl Moments {
     }
 
     /// The plane of least energy among that of least distance and the one along the mean normal.
-    pub(super) fn fit(&self) -> Fit {
+    pub(super) fn fit(&self) -> PlaneFit {
         let spread = self.spread();
         let fit = |normal: Point| {
             let squared_distance = quadratic(&spread, normal, normal).max(0.0);
             let turned = 2.0 * (self.area - dot(self.vector, normal)).max(0.0);
             let plane = Plane::through(self.center(), normal);
-            Fit { plane, squared_distance, energy: squared_distance + TURN * self.area * turned }
+            PlaneFit { plane, squared_distance, energy: squared_distance + TURN * self.area * turned }
         };
         let least =
             eigen3(spread).into_iter().fold((f64::INFINITY, [0.0; 3]), |a, b| if b.0 < a.0 { b } else { a });

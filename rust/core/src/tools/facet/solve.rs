@@ -6,7 +6,7 @@
 //! 18). The Hessian is one block for each plane and each corner, so a step is one sparse system over the
 //! pairs of facet and corner.
 
-use super::constants::{DAMPING, FARTHEST, FLAT, REGULAR, SLACK, SLOW, STEPS};
+use super::constants::{DAMPING, FARTHEST, FLAT, FLATTEST, REGULAR, SLACK, SLOW, STEPS};
 use super::moments::{quadratic, Plane};
 use super::shape::Shape;
 use super::triangulation::axes;
@@ -122,7 +122,7 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point]) -> Result
         for ((facet, plane), turn) in shape.facets.iter_mut().zip(&turning).zip(&turns) {
             facet.plane = plane.turned(facet.plane.normal, scale(*turn, taken));
         }
-        if only_flattens && shape.off_planes() < 1e-3 * FLAT {
+        if only_flattens && shape.off_planes() < FLATTEST * FLAT {
             break;
         }
     }

@@ -5,11 +5,9 @@ use std::collections::{HashMap, HashSet};
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
+use super::constants::COVERED;
 use super::shape::{sides, Facet, Shape};
 use crate::mesh::vector::{cross, dot, unit, Point};
-
-/// Triangles cover a facet whose area they have to this part.
-const COVERED: f64 = 1e-9;
 
 /// Two unit vectors that span the plane with this normal: seen from its tip,
 /// the second is to the left of the first.

@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::constants::{ASSIGN_SWEEPS, FIXED_WEIGHT, RIM_BORDER_COST};
-use super::parts::{Parts, NONE};
+use super::parts::{SmoothParts, NONE};
 use super::region::Region;
 
 use crate::mesh::vector::{area_vector, centroid, distance, dot, norm};
@@ -15,7 +15,7 @@ use crate::ordered::Ordered;
 /// Parts flood the patch from the rim, the face that fits best first (Cohen-Steiner et al. 2004), so that
 /// each stays joined to what it continues; then faces change sides where that makes the borders shorter than
 /// it makes the fit worse.
-pub(super) fn assign(region: &Region, parts: &Parts, edge: f64) -> Vec<u32> {
+pub(super) fn assign(region: &Region, parts: &SmoothParts, edge: f64) -> Vec<u32> {
     let mut labels = vec![NONE; region.mesh.n_faces() - region.n_outer];
     flood(region, parts, edge, &mut labels);
     shorten(region, parts, edge, &mut labels);
@@ -26,7 +26,7 @@ pub(super) fn assign(region: &Region, parts: &Parts, edge: f64) -> Vec<u32> {
 
 /// How badly face `f` fits to `part`: squared distance in edge lengths, and direction,
 /// where a right angle counts as one edge.
-fn misfit(region: &Region, parts: &Parts, edge: f64, f: u32, part: u32) -> f64 {
+fn misfit(region: &Region, parts: &SmoothParts, edge: f64, f: u32, part: u32) -> f64 {
     let Some(face) = region.mesh.face(f) else { return 0.0 };
     let model = &parts.models[part as usize];
     let corners = region.mesh.corners(face);
@@ -52,7 +52,7 @@ fn across(region: &Region, f: u32) -> impl Iterator<Item = ([u32; 2], u32)> + '_
 }
 
 /// The part of a face, in or around the patch.
-fn part_of(region: &Region, parts: &Parts, labels: &[u32], f: u32) -> u32 {
+fn part_of(region: &Region, parts: &SmoothParts, labels: &[u32], f: u32) -> u32 {
     match (f as usize).checked_sub(region.n_outer) {
         Some(place) => labels[place],
         None => parts.of_face[f as usize],
@@ -60,7 +60,7 @@ fn part_of(region: &Region, parts: &Parts, labels: &[u32], f: u32) -> u32 {
 }
 
 /// Gives every face without a part that of a neighbor, best fits first.
-fn flood(region: &Region, parts: &Parts, edge: f64, labels: &mut [u32]) {
+fn flood(region: &Region, parts: &SmoothParts, edge: f64, labels: &mut [u32]) {
     let first = region.n_outer as u32;
     let mut heap = BinaryHeap::new();
     let offer = |heap: &mut BinaryHeap<_>, f: u32, part: u32| {
@@ -88,7 +88,7 @@ fn flood(region: &Region, parts: &Parts, edge: f64, labels: &mut [u32]) {
     }
 }
 
-fn shorten(region: &Region, parts: &Parts, edge: f64, labels: &mut [u32]) {
+fn shorten(region: &Region, parts: &SmoothParts, edge: f64, labels: &mut [u32]) {
     let first = region.n_outer as u32;
     for _ in 0..ASSIGN_SWEEPS {
         let mut changed = false;
@@ -127,7 +127,7 @@ fn shorten(region: &Region, parts: &Parts, edge: f64, labels: &mut [u32]) {
 }
 
 /// Takes their part from faces that are not joined to the faces around the patch that have it.
-fn keep_joined(region: &Region, parts: &Parts, labels: &mut [u32]) {
+fn keep_joined(region: &Region, parts: &SmoothParts, labels: &mut [u32]) {
     let first = region.n_outer as u32;
     let mut joined = vec![false; labels.len()];
     let mut front: Vec<u32> = (first..region.mesh.n_faces() as u32)
@@ -152,7 +152,7 @@ fn keep_joined(region: &Region, parts: &Parts, labels: &mut [u32]) {
 }
 
 /// The edges at the patch between two parts, smaller vertex first, ascending.
-pub(super) fn borders(region: &Region, parts: &Parts, labels: &[u32]) -> Vec<[u32; 2]> {
+pub(super) fn borders(region: &Region, parts: &SmoothParts, labels: &[u32]) -> Vec<[u32; 2]> {
     let part = |f: u32| part_of(region, parts, labels, f);
     let mut edges = region.mesh.edges();
     edges.retain(|&[a, b]| {
@@ -164,7 +164,7 @@ pub(super) fn borders(region: &Region, parts: &Parts, labels: &[u32]) -> Vec<[u3
 }
 
 /// The parts that meet at every vertex, ascending: of the patch and of the faces around it.
-pub(super) fn parts_at(region: &Region, parts: &Parts, labels: &[u32], v: u32) -> Vec<u32> {
+pub(super) fn parts_at(region: &Region, parts: &SmoothParts, labels: &[u32], v: u32) -> Vec<u32> {
     let faces = region.mesh.faces_of(v).iter();
     let mut found: Vec<u32> =
         faces.map(|&f| part_of(region, parts, labels, f)).filter(|&part| part != NONE).collect();

@@ -1,18 +1,18 @@
 //! The cycles that bring ridges back: flow, flips, snapping, remeshing,
 //! until the patch rests or the parts around it meet in it.
 
+use super::completion::Completion;
 use super::constants::{
     ALIKE, COARSE_FACES, EXTEND_AFTER, FAIR_ROUNDS, FAIR_STEPS, FLIP_SWEEPS, FLOW_STEPS, MOST_BEND,
     RESAMPLE_EVERY, RESAMPLE_ROUNDS, RIDGE_SHARE, SNAPS, SNAP_FROM, STILL_CYCLE,
 };
 use super::extend::{extend, Extended};
 use super::fair::fair;
-use super::filled::Restored;
+use super::filled::Completed;
 use super::flips::flip_along_ridges;
 use super::flow::flow;
 use super::region::Region;
 use super::resample::typical_edge;
-use super::restoration::Restoration;
 use super::snap::{snap, Snapping};
 use super::surface::total_bend;
 use super::{HoleStatus, PatchShape, Sharpness};
@@ -42,17 +42,17 @@ impl Unfolded {
     }
 }
 
-impl Restoration<'_, '_> {
+impl Completion<'_, '_> {
     /// The cycles that bring the ridges around the hole back.
     pub(super) fn form_ridges(&mut self, region: &mut Region) -> Result<()> {
         let (smooth, mut last) = (region.clone(), Unfolded::new(region));
         let cycles = self.options.iterations.div_ceil(FLOW_STEPS);
-        let is_sharp = self.restored.sharpness > 0.0;
-        self.restored.status = HoleStatus::Finished;
+        let is_sharp = self.completed.sharpness > 0.0;
+        self.completed.status = HoleStatus::Finished;
         for cycle in 1..=cycles {
             self.progress.check()?;
             if self.progress.is_finishing() {
-                self.restored.status = HoleStatus::Stopped;
+                self.completed.status = HoleStatus::Stopped;
                 return Ok(());
             }
             let flowed = self.flow(region, cycle)?;
@@ -60,14 +60,14 @@ impl Restoration<'_, '_> {
             self.report(region, 0.05 + 0.9 * cycle as f64 / cycles as f64);
             last.keep(region);
             if cycle > SNAP_FROM && moved < STILL_CYCLE * typical_edge(&region.mesh) {
-                self.restored.status = HoleStatus::Converged;
+                self.completed.status = HoleStatus::Converged;
                 break;
             }
             if is_sharp && cycle == EXTEND_AFTER {
                 if let Some(extended) = self.extended(region)?.filter(|extended| last.allows(extended)) {
                     *region = extended;
                     self.report(region, 1.0);
-                    self.restored.status = HoleStatus::Converged;
+                    self.completed.status = HoleStatus::Converged;
                     return Ok(());
                 }
             }
@@ -90,21 +90,21 @@ impl Restoration<'_, '_> {
         let is_free = self.options.sharpness == Sharpness::Auto && self.options.shape != PatchShape::Sharp;
         if is_free && is_sharp && cycles > 0 && total_bend(region) > MOST_BEND * total_bend(&smooth) {
             *region = smooth;
-            self.restored = Restored::smooth();
+            self.completed = Completed::smooth();
         }
         Ok(())
     }
 
     /// The steps of the flow of one cycle; returns the longest move.
     fn flow(&mut self, region: &mut Region, cycle: usize) -> Result<f64> {
-        let steps = FLOW_STEPS.min(self.options.iterations - self.restored.iterations);
-        let flowed = flow(region, steps, self.restored.sharpness, self.options, self.progress)?;
+        let steps = FLOW_STEPS.min(self.options.iterations - self.completed.iterations);
+        let flowed = flow(region, steps, self.completed.sharpness, self.options, self.progress)?;
         if cycle == 1 {
-            self.restored.energy[0] = flowed.energy[0];
+            self.completed.energy[0] = flowed.energy[0];
         }
-        self.restored.energy[1] = flowed.energy[1];
-        self.restored.gap = flowed.gap;
-        self.restored.iterations += steps;
+        self.completed.energy[1] = flowed.energy[1];
+        self.completed.gap = flowed.gap;
+        self.completed.iterations += steps;
         Ok(flowed.moved)
     }
 

@@ -2,7 +2,7 @@
 
 use super::constants::{CONTRAST, LEAST_RIDGE_ANGLE};
 use super::region::Region;
-use super::surface::Surface;
+use super::surface::FaceGeometry;
 use crate::mesh::vector::distance;
 
 /// The ridges that reach a hole.
@@ -20,7 +20,7 @@ pub(super) struct Ridges {
 /// What is common is found by adding the edges of the surroundings from the least bent on, until one is
 /// [`CONTRAST`] times as bent as the root mean square (by length) of those before.
 pub(super) fn ridges_around(region: &Region) -> Option<Ridges> {
-    let surface = Surface::of(region);
+    let surface = FaceGeometry::of(region);
     let mesh = &region.mesh;
     let mut on_rim = vec![false; mesh.n_vertices()];
     region.patch_faces().for_each(|(_, face)| face.into_iter().for_each(|v| on_rim[v as usize] = true));

@@ -9,7 +9,7 @@ use super::constants::{
 use super::flips::flip_along_ridges;
 use super::guard::move_guarded;
 use super::meeting::{has_arrived, meeting_point, order};
-use super::parts::Parts;
+use super::parts::SmoothParts;
 use super::region::Region;
 use super::resample::{resample, typical_edge, Kept, Target};
 use super::untangle::untangle;
@@ -38,7 +38,7 @@ pub(super) fn extend(
     progress: &Progress,
 ) -> Result<Extended> {
     let edge = typical_edge(&region.mesh);
-    let Some(parts) = Parts::around(region, ridge, edge) else { return Ok(Extended::NotMet) };
+    let Some(parts) = SmoothParts::around(region, ridge, edge) else { return Ok(Extended::NotMet) };
     let target = Target { edge_length, max_faces: COARSE_FACES, rounds: RESAMPLE_ROUNDS };
     let mut labels = Vec::new();
     for round in 0..EXTEND_ROUNDS {
@@ -81,7 +81,7 @@ pub(super) fn extend(
 /// Cuts triangles that cannot lie on their part whatever their free vertices do, because they have none or
 /// because all their vertices are where the part meets another one; and long borders that have no free
 /// vertex. Returns whether anything was cut.
-fn cut(region: &mut Region, parts: &Parts, labels: &mut Vec<u32>, edge: f64) -> bool {
+fn cut(region: &mut Region, parts: &SmoothParts, labels: &mut Vec<u32>, edge: f64) -> bool {
     let first = region.n_outer as u32;
     let before = labels.len();
     let is_off = |region: &Region, v: u32, part: u32| {
@@ -136,7 +136,7 @@ fn cut(region: &mut Region, parts: &Parts, labels: &mut Vec<u32>, edge: f64) -> 
 
 /// Free vertices that belong where a neighbor is, and that neighbor:
 /// remeshing does not join two vertices that are both fixed.
-fn merges(region: &Region, parts: &Parts, labels: &[u32], edge: f64) -> Vec<[u32; 2]> {
+fn merges(region: &Region, parts: &SmoothParts, labels: &[u32], edge: f64) -> Vec<[u32; 2]> {
     let found = |v: u32| {
         let own = parts_at(region, parts, labels, v);
         let joins = |w: u32| {
@@ -160,7 +160,7 @@ fn length(region: &Region, a: u32, b: u32) -> f64 {
 /// that leaves the faces around them in order; returns the longest move.
 ///
 /// First all together, which finds its way where the patch is far from its surfaces, then one by one.
-fn settle(region: &mut Region, parts: &Parts, labels: &[u32]) -> f64 {
+fn settle(region: &mut Region, parts: &SmoothParts, labels: &[u32]) -> f64 {
     let goals: Vec<Point> = (0..region.mesh.n_vertices() as u32)
         .map(|v| {
             if region.is_anchor(v) {

@@ -5,7 +5,7 @@ use super::constants::RIDGE_STIFFNESS;
 use super::guard::move_guarded;
 use super::region::Region;
 use super::ridge_curves::third_derivatives;
-use super::surface::Surface;
+use super::surface::FaceGeometry;
 use crate::block_rows::BlockRows;
 use crate::linear::Columns;
 use crate::mesh::partition::Partition;
@@ -62,7 +62,7 @@ struct Cut {
 impl Cut {
     fn new(region: &Region, ridge: f64) -> Self {
         let mesh = &region.mesh;
-        let surface = Surface::of(region);
+        let surface = FaceGeometry::of(region);
         let faces = region.faces();
         // Corners of faces that are one vertex, as a forest: across every edge that is no ridge.
         let mut corners = Partition::new(3 * faces.len());

@@ -31,7 +31,7 @@ impl HoleStatus {
 }
 
 /// How one patch ended.
-pub(super) struct Restored {
+pub(super) struct Completed {
     pub shape: PatchShape,
     pub sharpness: f64,
     pub status: HoleStatus,
@@ -40,7 +40,7 @@ pub(super) struct Restored {
     pub iterations: usize,
 }
 
-impl Restored {
+impl Completed {
     /// The end of a patch that stays smooth.
     pub(super) fn smooth() -> Self {
         Self {
@@ -76,14 +76,14 @@ pub struct FilledHole {
 
 impl FilledHole {
     /// What became of the hole within `boundary`.
-    pub(super) fn of(boundary: Vec<u32>, outcome: Result<Restored, Refusal>) -> Self {
+    pub(super) fn of(boundary: Vec<u32>, outcome: Result<Completed, Refusal>) -> Self {
         let (shape, outcome) = match outcome {
-            Ok(restored) => (restored.shape, restored),
+            Ok(completed) => (completed.shape, completed),
             Err(reason) => {
-                (PatchShape::Auto, Restored { status: HoleStatus::Refused(reason), ..Restored::smooth() })
+                (PatchShape::Auto, Completed { status: HoleStatus::Refused(reason), ..Completed::smooth() })
             }
         };
-        let Restored { sharpness, status, energy, gap, iterations, .. } = outcome;
+        let Completed { sharpness, status, energy, gap, iterations, .. } = outcome;
         Self { boundary, status, shape, sharpness, energy, gap, iterations }
     }
 }

@@ -2,15 +2,15 @@
 
 use super::assign::parts_at;
 use super::constants::{ARRIVED_SLIVER, DROPPED_EIGENVALUES, NEWTON_STEPS};
-use super::parts::Parts;
+use super::parts::SmoothParts;
 use super::region::Region;
 use crate::linear::small::Quadric;
-use crate::mesh::vector::{add, area_vector, centroid, dot, quality, scale, unit, Point};
+use crate::mesh::vector::{add, area_vector, centroid, dot, quality, unit, Point};
 use crate::shape_guard::{is_turned, TURNED};
 
 /// How good the worst face at `v` is: its quality, or how much it looks along its part,
 /// less what is allowed, if that is not enough.
-pub(super) fn order(region: &Region, parts: &Parts, labels: &[u32], v: u32) -> f64 {
+pub(super) fn order(region: &Region, parts: &SmoothParts, labels: &[u32], v: u32) -> f64 {
     let faces = region.mesh.faces_of(v).iter();
     let order = |&f: &u32| {
         let corners = region.mesh.face(f).map(|face| region.mesh.corners(face))?;
@@ -22,7 +22,7 @@ pub(super) fn order(region: &Region, parts: &Parts, labels: &[u32], v: u32) -> f
 }
 
 /// The faces of the patch that are turned away from their part.
-pub(super) fn turned(region: &Region, parts: &Parts, labels: &[u32]) -> Vec<u32> {
+pub(super) fn turned(region: &Region, parts: &SmoothParts, labels: &[u32]) -> Vec<u32> {
     let is_turned = |(f, face): (u32, [u32; 3])| {
         let model = parts.models.get(*labels.get((f as usize).checked_sub(region.n_outer)?)? as usize)?;
         let corners = region.mesh.corners(face);
@@ -32,24 +32,23 @@ pub(super) fn turned(region: &Region, parts: &Parts, labels: &[u32]) -> Vec<u32>
 }
 
 /// Where the surfaces of the parts that meet at free vertex `v` meet.
-pub(super) fn meeting_point(region: &Region, parts: &Parts, labels: &[u32], v: u32) -> Point {
+pub(super) fn meeting_point(region: &Region, parts: &SmoothParts, labels: &[u32], v: u32) -> Point {
     let own = parts_at(region, parts, labels, v);
     (0..NEWTON_STEPS).fold(region.mesh.position(v), |p, _| add(p, step(parts, &own, p)))
 }
 
 /// The shortest step from `p` onto the tangent planes of some parts.
-fn step(parts: &Parts, own: &[u32], p: Point) -> Point {
+fn step(parts: &SmoothParts, own: &[u32], p: Point) -> Point {
     let mut quadric = Quadric::default();
     for &part in own {
         let (off, normal) = parts.models[part as usize].at(p);
         quadric.add(1.0, normal, -off);
     }
-    let kept = quadric.determined(DROPPED_EIGENVALUES).into_iter();
-    kept.fold([0.0; 3], |sum, (vector, along)| add(sum, scale(vector, along)))
+    quadric.nearest(DROPPED_EIGENVALUES)
 }
 
 /// Whether all faces lie on their part, and are in order.
-pub(super) fn has_arrived(region: &Region, parts: &Parts, labels: &[u32], edge: f64) -> bool {
+pub(super) fn has_arrived(region: &Region, parts: &SmoothParts, labels: &[u32], edge: f64) -> bool {
     region.patch_faces().zip(labels).all(|((_, face), &part)| {
         let Some(model) = parts.models.get(part as usize) else { return false };
         let corners = region.mesh.corners(face);

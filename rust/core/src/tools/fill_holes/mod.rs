@@ -6,7 +6,7 @@
 //! 1. Which loops ([`choice`]), on an oriented mesh without seams; what comes out is given back for the mesh
 //!    as it was ([`give_back`]).
 //! 2. Planar rims that the surface meets steeply all round are closed flat; every other patch is
-//!    [`restore`]d, and one that came out folded gives way to one that did not ([`sound`]).
+//!    [`complete`]d, and one that came out folded gives way to one that did not ([`sound`]).
 //! 3. It starts as the minimizer of a quadratic energy ([`start`]). Where the surface around is smooth
 //!    ([`decide`]) that is all.
 //! 4. Where it has ridges, [`cycles`] follow: the L1 flow flattens ([`flow`]),
@@ -22,6 +22,8 @@
 
 mod assign;
 mod choice;
+mod complete;
+mod completion;
 mod constants;
 mod cycles;
 mod decide;
@@ -39,8 +41,6 @@ mod options;
 mod parts;
 mod region;
 mod resample;
-mod restoration;
-mod restore;
 mod ridge_curves;
 mod snap;
 mod sound;
@@ -63,10 +63,10 @@ use crate::progress::{Progress, Report};
 use crate::remesh::budget;
 use crate::Result;
 use constants::{MARKED_ANGLE, REGION_RINGS};
-use filled::Restored;
+use filled::Completed;
 use neighborhoods::Neighborhoods;
 use region::Region;
-use sound::restored_in_order;
+use sound::completed_in_order;
 
 /// Fills holes so that the ridges around them go on.
 ///
@@ -182,18 +182,18 @@ struct Filling<'a> {
 }
 
 impl Filling<'_> {
-    /// Restores one patch, whose new vertices begin at the number `from`, and appends it.
+    /// Completes one patch, whose new vertices begin at the number `from`, and appends it.
     fn one(
         &self,
         patch: &Patch,
         from: u32,
         filled: &mut Filled,
         watch: &dyn Fn(f64, usize, Option<f64>),
-    ) -> Result<Restored> {
+    ) -> Result<Completed> {
         let (mesh, progress) = (self.working.mesh(), self.progress);
         let mut region = Region::new(mesh, &self.near, patch, from, REGION_RINGS, &self.shared)?;
         region.first_new = (mesh.connectivity().n_vertices() + filled.vertices.len()) as u32;
-        let restored = restored_in_order(
+        let completed = completed_in_order(
             &mut region,
             patch,
             self.options,
@@ -207,10 +207,10 @@ impl Filling<'_> {
         filled.vertices.extend(region.free().map(|v| region.mesh.position(v)));
         filled.faces.extend(region.patch_faces().map(|(_, face)| face.map(|v| region.global(v))));
         filled.patch.resize(filled.faces.len(), filled.holes.len() as u32);
-        if restored.shape != PatchShape::Smooth {
+        if completed.shape != PatchShape::Smooth {
             filled.ridges.extend(surface::ridges(&region, MARKED_ANGLE));
         }
-        Ok(restored)
+        Ok(completed)
     }
 }
 

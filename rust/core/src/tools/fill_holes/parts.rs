@@ -4,7 +4,7 @@
 use super::constants::{NEAR_PART, PART_WIDTH, WORST_FIT};
 use super::model::Model;
 use super::region::Region;
-use super::surface::Surface;
+use super::surface::FaceGeometry;
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::{add, norm, scale, unit, Point};
 
@@ -12,20 +12,20 @@ use crate::mesh::vector::{add, norm, scale, unit, Point};
 pub(super) const NONE: u32 = u32::MAX;
 
 /// The parts that reach a hole.
-pub(super) struct Parts {
+pub(super) struct SmoothParts {
     /// The part of every face around the patch; [`NONE`] if it does not reach the hole.
     pub of_face: Vec<u32>,
     /// What each goes on as.
     pub models: Vec<Model>,
 }
 
-impl Parts {
+impl SmoothParts {
     /// The parts around the patch of `region`, between edges bent by more than `ridge` radians. Nothing if a
     /// ridge at the hole has the same part on both sides, or a part is not smooth enough: then they do not
     /// say how the surface goes on.
     pub(super) fn around(region: &Region, ridge: f64, edge: f64) -> Option<Self> {
         let mesh = &region.mesh;
-        let surface = Surface::of(region);
+        let surface = FaceGeometry::of(region);
         let mut on_rim = vec![false; mesh.n_vertices()];
         region.patch_faces().for_each(|(_, face)| face.into_iter().for_each(|v| on_rim[v as usize] = true));
         let mut pieces = Partition::new(region.n_outer);
@@ -96,7 +96,7 @@ fn rings(region: &Region, on_rim: &[bool]) -> Vec<u32> {
 
 fn model(
     region: &Region,
-    surface: &Surface,
+    surface: &FaceGeometry,
     of_face: &[u32],
     rings: &[u32],
     part: u32,

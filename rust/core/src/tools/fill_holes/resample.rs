@@ -9,7 +9,7 @@ use crate::remesh::budget;
 use crate::remesh::curves::Keep;
 use crate::remesh::editable::{key, Edge};
 use crate::remesh::isotropic::run;
-use crate::remesh::remesher::{Remesher, Surface};
+use crate::remesh::remesher::{Reference, Remesher};
 use crate::remesh::sizing::{growth, Sizing};
 use crate::remesh::EditableMesh;
 use crate::Result;
@@ -94,7 +94,7 @@ pub(super) fn resample(
         .filter_map(|&[a, b]| Some(key(number(a)?, number(b)?)))
         .filter(|[a, b]| a != b)
         .collect();
-    let surface = Surface::of(&mesh);
+    let surface = Reference::of(&mesh);
     let fixed: Vec<bool> = (0..mesh.n_vertices()).map(|v| v < n).collect();
     let keep = Keep {
         fixed: &fixed,

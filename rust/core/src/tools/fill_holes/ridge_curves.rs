@@ -1,7 +1,7 @@
 //! Ridges that go on as the ridges around the hole do: straight ones straight, bent ones bent alike.
 
 use super::region::Region;
-use super::surface::Surface;
+use super::surface::FaceGeometry;
 use crate::mesh::vector::{distance, dot, norm, sub};
 use crate::remesh::curves::CORNER_COSINE;
 
@@ -13,7 +13,7 @@ use crate::remesh::curves::CORNER_COSINE;
 /// than `ridge` radians are ridges.
 pub(super) fn third_derivatives(region: &Region, ridge: f64) -> Vec<([u32; 4], [f64; 4], f64)> {
     let mesh = &region.mesh;
-    let surface = Surface::of(region);
+    let surface = FaceGeometry::of(region);
     let is_ridge =
         |&[a, b]: &[u32; 2]| mesh.wings(a, b).is_some_and(|wings| surface.dihedral(wings.faces) > ridge);
     let edges: Vec<[u32; 2]> = mesh.edges().into_iter().filter(is_ridge).collect();

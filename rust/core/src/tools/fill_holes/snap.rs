@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::guard::move_one;
 use super::region::Region;
-use super::surface::Surface;
+use super::surface::FaceGeometry;
 use crate::linear::small::Quadric;
 use crate::mesh::vector::{add, distance, dot, norm, scale, sub, Point};
 use crate::remesh::Rings;
@@ -57,7 +57,7 @@ impl Snapping {
 /// directions that the planes leave free, it goes to the centroid of its neighbors: ridges and plane parts
 /// keep their triangles in shape.
 pub(super) fn snap(region: &mut Region, how: &Snapping) -> f64 {
-    let surface = Surface::of(region);
+    let surface = FaceGeometry::of(region);
     let bent = near_bends(region, &surface, how);
     let mut moves: Vec<(f64, u32, Point)> = region
         .free()
@@ -76,7 +76,7 @@ pub(super) fn snap(region: &mut Region, how: &Snapping) -> f64 {
 }
 
 /// Which vertices have an edge bent by more than the threshold on a face within `near` rings.
-fn near_bends(region: &Region, surface: &Surface, how: &Snapping) -> Vec<bool> {
+fn near_bends(region: &Region, surface: &FaceGeometry, how: &Snapping) -> Vec<bool> {
     let mut bent = vec![false; region.mesh.n_vertices()];
     let is_bent = |f: u32| surface.face_angles[f as usize] > how.threshold;
     for (_, face) in region.mesh.faces().filter(|&(f, _)| is_bent(f)) {
@@ -93,7 +93,7 @@ fn near_bends(region: &Region, surface: &Surface, how: &Snapping) -> Vec<bool> {
 
 fn step(
     region: &Region,
-    surface: &Surface,
+    surface: &FaceGeometry,
     bent: &[bool],
     around: &mut Rings<'_>,
     v: u32,

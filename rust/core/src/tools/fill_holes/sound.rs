@@ -1,9 +1,9 @@
 //! No patch is left folded, or facing inwards: where one came out so, the next simpler one takes its place.
 
-use super::filled::Restored;
+use super::complete::complete;
+use super::completion::Watch;
+use super::filled::Completed;
 use super::region::Region;
-use super::restoration::Watch;
-use super::restore::restore;
 use super::{FillHolesOptions, PatchShape};
 use crate::hole_filling::Patch;
 use crate::mesh::vector::{dot, norm, Point};
@@ -12,30 +12,30 @@ use crate::remesh::guard::worst_bend_of;
 use crate::shape_guard::{FOLDED, TURNED};
 use crate::Result;
 
-/// [`restore`], and if that leaves a patch folded or facing inwards, the smooth patch, or the triangulation
+/// [`complete`], and if that leaves a patch folded or facing inwards, the smooth patch, or the triangulation
 /// that it started from: the first that is in order, or else the least folded.
-pub(super) fn restored_in_order(
+pub(super) fn completed_in_order(
     region: &mut Region,
     patch: &Patch,
     options: &FillHolesOptions,
     progress: &Progress,
     watch: &mut Watch<'_>,
-) -> Result<Restored> {
+) -> Result<Completed> {
     if patch.is_flat {
         watch(region, 1.0, 0, None);
-        return Ok(Restored { shape: PatchShape::Flat, ..Restored::smooth() });
+        return Ok(Completed { shape: PatchShape::Flat, ..Completed::smooth() });
     }
     let start = region.clone();
-    let mut restored = restore(region, options, progress, watch)?;
+    let mut completed = complete(region, options, progress, watch)?;
     let mut best = order(region, patch.lid_normal);
     if best >= 0.0 {
-        return Ok(restored);
+        return Ok(completed);
     }
     let mut simpler = Vec::new();
-    if restored.sharpness > 0.0 {
+    if completed.sharpness > 0.0 {
         let mut smooth = start.clone();
         let options = FillHolesOptions { shape: PatchShape::Smooth, ..options.clone() };
-        restore(&mut smooth, &options, progress, watch)?;
+        complete(&mut smooth, &options, progress, watch)?;
         simpler.push(smooth);
     }
     simpler.push(start);
@@ -44,14 +44,14 @@ pub(super) fn restored_in_order(
         if order > best {
             best = order;
             *region = other;
-            restored = Restored { status: restored.status, ..Restored::smooth() };
+            completed = Completed { status: completed.status, ..Completed::smooth() };
         }
         if best >= 0.0 {
             break;
         }
     }
-    watch(region, 1.0, restored.iterations, None);
-    Ok(restored)
+    watch(region, 1.0, completed.iterations, None);
+    Ok(completed)
 }
 
 /// By how much the worst bend of the patch, or its face that looks inwards most, is within the limits;

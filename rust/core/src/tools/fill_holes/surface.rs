@@ -10,7 +10,7 @@ pub(super) fn angle(a: Point, b: Point) -> f64 {
 }
 
 /// What snapping and the decision look at.
-pub(super) struct Surface {
+pub(super) struct FaceGeometry {
     /// The unit normal of every face; zero where it has no area.
     pub normals: Vec<Point>,
     /// The area of every face.
@@ -21,7 +21,7 @@ pub(super) struct Surface {
     pub face_angles: Vec<f64>,
 }
 
-impl Surface {
+impl FaceGeometry {
     pub(super) fn of(region: &Region) -> Self {
         let mesh = &region.mesh;
         let corners: Vec<_> = mesh.faces().map(|(_, face)| mesh.corners(face)).collect();
@@ -53,7 +53,7 @@ impl Surface {
 
 /// How much the patch is bent in all: `Σ length · |dihedral angle|` over its edges and those of its rim.
 pub(super) fn total_bend(region: &Region) -> f64 {
-    let surface = Surface::of(region);
+    let surface = FaceGeometry::of(region);
     let mesh = &region.mesh;
     let bend = |[a, b]: [u32; 2]| {
         let faces = mesh.wings(a, b)?.faces;
@@ -66,7 +66,7 @@ pub(super) fn total_bend(region: &Region) -> f64 {
 /// The edges at the patch that are bent by more than `least` radians, by vertices of the whole mesh,
 /// smaller first.
 pub(super) fn ridges(region: &Region, least: f64) -> Vec<[u32; 2]> {
-    let surface = Surface::of(region);
+    let surface = FaceGeometry::of(region);
     let mesh = &region.mesh;
     let bent = |&[a, b]: &[u32; 2]| {
         let faces = mesh.wings(a, b).map(|wings| wings.faces);

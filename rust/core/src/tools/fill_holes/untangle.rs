@@ -3,14 +3,14 @@
 
 use super::constants::{UNTANGLE_PASSES, UNTANGLE_RINGS};
 use super::meeting::{meeting_point, turned};
-use super::parts::Parts;
+use super::parts::SmoothParts;
 use super::region::Region;
 use crate::mesh::vector::{add, scale, Point};
 
 /// Moves vertices around faces that are turned away from their part to the mean of their neighbors, as in an
 /// embedding with fixed surroundings, which has no folds (Tutte 1963), and back onto their surfaces. Nothing
 /// changes if as many faces are turned after that.
-pub(super) fn untangle(region: &mut Region, parts: &Parts, labels: &[u32]) {
+pub(super) fn untangle(region: &mut Region, parts: &SmoothParts, labels: &[u32]) {
     let before = turned(region, parts, labels);
     if before.is_empty() {
         return;

@@ -25,3 +25,14 @@ pub(super) const FLOW_STEPS: usize = 12;
 /// The fidelity of its first step, on a surface of area 1:
 /// it moves a scan of ten thousand vertices by a fraction of its noise.
 pub(super) const FLOW_FIDELITY: f64 = 1e7;
+
+/// Turns and shifts of axes are found in so many Newton steps at most; two to four reach rounding,
+pub(super) const MOST_TURNS: usize = 20;
+
+/// which is that of unit vectors, and of places in the unit of the shape.
+pub(super) const TURN_ROUNDING: f64 = 1e-15;
+pub(super) const SHIFT_ROUNDING: f64 = 1e-14;
+
+/// A surface is shifted along what its points determine: along the axis of a cylinder nothing does, and what
+/// rounding leaves there is less than this part of the largest eigenvalue.
+pub(super) const UNDETERMINED: f64 = 1e-6;

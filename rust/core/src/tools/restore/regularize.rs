@@ -1,7 +1,8 @@
 //! Surfaces made parallel, orthogonal and equal where they nearly are, as parts are made.
 
+use super::constants::{MOST_TURNS, SHIFT_ROUNDING, TURN_ROUNDING, UNDETERMINED};
 use crate::labelling::{Domain, Labelling};
-use crate::linear::small::eigen3;
+use crate::linear::small::{determined, Quadric};
 use crate::mesh::vector::{add, cross, dot, norm, scale, sub, unit, Point};
 use crate::surfaces::{Samples, Surface};
 
@@ -123,7 +124,7 @@ fn nearest_frame(axes: &[(Point, f64)]) -> Vec<Point> {
     for (axis, _) in axes {
         frame.push(unit(frame.iter().fold(*axis, |a, &f: &Point| sub(a, scale(f, dot(a, f))))));
     }
-    for _ in 0..20 {
+    for _ in 0..MOST_TURNS {
         // The turn ω that takes the frame to the axes: Σ w (I − f fᵀ) ω = Σ w f × a.
         let (mut matrix, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
         for (f, (a, w)) in frame.iter().zip(axes) {
@@ -132,16 +133,13 @@ fn nearest_frame(axes: &[(Point, f64)]) -> Vec<Point> {
                 (0..3).for_each(|j| matrix[i][j] += w * (f64::from(u8::from(i == j)) - f[i] * f[j]));
             }
         }
-        let turn = eigen3(matrix)
-            .into_iter()
-            .filter(|(value, _)| *value > 0.0)
-            .fold([0.0; 3], |sum, (value, v)| add(sum, scale(v, dot(v, right) / value)));
+        let turn = determined(matrix, right, 0.0);
         let turned: Vec<Point> = frame.iter().map(|&f| add(f, cross(turn, f))).collect();
         frame.clear();
         for axis in turned {
             frame.push(unit(frame.iter().fold(axis, |a, &f: &Point| sub(a, scale(f, dot(a, f))))));
         }
-        if norm(turn) < 1e-15 {
+        if norm(turn) < TURN_ROUNDING {
             break;
         }
     }
@@ -175,23 +173,15 @@ fn aligned(surface: &Surface, axis: Point, samples: &Samples) -> Surface {
 
 /// The surface shifted to where its points are, without turning.
 fn slid(mut surface: Surface, samples: &Samples) -> Surface {
-    for _ in 0..20 {
-        let (mut matrix, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
-        for (&p, w) in samples.points.iter().zip(&samples.weights) {
+    for _ in 0..MOST_TURNS {
+        let mut planes = Quadric::default();
+        for (&p, &w) in samples.points.iter().zip(&samples.weights) {
             let (distance, normal) = surface.distance(p);
-            right = add(right, scale(normal, w * distance));
-            for i in 0..3 {
-                (0..3).for_each(|j| matrix[i][j] += w * normal[i] * normal[j]);
-            }
+            planes.add(w, normal, distance);
         }
-        let pairs = eigen3(matrix);
-        let largest = pairs.iter().fold(0.0, |most: f64, pair| most.max(pair.0));
-        let shift = pairs
-            .into_iter()
-            .filter(|(value, _)| *value > 1e-6 * largest)
-            .fold([0.0; 3], |sum, (value, v)| add(sum, scale(v, dot(v, right) / value)));
+        let shift = planes.nearest(UNDETERMINED);
         surface = surface.placed(1.0, shift);
-        if norm(shift) < 1e-14 {
+        if norm(shift) < SHIFT_ROUNDING {
             break;
         }
     }

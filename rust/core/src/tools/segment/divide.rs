@@ -8,7 +8,7 @@
 use std::collections::BTreeSet;
 
 use super::constants::{DIVIDE_ROUNDS, DIVIDE_TURNS, EVIDENCE_TO_DIVIDE, LEAST_PART};
-use super::patches::{Patch, Plane};
+use super::patches::{Patch, SegmentPlane};
 use super::surface::{members, pieces, Surface};
 use crate::mesh::vector::{distance, dot, Point};
 use crate::progress::Progress;
@@ -28,7 +28,7 @@ pub(super) struct Divide<'a> {
 
 /// What a part of a segment looks like.
 enum Model {
-    Plane(Plane),
+    Plane(SegmentPlane),
     Patch(Patch),
 }
 
@@ -68,7 +68,7 @@ impl Divide<'_> {
 
     /// The faces of the second of two sides, where they explain what one patch does not.
     fn second_side(&self, faces: &[u32]) -> Option<Vec<u32>> {
-        if faces.len() < 2 * LEAST_PART || Plane::through(self.surface, faces)?.spread <= self.flat {
+        if faces.len() < 2 * LEAST_PART || SegmentPlane::through(self.surface, faces)?.spread <= self.flat {
             return None;
         }
         let patch = Patch::fit(self.surface, faces, None)?;
@@ -121,7 +121,7 @@ impl Divide<'_> {
         if curved {
             Patch::fit(self.surface, faces, None).map(Model::Patch)
         } else {
-            Plane::through(self.surface, faces).map(Model::Plane)
+            SegmentPlane::through(self.surface, faces).map(Model::Plane)
         }
     }
 

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::constants::{EVIDENCE_TO_KEEP, LEAST_AROUND, SPECK_TOLERANCE};
 use super::divide::log_likelihood_ratio;
-use super::patches::{Patch, Plane};
+use super::patches::{Patch, SegmentPlane};
 use super::surface::{members, Surface};
 use crate::mesh::vector::{add, dot};
 use crate::progress::Progress;
@@ -30,7 +30,7 @@ pub(super) struct Explain<'a> {
 struct Segments {
     members: Vec<Vec<u32>>,
     areas: Vec<f64>,
-    planes: Vec<Option<Plane>>,
+    planes: Vec<Option<SegmentPlane>>,
     /// The lengths of borders, by the labels on both sides of them.
     borders: BTreeMap<(u32, u32), f64>,
 }
@@ -74,8 +74,9 @@ impl Explain<'_> {
         let surface = self.surface;
         let members = members(labels);
         let area = |faces: &Vec<u32>| faces.iter().map(|&f| surface.areas[f as usize]).sum();
-        let plane =
-            |faces: &Vec<u32>| Plane::through(surface, faces).filter(|plane| plane.spread <= self.flat);
+        let plane = |faces: &Vec<u32>| {
+            SegmentPlane::through(surface, faces).filter(|plane| plane.spread <= self.flat)
+        };
         let mut borders: BTreeMap<(u32, u32), f64> = BTreeMap::new();
         for f in 0..labels.len() {
             let may = |g: usize| self.regions.is_none_or(|regions| regions[g] == regions[f]);
@@ -111,7 +112,7 @@ impl Explain<'_> {
 
     /// Whether `faces` lie on the plane of a neighbor, on the side that it shows; if `enclosed` by it,
     /// on any.
-    fn lies_on(&self, plane: &Plane, faces: &[u32], area: f64, enclosed: bool) -> bool {
+    fn lies_on(&self, plane: &SegmentPlane, faces: &[u32], area: f64, enclosed: bool) -> bool {
         let surface = self.surface;
         let (mut vector, mut squares) = ([0.0; 3], 0.0);
         for &f in faces {

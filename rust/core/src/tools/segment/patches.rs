@@ -15,14 +15,14 @@ pub(super) fn patch_size(noise: f64) -> usize {
 
 /// The plane of a whole segment.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Plane {
+pub(super) struct SegmentPlane {
     normal: [f64; 3],
     center: [f64; 3],
     /// Root mean square distance of the faces' corners from it.
     pub spread: f64,
 }
 
-impl Plane {
+impl SegmentPlane {
     /// The plane of least squared distance, weighted by area, of `faces`; nothing where they have no area.
     pub(super) fn through(surface: &Surface<'_>, faces: &[u32]) -> Option<Self> {
         let mut area = 0.0;

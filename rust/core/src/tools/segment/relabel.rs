@@ -10,7 +10,7 @@ use super::constants::{
     EDGE_COST, LEAST_NOISE, LEAST_NOISE_OF_VALUES, LEAST_TURN, MOST_MISFIT, PLANE_EDGE, PLANE_NOISE,
     RELABEL_ROUNDS, RELABEL_SWEEPS, STRAY_OF_NOISE,
 };
-use super::patches::{nearby, patch_size, Patch, Plane};
+use super::patches::{nearby, patch_size, Patch, SegmentPlane};
 use super::surface::{pieces, Surface};
 use crate::linear::Columns;
 use crate::mesh::vector::{distance, unit};
@@ -35,7 +35,7 @@ pub(super) struct Relabel<'a> {
 struct Round<'a, 'b> {
     relabel: &'b Relabel<'a>,
     labels: Vec<u32>,
-    planes: BTreeMap<u32, Plane>,
+    planes: BTreeMap<u32, SegmentPlane>,
     /// The misfit of a face with a segment.
     known: BTreeMap<(u32, u32), f64>,
     seen: Vec<u32>,
@@ -180,7 +180,7 @@ impl<'a, 'b> Round<'a, 'b> {
             }
             let flat = (PLANE_NOISE * relabel.noise).max(PLANE_EDGE * surface.mean_edge);
             for (label, (inside, all)) in members {
-                let plane = Plane::through(surface, if inside.is_empty() { &all } else { &inside });
+                let plane = SegmentPlane::through(surface, if inside.is_empty() { &all } else { &inside });
                 if let Some(plane) = plane.filter(|plane| plane.spread <= flat) {
                     planes.insert(label, plane);
                 }

@@ -8,7 +8,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::constants::{BAND_ROWS, BEND_OVER_A_RIDGE, STRAIGHTEN_PASSES};
-use super::patches::Plane;
+use super::patches::SegmentPlane;
 use super::surface::{members, Surface};
 use crate::mesh::vector::{add, distance, dot, sub, unit, Point};
 use crate::progress::Progress;
@@ -73,7 +73,7 @@ impl<'a> Straighten<'a> {
     /// [`crate::Error::Cancelled`].
     pub(super) fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
         let is_curved = |faces: &Vec<u32>| {
-            Plane::through(self.surface, faces).is_none_or(|plane| plane.spread > self.flat)
+            SegmentPlane::through(self.surface, faces).is_none_or(|plane| plane.spread > self.flat)
         };
         let curved: Vec<bool> = members(labels).iter().map(is_curved).collect();
         for _ in 0..STRAIGHTEN_PASSES {

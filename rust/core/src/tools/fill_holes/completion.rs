@@ -2,7 +2,7 @@
 
 use super::constants::RIDGE_SHARE;
 use super::decide::Ridges;
-use super::filled::Restored;
+use super::filled::Completed;
 use super::region::Region;
 use super::resample::{resample, Kept, Target};
 use super::FillHolesOptions;
@@ -12,17 +12,17 @@ use crate::Result;
 /// Hears of every cycle: the region, how much is done, the steps so far, the energy.
 pub(super) type Watch<'a> = dyn FnMut(&Region, f64, usize, Option<f64>) + 'a;
 
-/// The restoration of one patch: what it goes by, and what has become of it.
-pub(super) struct Restoration<'a, 'w> {
+/// The completion of one patch: what it goes by, and what has become of it.
+pub(super) struct Completion<'a, 'w> {
     pub options: &'a FillHolesOptions,
     pub progress: &'a Progress,
     pub watch: &'a mut Watch<'w>,
     /// The ridges around the hole.
     pub ridges: Option<Ridges>,
-    pub restored: Restored,
+    pub completed: Completed,
 }
 
-impl Restoration<'_, '_> {
+impl Completion<'_, '_> {
     /// Edges of the patch that are bent by more than this (radians) are ridges.
     pub(super) fn ridge(&self) -> f64 {
         RIDGE_SHARE * self.ridges.map_or(1.0, |ridges| ridges.least)
@@ -42,6 +42,6 @@ impl Restoration<'_, '_> {
 
     /// Tells the watch how much is done.
     pub(super) fn report(&mut self, region: &Region, part: f64) {
-        (self.watch)(region, part, self.restored.iterations, Some(self.restored.energy[1]));
+        (self.watch)(region, part, self.completed.iterations, Some(self.completed.energy[1]));
     }
 }

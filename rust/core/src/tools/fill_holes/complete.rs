@@ -1,12 +1,12 @@
 //! One hole: the smooth patch, and from it the sharp one where the surroundings ask for it.
 
+use super::completion::{Completion, Watch};
 use super::constants::{COARSE_FACES, FINE_FACES, FINE_ROUNDS, FLIP_SWEEPS, SHARP, SMOOTH_ROUNDS};
 use super::decide::ridges_around;
 use super::fair::fair;
-use super::filled::Restored;
+use super::filled::Completed;
 use super::flips::flip_along_ridges;
 use super::region::Region;
-use super::restoration::{Restoration, Watch};
 use super::start::smooth;
 use super::{FillHolesOptions, PatchShape, Sharpness};
 use crate::operators::Energy;
@@ -16,12 +16,12 @@ use crate::shape_guard::FOLDED;
 use crate::Result;
 
 /// Moves the patch of `region` to where the surface around it goes on; `watch` hears of every cycle.
-pub(super) fn restore(
+pub(super) fn complete(
     region: &mut Region,
     options: &FillHolesOptions,
     progress: &Progress,
     watch: &mut Watch<'_>,
-) -> Result<Restored> {
+) -> Result<Completed> {
     smooth(region, Energy::L2Laplacian, SMOOTH_ROUNDS, progress)?;
     watch(region, 0.05, 0, None);
     let ridges = ridges_around(region);
@@ -32,25 +32,25 @@ pub(super) fn restore(
         (_, Sharpness::Value(sharpness)) => (sharpness, true),
     };
     let shape = if sharpness > 0.0 { PatchShape::Sharp } else { PatchShape::Smooth };
-    let restored = Restored { shape, sharpness, ..Restored::smooth() };
-    let mut restoration = Restoration { options, progress, watch, ridges, restored };
+    let completed = Completed { shape, sharpness, ..Completed::smooth() };
+    let mut completion = Completion { options, progress, watch, ridges, completed };
     if flows {
-        restoration.sharpen(region)?;
+        completion.sharpen(region)?;
     }
-    Ok(restoration.restored)
+    Ok(completion.completed)
 }
 
-impl Restoration<'_, '_> {
+impl Completion<'_, '_> {
     /// Forms the ridges on a coarse patch, and makes it fine after that.
     fn sharpen(&mut self, region: &mut Region) -> Result<()> {
-        let is_remeshed = self.restored.sharpness > 0.0 && self.options.iterations > 0;
+        let is_remeshed = self.completed.sharpness > 0.0 && self.options.iterations > 0;
         if !is_remeshed || region.mesh.n_faces() - region.n_outer <= 2 * COARSE_FACES {
             return self.form_ridges(region);
         }
         let smooth = region.clone();
         self.resample(region, self.ridge(), COARSE_FACES, FINE_ROUNDS)?;
         self.form_ridges(region)?;
-        if self.restored.sharpness == 0.0 {
+        if self.completed.sharpness == 0.0 {
             *region = smooth;
             return Ok(());
         }

@@ -1,0 +1,26 @@
+//! Every number that the labelling depends on, with its reason.
+
+/// What a vertex of a free piece costs: as if it were 1.5 standard deviations off. A surface that is off by
+/// more than that, root mean square, is not sure: no noise is taken for a reason, and nothing is moved onto
+/// it. The same ratio at which segments count as plane ([`crate::tools::segment`]).
+pub const FREE_MISFIT: f64 = 1.125;
+
+/// What a border costs for each mean edge of its length, beside the likelihoods of its two sides: as much as
+/// one observation of noise costs twice over. With nothing, borders follow the noise of single faces.
+pub(super) const BORDER: f64 = 1.0;
+
+/// Rounds of merging and relabeling at most; two or three change something.
+pub(super) const MOST_ROUNDS: usize = 8;
+
+/// Sweeps over the faces at most: a border moves by a face or more in each, and few start farther off.
+pub(super) const MOST_SWEEPS: usize = 20;
+
+/// A face changes its piece where that gains more than rounding makes of the sum of its costs.
+pub(super) const GAIN: f64 = 1e-9;
+
+/// Points that a kind is chosen by: kinds differ by hundreds of units of energy then, and what is chosen is
+/// fitted to all.
+pub(super) const ENOUGH: usize = 1000;
+
+/// Points that a merge is judged by before it is fitted to all: most pairs of pieces fail by far.
+pub(super) const JUDGED_BY: usize = 300;

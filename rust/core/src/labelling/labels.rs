@@ -1,0 +1,75 @@
+//! Labels, what they stand for, and what both cost.
+
+use super::constants::{BORDER, FREE_MISFIT};
+use super::Domain;
+use crate::surfaces::{misfit, Surface};
+
+/// No label: the face takes no part.
+pub const NONE: u32 = u32::MAX;
+
+/// The label of each face, and what the labels stand for.
+#[derive(Debug, Clone)]
+pub struct Labelling {
+    /// Index of the piece of each face, or [`NONE`].
+    pub labels: Vec<u32>,
+    /// The pieces.
+    pub pieces: Vec<Piece>,
+}
+
+/// What faces of one label have in common.
+#[derive(Debug, Clone, Default)]
+pub struct Piece {
+    /// Its faces, ascending.
+    pub faces: Vec<u32>,
+    /// Its surface; `None` where it is free.
+    pub surface: Option<Surface>,
+    /// 1 where the faces' normals point to where the surface's distance grows, else −1.
+    pub side: f64,
+    /// Root mean square distance of its vertices from the surface.
+    pub rms: f64,
+    /// What it costs with its parameters.
+    pub(super) energy: f64,
+}
+
+impl Labelling {
+    /// `E` of these labels and surfaces.
+    #[must_use]
+    pub fn energy(&self, domain: &Domain<'_>) -> f64 {
+        let data: f64 = (0..self.labels.len()).map(|f| domain.face_cost(f, self.piece(f))).sum();
+        let parameters: f64 = self.pieces.iter().map(|piece| domain.price(piece)).sum();
+        data + BORDER * self.border_length(domain) / domain.mean_edge + parameters
+    }
+
+    fn piece(&self, f: usize) -> Option<&Piece> {
+        self.pieces.get(self.labels[f] as usize)
+    }
+
+    fn border_length(&self, domain: &Domain<'_>) -> f64 {
+        let is_border = |h: usize, twin: usize| {
+            let (a, b) = (self.labels[h / 3], self.labels[twin / 3]);
+            a != b && a != NONE && b != NONE
+        };
+        let edges = domain.connectivity.edges().filter_map(|h| Some((h, domain.connectivity.mate(h)?)));
+        edges.filter(|&(h, twin)| is_border(h, twin)).map(|(h, _)| domain.lengths[h / 3][h % 3]).sum()
+    }
+}
+
+impl Domain<'_> {
+    /// What the corners of face `f` cost on a piece, by its share of each.
+    pub(super) fn face_cost(&self, f: usize, piece: Option<&Piece>) -> f64 {
+        let Some(piece) = piece else { return 0.0 };
+        let corner = |&v: &u32| {
+            let share = self.share(f, v);
+            match &piece.surface {
+                Some(surface) => share * misfit(surface.distance(self.positions[v as usize]).0, self.sigma),
+                None => share * FREE_MISFIT,
+            }
+        };
+        self.connectivity.faces()[f].iter().map(corner).sum()
+    }
+
+    /// What the parameters of a piece cost.
+    fn price(&self, piece: &Piece) -> f64 {
+        piece.surface.map_or(0.0, |surface| self.kappa * surface.kind().n_parameters() as f64)
+    }
+}
