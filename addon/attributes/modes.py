@@ -95,5 +95,6 @@ def _modes(surface: Surface, count: int, options: dict[str, object], progress: r
 
 def _modes_beyond(mesh: bpy.types.Mesh, count: int) -> list[str]:
     """The names of modes that an earlier run has left and this one has not written over."""
-    indices = (name.removeprefix(PREFIX) for name in mesh.attributes.keys() if name.startswith(PREFIX))  # noqa: SIM118
+    names = mesh.attributes.keys()
+    indices = (name.removeprefix(PREFIX) for name in names if name.startswith(PREFIX))
     return [f"{PREFIX}{index}" for index in indices if index.isdecimal() and int(index) >= count]

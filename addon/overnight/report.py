@@ -72,7 +72,8 @@ def as_html(records: Sequence[Record], total: int, pictures: Mapping[str, Sequen
 <h1>{html.escape(title)}</h1>
 <p>{html.escape(headline(records, total))}. The pictures show faces and the colors of their materials.</p>
 <table>
-<thead><tr><th>File</th><th>Before</th><th>After</th><th>Vertices</th><th>Faces</th><th>Seconds</th></tr></thead>
+<thead><tr><th>File</th><th>Before</th><th>After</th>
+<th>Vertices</th><th>Faces</th><th>Seconds</th></tr></thead>
 <tbody>
 {rows}
 </tbody>

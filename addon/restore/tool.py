@@ -11,12 +11,12 @@ import ridgeform
 
 from ..blender import mesh_io, modifiers
 from ..blender.refusals import RefusedError
+from ..blender.stored_numbers import write_numbers
 from ..blender.welding import Weld
 from ..framework.job import Task
 from ..framework.preflight import uneven_scale
 from ..framework.run import Part, Run, counted, meshes_phrase
 from ..framework.surface import group_weights, surface_of
-from ..segments.layers import write
 from . import empties
 from .settings import RestoreSettings, restore_options
 
@@ -107,8 +107,8 @@ class Restoring(Run):
             part.coordinates.write(moved)
         if "ATTRIBUTES" in self.settings.outputs:
             kinds = np.array([KINDS.index(surface["kind"]) for surface in found.surfaces] + [-1], np.int32)
-            write(obj.data, SURFACE, "INT", "FACE", labels)
-            write(obj.data, KIND, "INT", "FACE", kinds[labels])
+            write_numbers(obj.data, SURFACE, "INT", "FACE", labels)
+            write_numbers(obj.data, KIND, "INT", "FACE", kinds[labels])
         if "EMPTIES" in self.settings.outputs:
             empties.remove_earlier(obj)
             empties.add(obj, found.surfaces, _middles(part, found))

@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 
 from ..blender import mesh_io
+from ..blender.stored_numbers import read_ints, write_numbers
 
 SEGMENT = "ridgeform_segment"
 """The face attribute with the segments."""
@@ -18,27 +19,6 @@ KEPT_SET = "ridgeform_face_set"
 """The face attribute with the face sets that faces had before segments took them."""
 MARKS = {"SEAMS": (1, "use_seam"), "SHARP": (2, "use_edge_sharp")}
 """Kinds of marks: their bit, and Blender's name of the flag."""
-_KINDS = {"INT": np.int32, "FLOAT": np.float32}
-
-
-def read_ints(mesh: bpy.types.Mesh, name: str, domain: str, default: int) -> np.ndarray:
-    """Values int32 of an attribute; the default everywhere if none has this name, type and domain."""
-    n = len(mesh.polygons) if domain == "FACE" else len(mesh.edges)
-    values = np.full(n, default, np.int32)
-    attribute = mesh.attributes.get(name)
-    if attribute is not None and (attribute.data_type, attribute.domain) == ("INT", domain):
-        attribute.data.foreach_get("value", values)
-    return values
-
-
-def write(mesh: bpy.types.Mesh, name: str, data_type: str, domain: str, values: np.ndarray) -> None:
-    """Store numbers in an attribute of this name; one of another type or domain is replaced."""
-    attribute = mesh.attributes.get(name)
-    if attribute is not None and (attribute.data_type, attribute.domain) != (data_type, domain):
-        mesh.attributes.remove(attribute)
-        attribute = None
-    attribute = attribute or mesh.attributes.new(name, data_type, domain)
-    attribute.data.foreach_set("value", np.ascontiguousarray(values, _KINDS[data_type]))
 
 
 def merged_labels(mesh: bpy.types.Mesh, labels: np.ndarray, taking: np.ndarray) -> np.ndarray:
@@ -54,10 +34,10 @@ def write_face_sets(mesh: bpy.types.Mesh, labels: np.ndarray, taking: np.ndarray
     """Make each segment a face set, with numbers above those of faces that took no part."""
     sets = read_ints(mesh, FACE_SET, "FACE", 1)
     if KEPT_SET not in mesh.attributes:
-        write(mesh, KEPT_SET, "INT", "FACE", sets)
+        write_numbers(mesh, KEPT_SET, "INT", "FACE", sets)
     first = 1 + sets[~taking].max(initial=0)
     sets[taking] = labels[taking] + first
-    write(mesh, FACE_SET, "INT", "FACE", sets)
+    write_numbers(mesh, FACE_SET, "INT", "FACE", sets)
 
 
 def give_back_face_sets(mesh: bpy.types.Mesh, faces: np.ndarray) -> None:
@@ -65,7 +45,7 @@ def give_back_face_sets(mesh: bpy.types.Mesh, faces: np.ndarray) -> None:
     if KEPT_SET not in mesh.attributes:
         return
     kept = read_ints(mesh, KEPT_SET, "FACE", 1)
-    write(mesh, FACE_SET, "INT", "FACE", np.where(faces, kept, read_ints(mesh, FACE_SET, "FACE", 1)))
+    write_numbers(mesh, FACE_SET, "INT", "FACE", np.where(faces, kept, read_ints(mesh, FACE_SET, "FACE", 1)))
     if faces.all():
         mesh.attributes.remove(mesh.attributes[KEPT_SET])
         if (kept == 1).all():
@@ -96,7 +76,7 @@ def mark_borders(mesh: bpy.types.Mesh, borders: np.ndarray, free: np.ndarray, ki
         ours[stale] &= ~bit
         ours[borders & ~marked] |= bit
         mesh.edges.foreach_set(flag, marked | borders)
-    write(mesh, MARKED, "INT", "EDGE", ours)
+    write_numbers(mesh, MARKED, "INT", "EDGE", ours)
     if not ours.any():
         mesh.attributes.remove(mesh.attributes[MARKED])
 

@@ -5,6 +5,7 @@ import bmesh
 import bpy
 import numpy as np
 
+from ..blender.stored_numbers import read_ints, write_numbers
 from . import layers, slots
 
 CUT = "ridgeform_cut"
@@ -18,14 +19,14 @@ def separate(obj: bpy.types.Object, labels: np.ndarray, caps: bool = False) -> l
     are closed on both sides; borders that were open before stay open. Returns all parts.
     """
     if caps:
-        layers.write(obj.data, CUT, "INT", "EDGE", layers.border_edges(obj.data, labels).astype(np.int32))
+        write_numbers(obj.data, CUT, "INT", "EDGE", layers.border_edges(obj.data, labels).astype(np.int32))
     context = bpy.context
     active, chosen = context.view_layer.objects.active, list(context.selected_objects)
     parts = [obj]
     _select_only(obj)
     try:
         for segment in np.unique(labels[labels >= 0])[1:].tolist():
-            now = layers.read_ints(obj.data, layers.SEGMENT, "FACE", -1)
+            now = read_ints(obj.data, layers.SEGMENT, "FACE", -1)
             _select_faces(obj.data, now == segment)
             before = set(context.scene.objects)
             bpy.ops.object.mode_set(mode="EDIT")

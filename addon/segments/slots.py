@@ -9,7 +9,7 @@ import colorsys
 import bpy
 import numpy as np
 
-from . import layers
+from ..blender.stored_numbers import read_ints, write_numbers
 
 KEPT = "ridgeform_material"
 """The face attribute with the slots that faces had before segments took them."""
@@ -30,7 +30,7 @@ def assign(mesh: bpy.types.Mesh, labels: np.ndarray, taking: np.ndarray, name: s
     index = index_of(mesh)
     own = own_slots(mesh)
     before = user_index(mesh)
-    layers.write(mesh, KEPT, "INT", "FACE", before)
+    write_numbers(mesh, KEPT, "INT", "FACE", before)
     kept = set(index[~taking].tolist())
     free = [slot for slot in own if slot not in kept]
     for number, segment in enumerate(np.unique(labels[taking])):
@@ -46,7 +46,7 @@ def user_index(mesh: bpy.types.Mesh) -> np.ndarray:
     """The slot (f,) that each face has, or had before segments took it; -1 where there was none."""
     index, own = index_of(mesh), own_slots(mesh)
     others = index if len(own) < len(mesh.materials) else np.full_like(index, -1)
-    return np.where(np.isin(index, own), layers.read_ints(mesh, KEPT, "FACE", -1), others)
+    return np.where(np.isin(index, own), read_ints(mesh, KEPT, "FACE", -1), others)
 
 
 def give_back(mesh: bpy.types.Mesh, faces: np.ndarray) -> None:
@@ -81,7 +81,7 @@ def remove_unused(mesh: bpy.types.Mesh, index: np.ndarray) -> None:
     """
     index = index.copy()
     used = set(index.tolist())
-    kept = layers.read_ints(mesh, KEPT, "FACE", -1)
+    kept = read_ints(mesh, KEPT, "FACE", -1)
     for slot in reversed(own_slots(mesh)):
         if slot not in used:
             material = mesh.materials.pop(index=slot)
@@ -90,7 +90,7 @@ def remove_unused(mesh: bpy.types.Mesh, index: np.ndarray) -> None:
             if material.users == 0:
                 bpy.data.materials.remove(material)
     if KEPT in mesh.attributes:
-        layers.write(mesh, KEPT, "INT", "FACE", kept)
+        write_numbers(mesh, KEPT, "INT", "FACE", kept)
     mesh.polygons.foreach_set("material_index", np.maximum(index, 0))
     mesh.update()
 

@@ -13,6 +13,7 @@ from ..blender import attribute_io, attribute_names, display, mesh_io
 from ..blender.attribute_io import PointValues
 from ..blender.refusals import RefusedError
 from ..blender.selection import Needs
+from ..blender.stored_numbers import write_numbers
 from ..blender.welding import Weld
 from ..framework.job import Task
 from ..framework.results import Results
@@ -171,7 +172,7 @@ class Segmenting(Run):
         earlier.clear(part.object, part.taking, outputs)
         if "FACE_SETS" in outputs:
             layers.write_face_sets(mesh, labels, taking)
-        layers.write(mesh, layers.SEGMENT, "INT", "FACE", whole)
+        write_numbers(mesh, layers.SEGMENT, "INT", "FACE", whole)
         marks = [kind for kind in layers.MARKS if kind in outputs]
         if marks:
             borders = layers.border_edges(mesh, labels)
@@ -179,7 +180,7 @@ class Segmenting(Run):
         if "VERTEX_GROUPS" in outputs:
             groups.write_groups(part.object, whole, self.settings.transition)
         if "INDICATOR" in outputs and not of_parts(self.settings):
-            layers.write(mesh, layers.INDICATOR, "FLOAT", "FACE", part.face_means(found.indicator))
+            write_numbers(mesh, layers.INDICATOR, "FLOAT", "FACE", part.face_means(found.indicator))
         if "SHARPENED" in outputs and not of_parts(self.settings):
             _write_sharpened(part)
         if "MATERIALS" in outputs:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import ridgeform
 from bl_ext.user_default.ridgeform.blender import attribute_io, mesh_io
+from bl_ext.user_default.ridgeform.blender.stored_numbers import read_ints
 from bl_ext.user_default.ridgeform.framework import job
 from bl_ext.user_default.ridgeform.framework.settings import defaults_of
 from bl_ext.user_default.ridgeform.segments import groups, layers, slots, tool
@@ -27,7 +28,7 @@ def cube(name="Cube", n=6, noise=0.05):
 
 
 def ints(obj, name, domain="FACE"):
-    return layers.read_ints(obj.data, name, domain, -7)
+    return read_ints(obj.data, name, domain, -7)
 
 
 def slot_of_faces(obj):

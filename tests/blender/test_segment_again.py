@@ -3,6 +3,7 @@
 import bpy
 import numpy as np
 import pytest
+from bl_ext.user_default.ridgeform.blender.stored_numbers import write_numbers
 from bl_ext.user_default.ridgeform.framework import job
 from bl_ext.user_default.ridgeform.segments import layers, slots
 from test_segment import SIDES, cube, flags, ints, same_partition, select_faces, slot_of_faces
@@ -114,7 +115,7 @@ def test_another_make_leaves_nothing_of_the_first(first):
 def test_face_sets_come_back():
     obj, truth = cube()
     sets = (1 + np.arange(len(truth)) // 50).astype(np.int32)
-    layers.write(obj.data, layers.FACE_SET, "INT", "FACE", sets)
+    write_numbers(obj.data, layers.FACE_SET, "INT", "FACE", sets)
     bpy.ops.ridgeform.segment(outputs={"FACE_SETS"})
     bpy.ops.ridgeform.segment(outputs={"FACE_SETS"}, use_count=True, count=2)
     bpy.ops.ridgeform.segment(outputs={"SHARP"})

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import ridgeform
 from bl_ext.user_default.ridgeform.blender import mesh_io
+from bl_ext.user_default.ridgeform.blender.stored_numbers import read_ints
 from bl_ext.user_default.ridgeform.framework import job
 from bl_ext.user_default.ridgeform.segments import groups, layers
 from known_shapes import limbs
@@ -21,7 +22,7 @@ def ball():
 
 
 def labels_of(obj):
-    return layers.read_ints(obj.data, layers.SEGMENT, "FACE", -7)
+    return read_ints(obj.data, layers.SEGMENT, "FACE", -7)
 
 
 def expected(obj, n_parts=None, **keywords):
