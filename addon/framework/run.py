@@ -49,7 +49,8 @@ class Run(ABC):
 
     name: ClassVar[str]
     """The tool's name, in the summary as well."""
-    takes: ClassVar[type[Settings]]
+    # Not a `ClassVar`: `typing` keeps what is in one to the end, and Blender 4.2 then cannot end (`settings`).
+    takes: type[Settings]
     """The settings that it is given values of."""
     call: ClassVar[str | None] = None
     """The call of the package whose memory is asked for before a run; `None` if it takes little more than the
