@@ -49,7 +49,8 @@ class Run(ABC):
 
     name: ClassVar[str]
     """The tool's name, in the summary as well."""
-    # Not a `ClassVar`: `typing` keeps what is in one to the end, and Blender 4.2 then cannot end (`settings`).
+    # No `ClassVar`: `typing` keeps what is in one until Python ends, which Blender 4.2 then cannot without a
+    # crash (`properties_of`).
     takes: type[Settings]
     """The settings that it is given values of."""
     call: ClassVar[str | None] = None
