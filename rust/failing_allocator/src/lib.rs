@@ -29,8 +29,8 @@ impl Failing {
         }
     }
 
-    /// Counts allocations of at least `large` bytes from now on, from 0, and fails the one with the number `which`; where
-    /// `is_traced`, that one prints its backtrace.
+    /// Counts allocations of at least `large` bytes from now on, from 0, and fails the one with the number
+    /// `which`; where `is_traced`, that one prints its backtrace.
     pub fn fail(&self, which: usize, large: usize, is_traced: bool) {
         self.count.store(0, Relaxed);
         self.which.store(which, Relaxed);

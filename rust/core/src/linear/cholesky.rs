@@ -143,8 +143,8 @@ impl Cholesky {
         Ok(())
     }
 
-    /// Solves in place for `K` right sides, with the last factorization. Rows of the matrix behind the last of
-    /// `right` are zero on the right side, and what they are in the solution is left out.
+    /// Solves in place for `K` right sides, with the last factorization. Rows of the matrix behind the last
+    /// of `right` are zero on the right side, and what they are in the solution is left out.
     ///
     /// # Errors
     /// [`SolveError::Memory`].
