@@ -7,9 +7,11 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
+import ridgeform
 from addon_kit import coordinates, set_coordinates
 from bl_ext.user_default.ridgeform.framework import batch
 from hole_kit import box
+from known_shapes import shapes
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGES = [DOCS.parent / "README.md", *sorted(DOCS.glob("*.md"))]
@@ -69,13 +71,45 @@ def test_all_recipes_with_python_are_found():
     assert len(RECIPES) >= 11
 
 
+def python_of(page):
+    """The Python blocks of a page."""
+    text = (DOCS / page).read_text(encoding="utf-8")
+    return re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+
+
+def test_the_python_of_the_manual_runs(tmp_path):
+    box(n=8)
+    (code,) = python_of("manual.md")
+    bpy.context.scene.ridgeform_stylize.steps = 7
+    exec(code.replace("/tmp/", tmp_path.as_posix() + "/"), {"bpy": bpy})
+    assert "steps = 7" in (tmp_path / "recipe.toml").read_text(encoding="utf-8")
+
+
+def test_the_python_on_diffusion_curves_runs():
+    vertices, faces = shapes.subdivide(*shapes.cube(4))
+    colors = np.where(vertices[:, 2:] > 0.3, [1.0, 0.2, 0.1], [0.1, 0.2, 0.9])
+    names = {"ridgeform": ridgeform, "mesh": ridgeform.Mesh(vertices, faces), "colors": colors}
+    angle = np.linspace(0.0, 2.0, 30)
+    names["points"] = np.column_stack([np.cos(angle), np.sin(angle), np.full_like(angle, 0.3)])
+    for code in python_of("manual_diffusion_curves.md"):
+        exec(code, names)
+    assert len(names["found"].edges) > 10
+    assert len(names["vertices"]) > 1
+
+
+def test_no_page_has_python_that_is_not_run():
+    """README and CONTRIBUTING have tests of their own."""
+    pages = {page.name for page in PAGES if "```python" in page.read_text(encoding="utf-8")}
+    assert pages == {"README.md", "manual.md", "manual_diffusion_curves.md", "recipes.md"}
+
+
 def command_lines():
-    """Every line of the documentation that calls the batch command, with its page."""
+    """Every call of the batch command in the documentation, on a line or within one, with its page."""
+    call = re.compile(r"^(?:blender --command ridgeform|PYTHONPATH=\S+ \S+ -m addon) (.+)$", re.M)
+    within = re.compile(r"`blender --command ridgeform ([^`]+)`")
     for page in PAGES:
         text = page.read_text(encoding="utf-8")
-        for line in re.findall(
-            r"^(?:blender --command ridgeform|PYTHONPATH=\S+ \S+ -m addon) (.+)$", text, re.M
-        ):
+        for line in call.findall(text) + [" ".join(line.split()) for line in within.findall(text)]:
             yield page.name, line
 
 
