@@ -161,7 +161,11 @@ class ChangingRun(ModalRun):
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Handle one event."""
-        return self._settled(super().modal(context, event))
+        outcome = self._settled(super().modal(context, event))
+        if event.type != "ESC":
+            return outcome
+        # A slider that is still dragged gets it, too: otherwise it would go on, and set its value again.
+        return (outcome - {"RUNNING_MODAL"}) | {"PASS_THROUGH"}
 
     def finished(self, context: bpy.types.Context, run: Run) -> set[str]:
         """Write the new result; the one before comes back if there is none."""

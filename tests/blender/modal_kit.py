@@ -116,8 +116,8 @@ def poll_to_the_end(operator, context):
 
 def leave(operator, context, key="ESC"):
     """Cancel a run and wait until it has ended: what the operator returned then."""
-    outcome = operator.modal(context, event(key))
-    return poll_to_the_end(operator, context) if outcome == {"RUNNING_MODAL"} else outcome
+    outcome = operator.modal(context, event(key)) - {"PASS_THROUGH"}
+    return outcome if "CANCELLED" in outcome else poll_to_the_end(operator, context)
 
 
 class Session:

@@ -197,6 +197,19 @@ def test_other_events_stay_with_blender_meanwhile():
     assert modal_kit.leave(operator, context) == {"CANCELLED"}
 
 
+@pytest.mark.parametrize(("key", "passes"), [("ESC", True), ("RIGHTMOUSE", False)])
+def test_esc_reaches_a_slider_that_is_still_dragged(key, passes):
+    press(open_box())
+    operator, context = changed(strength=0.9)
+    outcome = operator.modal(context, modal_kit.event(key))
+    assert ("PASS_THROUGH" in outcome) == passes
+    while "CANCELLED" not in outcome:
+        outcome = operator.modal(context, modal_kit.event("TIMER"))
+    # What Blender sets then is the value before the drag: nothing starts again.
+    panel().strength = 0.5
+    assert not looks() and bound.current() is not None
+
+
 @pytest.mark.parametrize("change_by_hand", CHANGES, ids=lambda change: change.__name__)
 @pytest.mark.parametrize("finish", ["KEEP", "FACETS", "LOW_POLY"])
 def test_a_mesh_changed_by_hand_ends_it(change_by_hand, finish):
