@@ -68,9 +68,10 @@ def reason_against(mesh: bpy.types.Mesh, leaves_mesh: bool = False) -> str | Non
 def read(obj: bpy.types.Object) -> Before:
     """Read the mesh of an object in Object Mode."""
     mesh = obj.data
+    of_triangles = mesh_io.triangle_corners(mesh)
     old = Triangulation(
-        mesh_io.triangles(mesh),
-        mesh_io.triangle_corners(mesh),
+        mesh_io.corner_vertices(mesh)[of_triangles],
+        of_triangles,
         mesh_io.triangle_faces(mesh),
         mesh_io.edges(mesh),
         mesh_io.positions(mesh).astype(np.float64),
