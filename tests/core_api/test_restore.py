@@ -201,6 +201,7 @@ def test_random_meshes_keep_their_faces_and_give_numbers(seed):
     [
         ({"max_move": 0.0}, "max_move: is 0; it must be a positive length"),
         ({"noise": float("nan")}, "noise"),
+        ({"noise": 1e3}, "noise"),
         ({"regularize": 45.0}, "regularize: is 45; it must be between 0 and 30"),
         ({"fixed": np.zeros(3, bool)}, "fixed"),
         ({"faces": np.zeros(12, bool)}, "faces"),

@@ -4,7 +4,8 @@
 //! [`LARGE`] bytes. It must end with a result or an error that says what is missing. Where the allocation
 //! cannot return an error the process ends, as Rust has it: that is why a call asks for all of it before
 //! ([`ridgeform_core::memory`]). Nothing else may happen: no panic, no result that says that it is none, no
-//! other error. What was found is printed; with `RIDGEFORM_FAIL=all` for every allocation.
+//! other error. What was found is printed; with `RIDGEFORM_FAIL=all` for every allocation, with the name of a
+//! call for all of that call.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod allocation_calls;
@@ -21,7 +22,7 @@ static ALLOCATOR: Failing = Failing::new();
 /// Names the case in the child.
 const CASE: &str = "RIDGEFORM_FAILING_ALLOCATION";
 
-/// With `all`, every allocation is failed, not some.
+/// With `all`, every allocation is failed, not some; with the name of a call every one of that.
 const WHICH: &str = "RIDGEFORM_FAIL";
 
 /// What the system allocator takes from the system by itself, and not from what it keeps for small pieces.
@@ -29,6 +30,23 @@ const LARGE: usize = 128 << 10;
 
 /// So many of a call are tried, evenly spread.
 const TRIED: usize = 3;
+
+/// Calls in which no allocation of ours ends the process, and none may begin to. Those of a library can: they
+/// have nothing to return an error with.
+const CLEAN: [&str; 9] = [
+    "stylize",
+    "denoise",
+    "denoise 3 columns",
+    "denoise quadratic",
+    "denoise by clarabel",
+    "interpolate",
+    "vibration_modes",
+    "segment",
+    "restore",
+];
+
+/// What the names of the functions of libraries begin with.
+const LIBRARIES: [&str; 3] = ["clarabel::", "<clarabel::", "faer::"];
 
 /// So many functions say where an allocation was asked for.
 const NAMED: usize = 4;
@@ -92,24 +110,19 @@ fn faults_of(name: &str, is_all: bool) -> Vec<String> {
     };
     let step = if is_all { 1 } else { count.div_ceil(TRIED).max(1) };
     let ends: Vec<End> = (0..count).step_by(step).map(|which| end_of(name, which)).collect();
-    let number = |wanted: &End| ends.iter().filter(|end| *end == wanted).count();
-    let refused = number(&End::Refused);
-    let places: Vec<&String> = ends
-        .iter()
-        .filter_map(|end| match end {
-            End::Aborted(place) => Some(place),
-            _ => None,
-        })
-        .collect();
-    let aborted = places.len();
-    for place in places {
-        println!("{name} @ {place}");
-    }
-    println!("{name}: {count} large, {} tried, {refused} refused, {aborted} end the process", ends.len());
+    let n_refused = ends.iter().filter(|end| **end == End::Refused).count();
+    let n_aborted = ends.iter().filter(|end| matches!(end, End::Aborted(_))).count();
+    println!("{name}: {count} large, {} tried, {n_refused} refused, {n_aborted} end the process", ends.len());
     let first =
         (ends.first() != Some(&End::Refused)).then(|| format!("{name}: the first is {:?}", ends.first()));
     let others = ends.into_iter().filter_map(|end| match end {
         End::Fault(fault) => Some(fault),
+        End::Aborted(place) => {
+            println!("{name} ends the process in {place}");
+            let is_known =
+                !CLEAN.contains(&name) || LIBRARIES.iter().any(|library| place.starts_with(library));
+            (!is_known).then(|| format!("{name} ends the process in {place}"))
+        }
         _ => None,
     });
     others.chain(first).collect()

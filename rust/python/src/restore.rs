@@ -95,8 +95,8 @@ solver_function! {
     /// mesh : Mesh with positions
     /// max_move : float > 0, how far a vertex may move, in the mesh's units; None: four standard deviations
     ///     of the noise and half a mean edge
-    /// noise : float > 0, standard deviation of the noise along the normal, in the mesh's units; None:
-    ///     as found in the mesh
+    /// noise : float > 0, standard deviation of the noise along the normal, in the mesh's units, less than
+    ///     its size; None: as found in the mesh
     /// regularize : degrees, 0 to 30, up to which directions are made parallel and orthogonal, and in the
     ///     same proportion radii equal; None: surfaces as fitted
     /// free : whether pieces of no known kind are denoised by the flow; otherwise they stay

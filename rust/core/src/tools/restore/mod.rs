@@ -25,7 +25,7 @@ use crate::tools::answer::{refused, Surroundings};
 use crate::tools::scale::extent;
 use crate::tools::segment::{segment, SegmentOptions};
 use crate::unit::Unit;
-use crate::Result;
+use crate::{Error, Result};
 use constants::{FREE_MOVE, MOST_NOISE_MOVE, ROUNDING};
 use place::Placement;
 
@@ -61,6 +61,11 @@ pub fn restore(mesh: &Mesh, options: &RestoreOptions, progress: &Progress) -> Re
 fn on(working: &Working<'_>, unit: Unit, options: &RestoreOptions, progress: &Progress) -> Result<Restored> {
     let mesh = working.mesh();
     let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
+    let (size, _) = extent(mesh.connectivity(), positions);
+    if let Some(noise) = options.noise.filter(|&noise| unit.measure(noise) >= size && size > 0.0) {
+        let problem = format!("is {noise:e}, as large as the mesh; pass the height of its bumps, or None");
+        return Err(Error::argument("noise", problem));
+    }
     let segments = segment(
         mesh,
         None,
@@ -72,7 +77,6 @@ fn on(working: &Working<'_>, unit: Unit, options: &RestoreOptions, progress: &Pr
         progress,
     )?;
     say(progress, 0.5, "surfaces");
-    let (size, _) = extent(mesh.connectivity(), positions);
     let noise = options.noise.map_or(segments.noise, |noise| unit.measure(noise));
     let domain = Domain::new(mesh.connectivity(), positions, noise.max(ROUNDING * size));
     let mut state = labelling(&domain, &segments.labels, progress)?;

@@ -13,7 +13,8 @@ pub struct RestoreOptions {
     /// noise and half a mean edge. Vertices that would have to move farther go onto fewer of their surfaces,
     /// or stay.
     pub max_move: Option<f64>,
-    /// Standard deviation of the noise along the normal, in the mesh's unit; found in the mesh where `None`.
+    /// Standard deviation of the noise along the normal, in the mesh's unit and less than its size; found in
+    /// the mesh where `None`.
     pub noise: Option<f64>,
     /// Degrees up to which directions count as parallel or orthogonal and are made so, and radii as equal in
     /// proportion. `None`: surfaces stay as they were fitted.
