@@ -17,7 +17,7 @@ PLACES = 1 << 30
 def locked(path: Path, name: str) -> Iterator[None]:
     """Hold a name in a lock file that is there, waiting until no other process holds it. `OSError`."""
     place = int.from_bytes(hashlib.sha256(name.encode()).digest()[:8], "little") % PLACES
-    # Closing any handle of a file gives up all locks of the process on it, hence a handle for each process.
+    # Closing any handle of a file gives up all locks of the process on it, so each process has its own.
     handle = _handle(path)
     while not _try_lock(handle, place):
         time.sleep(POLL_SECONDS)

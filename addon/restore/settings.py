@@ -26,15 +26,15 @@ class RestoreSettings(Settings):
 
     regularize: number(
         "Regularize",
-        "Make surfaces parallel and orthogonal that are so up to this angle, and radii equal that differ by "
-        "as little",
+        "Make surfaces exactly parallel or orthogonal that are so within this angle, and radii equal that "
+        "differ by as little",
         Range(np.radians(3.0), min=0.0, max=np.radians(30.0)),
         subtype="ANGLE",
         otherwise="surfaces stay as they were fitted",
     )
     free: boolean(
         "Denoise Free Pieces",
-        "Denoise pieces that are no surface of a known kind. Otherwise they stay as they are",
+        "Denoise pieces that do not lie on a surface of a known kind. Otherwise they stay as they are",
         default=True,
     )
     strength_group: vertex_group(
@@ -42,7 +42,7 @@ class RestoreSettings(Settings):
     )
     outputs: choices(
         "Make",
-        "What to make of the surfaces besides moving the vertices",
+        "What to create from the surfaces, besides moving the vertices",
         OUTPUTS,
         default={"ATTRIBUTES"},
         flag="--make",
