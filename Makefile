@@ -3,7 +3,8 @@ PYTHON ?= python3
 RUN = @$(PYTHON) scripts/setup_env.py
 
 .PHONY: help demo test test-all-blenders test-dask lint workflows notices advisories bench bench-holes bench-segments \
-	bench-memory bench-limits bench-growth bench-latency bench-files bench-parts bench-facets bench-restore fuzz fuzz-sequences \
+	bench-memory bench-limits bench-growth bench-latency bench-files bench-parts bench-facets bench-restore \
+	bench-overnight fuzz fuzz-sequences \
 	extension wheel release sizes docs fixtures pictures gallery
 
 help:
@@ -21,6 +22,7 @@ help:
 	@echo "make bench-segments  segment shapes of known parts: benchmarks/segments.md"
 	@echo "make bench-facets  meshes as facets, beside quadric reduction: benchmarks/facets.md"
 	@echo "make bench-restore  restore shapes of known parts from noise: benchmarks/restore.md"
+	@echo "make bench-overnight  1000 files in two processes, after kill -9, and on Dask: benchmarks/overnight.md"
 	@echo "make bench-memory  what calls take beside what is said of them: docs/reliability.md"
 	@echo "make bench-limits  every call under caps on memory: docs/reliability.md"
 	@echo "make bench-growth  how time grows with what a file has many of: docs/reliability.md"
@@ -75,6 +77,9 @@ bench-facets:
 
 bench-restore:
 	$(RUN) benchmarks/restore.py $(ARGS)
+
+bench-overnight:
+	$(RUN) benchmarks/overnight.py $(ARGS)
 
 bench-segments:
 	$(RUN) benchmarks/segments.py $(ARGS)
