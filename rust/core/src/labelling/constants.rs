@@ -6,21 +6,20 @@
 pub const FREE_MISFIT: f64 = 1.125;
 
 /// What a border costs for each mean edge of its length, beside the likelihoods of its two sides: as much as
-/// one observation of noise costs twice over. With nothing, borders follow the noise of single faces.
+/// a vertex that is 1.4 standard deviations off.
 pub(super) const BORDER: f64 = 1.0;
 
 /// Rounds of merging and relabeling at most; two or three change something.
 pub(super) const MOST_ROUNDS: usize = 8;
 
-/// Sweeps over the faces at most: a border moves by a face or more in each, and few start farther off.
+/// Sweeps over the faces at most; they end when one changes nothing.
 pub(super) const MOST_SWEEPS: usize = 20;
 
 /// A face changes its piece where that gains more than rounding makes of the sum of its costs.
 pub(super) const GAIN: f64 = 1e-9;
 
-/// Points that a kind is chosen by: kinds differ by hundreds of units of energy then, and what is chosen is
-/// fitted to all.
+/// Points that a kind is chosen by; what is chosen is fitted to all.
 pub(super) const ENOUGH: usize = 1000;
 
-/// Points that a merge is judged by before it is fitted to all: most pairs of pieces fail by far.
+/// Points that a merge is judged by before it is fitted to all.
 pub(super) const JUDGED_BY: usize = 300;

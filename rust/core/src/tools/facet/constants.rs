@@ -82,12 +82,12 @@ pub(super) const LITTLE: f64 = 1e-3;
 /// what rounding leaves of a sum of areas, and far less than any triangle.
 pub(super) const COVERED: f64 = 1e-9;
 
-/// Asked after so many merges whether to stop: they take a few milliseconds.
+/// Asked after so many merges whether to stop.
 pub(super) const PATIENCE: usize = 1000;
 
 /// The number that is aimed at changes by no more than this from one time to the next, and this part of it:
 /// repairs that failed leave many triangles, which say little.
 pub(super) const CHANGE: [f64; 2] = [4.0, 0.2];
 
-/// Flattening goes on below [`FLAT`] to this part of it, which the last Newton step reaches anyway.
+/// Steps that only flatten end below this part of [`FLAT`].
 pub(super) const FLATTEST: f64 = 1e-3;

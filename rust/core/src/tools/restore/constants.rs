@@ -26,10 +26,10 @@ pub(super) const FLOW_STEPS: usize = 12;
 /// it moves a scan of ten thousand vertices by a fraction of its noise.
 pub(super) const FLOW_FIDELITY: f64 = 1e7;
 
-/// Turns and shifts of axes are found in so many Newton steps at most; two to four reach rounding,
+/// Turns and shifts of axes are found in so many Newton steps at most; they end at rounding,
 pub(super) const MOST_TURNS: usize = 20;
 
-/// which is that of unit vectors, and of places in the unit of the shape.
+/// that of unit vectors, and of places in the unit of the shape.
 pub(super) const TURN_ROUNDING: f64 = 1e-15;
 pub(super) const SHIFT_ROUNDING: f64 = 1e-14;
 
