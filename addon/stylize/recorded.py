@@ -54,7 +54,8 @@ class Flow:
         if steps > result.iterations:
             return result if result.status in ENDED else None
         vertices = self.steps.get(steps)
-        if vertices is None:
+        # Where steps were done on coarser meshes, fewer would have ended on the mesh itself, too.
+        if vertices is None or len(result.gap) > result.iterations:
             return None
         # A flow without a step says how flat a shape is.
         shape = ridgeform.stylize(ridgeform.Mesh(vertices, self.triangles), iterations=0)

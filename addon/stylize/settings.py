@@ -181,6 +181,14 @@ class StylizeSettings(Settings):
     coupling: shared.COUPLING
     dual: shared.DUAL
     delaunay: shared.DELAUNAY
+    coarse_to_fine: boolean(
+        "Coarse First",
+        "On large meshes, let the facets form on a simplified mesh first, and do only the last steps on the "
+        "mesh itself. The result is the same at any density",
+        default=True,
+        section=shared.EXPERT,
+        active=lambda settings: not settings.use_fidelity,
+    )
     solver: shared.SOLVER
     tolerance: number(
         "Tolerance",
@@ -229,6 +237,7 @@ def stylize_options(settings: object) -> dict[str, object]:
         "coupling": settings.coupling,
         "dual": settings.dual,
         "delaunay": settings.delaunay,
+        "coarse_to_fine": None if settings.coarse_to_fine else False,
         "solver": settings.solver,
         "tolerance": chosen(settings, "tolerance"),
         "max_iterations": chosen(settings, "max_iterations"),

@@ -214,6 +214,7 @@ def test_defaults_are_those_of_the_manual():
         "ridge_weights": None,
         "delaunay": False,
         "dual": "barycentric",
+        "coarse_to_fine": None,
         "solver": "auto",
         "tolerance": 1e-3,
         "max_iterations": None,

@@ -7,6 +7,7 @@ pub mod error;
 pub mod hole_filling;
 pub mod intrinsic;
 pub mod labelling;
+pub mod levels;
 pub mod linear;
 pub mod memory;
 pub mod mesh;

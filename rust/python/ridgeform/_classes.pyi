@@ -142,6 +142,7 @@ class Stylized:
     gap: Final[Floats]
     solver_iterations: Final[Indices]
     iterations: Final[int]
+    level_vertices: Final[Indices]
     factorisations: Final[int]
     flat_share: Final[Floats]
     n_facets: Final[int]

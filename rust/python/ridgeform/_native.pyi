@@ -196,6 +196,7 @@ def stylize(
     ridge_weights: ArrayLike | None = None,
     delaunay: bool = False,
     dual: Dual = "barycentric",
+    coarse_to_fine: bool | None = None,
     solver: Solver = "auto",
     tolerance: float | None = 1e-3,
     max_iterations: int | None = None,

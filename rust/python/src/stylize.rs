@@ -13,14 +13,19 @@ use crate::{arrays, doorway, options};
 pub struct Stylized {
     /// The new vertex positions, (n,3) float64, in the units of the input.
     vertices: Py<PyArray2<f64>>,
-    /// The energy of the coordinates before the first and after every step, (steps + 1,) float64.
+    /// The energy of the coordinates before the first and after every step, on the mesh of that step,
+    /// (steps + 1,) float64.
     energy: Py<PyArray1<f64>>,
     /// The certified relative duality gap of every step's problem, (steps,) float64.
     gap: Py<PyArray1<f64>>,
     /// The solver's iterations in every step, (steps,) int32.
     solver_iterations: Py<PyArray1<i32>>,
-    /// Number of steps done.
+    /// Steps of the flow, from its beginning to its end. With `coarse_to_fine` the last ones were done on
+    /// several meshes, and arrays over steps have an entry each time.
     iterations: usize,
+    /// The vertices of the mesh that each step was done on, (steps,) int32: fewer than the mesh's own for
+    /// coarser levels.
+    level_vertices: Py<PyArray1<i32>>,
     /// Numeric factorizations, all steps together.
     factorisations: usize,
     /// The part of the area in faces that lie in one plane with all their neighbors (at less than 2 degrees,
@@ -76,6 +81,10 @@ solver_function! {
     /// delaunay : flip edges to intrinsic Delaunay before each step
     /// dual : "barycentric", "circumcentric" (MeshError where a dual edge has no length) or
     ///     "circumcentric_or_barycentric" (barycenters for such edges)
+    /// coarse_to_fine : bool or None. True: the flow is done on a mesh of some 9000 vertices first, which
+    ///     edge collapses leave of this one, and only its last steps on finer ones and on the mesh itself;
+    ///     False: all steps on the mesh itself; None: True for a flow with `movement` or `flat_share` on a
+    ///     mesh of at least 18,000 vertices
     solver keywords
     /// progress : Progress or None; its snapshot() shows the vertices after the last finished step
     ///
@@ -89,10 +98,11 @@ solver_function! {
     ///
     /// References
     /// ----------
-    /// Rowe et al. 2024, eq. (24), section 7.3; reweighting: Candès et al. 2008.
+    /// Rowe et al. 2024, eq. (24), section 7.3; reweighting: Candès et al. 2008; levels: Garland and
+    /// Heckbert 1997.
     signature = (mesh, *, iterations=20, fidelity=500.0, movement=None, flat_share=None, sharpness=0.5,
         coupling="joint", scale="max_edge", fixed=None, strength=None, ridge_weights=None, delaunay=false,
-        dual="barycentric"), tolerance = 1e-3;
+        dual="barycentric", coarse_to_fine=None), tolerance = 1e-3;
     pub fn stylize(py: Python<'_>, solve, progress;
         mesh: &Mesh,
         iterations: i64,
@@ -107,6 +117,7 @@ solver_function! {
         ridge_weights: Option<&Bound<'_, PyAny>>,
         delaunay: bool,
         dual: &str,
+        coarse_to_fine: Option<bool>,
     ) -> PyResult<Stylized> {
         let (n, m) = (mesh.n_vertices(), mesh.n_faces());
         let options = tools::StylizeOptions {
@@ -122,17 +133,25 @@ solver_function! {
             ridge_weights: options::weights("ridge_weights", ridge_weights, m, "face")?,
             delaunay,
             dual: options::dual(py, dual)?,
+            levels: match coarse_to_fine {
+                None => tools::Levels::Auto,
+                Some(true) => tools::Levels::Always,
+                Some(false) => tools::Levels::Never,
+            },
             solve: solve()?,
         };
         let result = doorway::call(py, &progress, || tools::stylize(mesh.inner(), &options, &progress))?;
         let counts = result.solver_iterations.iter().map(|&count| i32::try_from(count).unwrap_or(i32::MAX));
         let [before, after] = result.flatness;
+        let level_vertices =
+            result.level_vertices.iter().map(|&count| i32::try_from(count).unwrap_or(i32::MAX));
         Ok(Stylized {
             flat_share: vec![before.flat_share, after.flat_share].into_pyarray(py).unbind(),
             n_facets: after.n_facets,
             vertices: arrays::float_rows(py, &result.vertices)?.unbind(),
             solver_iterations: counts.collect::<Vec<_>>().into_pyarray(py).unbind(),
-            iterations: result.gap.len(),
+            iterations: result.iterations,
+            level_vertices: level_vertices.collect::<Vec<_>>().into_pyarray(py).unbind(),
             energy: result.energy.into_pyarray(py).unbind(),
             gap: result.gap.into_pyarray(py).unbind(),
             factorisations: result.factorisations,

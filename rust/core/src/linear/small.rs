@@ -96,15 +96,66 @@ fn diagonalize<R: AsMut<[f64]> + AsRef<[f64]>>(a: &mut [R], vectors: &mut [R]) {
 pub struct Quadric {
     matrix: [[f64; 3]; 3],
     right: [f64; 3],
+    constant: f64,
 }
 
 impl Quadric {
     /// Adds a plane by its unit `normal` and its signed distance `offset` from the origin along that.
     pub fn add(&mut self, weight: f64, normal: [f64; 3], offset: f64) {
+        self.constant += weight * offset * offset;
         for i in 0..3 {
             self.right[i] += weight * offset * normal[i];
             (0..3).for_each(|j| self.matrix[i][j] += weight * normal[i] * normal[j]);
         }
+    }
+
+    /// Adds a point: three planes through it.
+    pub fn add_point(&mut self, weight: f64, point: [f64; 3]) {
+        for (i, x) in point.into_iter().enumerate() {
+            self.matrix[i][i] += weight;
+            self.right[i] += weight * x;
+            self.constant += weight * x * x;
+        }
+    }
+
+    /// The planes of both.
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        let mut sum = *self;
+        sum.constant += other.constant;
+        for i in 0..3 {
+            sum.right[i] += other.right[i];
+            (0..3).for_each(|j| sum.matrix[i][j] += other.matrix[i][j]);
+        }
+        sum
+    }
+
+    /// The weighted sum of the squared distances of `point` from the planes; what rounding makes negative is
+    /// 0.
+    #[must_use]
+    pub fn value(&self, point: [f64; 3]) -> f64 {
+        let mut sum = self.constant;
+        for i in 0..3 {
+            let row: f64 = (0..3).map(|j| self.matrix[i][j] * point[j]).sum();
+            sum += point[i] * (row - 2.0 * self.right[i]);
+        }
+        sum.max(0.0)
+    }
+
+    /// The point of least value; `None` where the planes do not determine it.
+    #[must_use]
+    pub fn minimizer(&self) -> Option<[f64; 3]> {
+        // Cramer's rule: three by three, millions of times.
+        let [a, b, c] = self.matrix;
+        let cross = |u: [f64; 3], v: [f64; 3]| {
+            [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+        };
+        let columns = [cross(b, c), cross(c, a), cross(a, b)];
+        let determinant: f64 = (0..3).map(|i| a[i] * columns[0][i]).sum();
+        let trace = a[0] + b[1] + c[2];
+        (determinant > 1e-12 * trace.powi(3)).then(|| {
+            std::array::from_fn(|i| (0..3).map(|k| columns[k][i] * self.right[k]).sum::<f64>() / determinant)
+        })
     }
 
     /// The directions that the planes determine, with how far the best point is along each: what the

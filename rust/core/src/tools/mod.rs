@@ -41,6 +41,6 @@ pub use scalar::ScalarOptions;
 pub use scale::Scale;
 pub use segment::{segment, Hierarchy, SegmentMethod, SegmentOptions, Segmentation};
 pub use sharpness::sharpened_weights;
-pub use stylize::{stylize, Flatness, FlowStatus, StylizeOptions, Stylized};
+pub use stylize::{stylize, Flatness, FlowStatus, Levels, StylizeOptions, Stylized};
 
 pub use crate::solve::Solution;

@@ -38,6 +38,8 @@ pub struct StylizeOptions {
     pub delaunay: bool,
     /// Dual edges of the operator.
     pub dual: Dual,
+    /// Whether most steps are done on coarser meshes.
+    pub levels: Levels,
     /// The solver.
     pub solve: SolveOptions,
 }
@@ -57,7 +59,38 @@ impl Default for StylizeOptions {
             ridge_weights: None,
             delaunay: false,
             dual: Dual::Barycentric,
+            levels: Levels::Auto,
             solve: SolveOptions::default(),
+        }
+    }
+}
+
+/// Whether a flow goes from coarse meshes to fine ones ([`crate::levels`]).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Levels {
+    /// A flow that looks for its end does, on meshes with at least twice the vertices of the coarsest level.
+    #[default]
+    Auto,
+    /// Any flow does, on meshes with more vertices than the coarsest level.
+    Always,
+    /// All steps are done on the mesh itself.
+    Never,
+}
+
+/// The most vertices of the coarsest level: what a flow makes of a shape at the usual strengths has some
+/// hundred facets, so that each has some tens of vertices; and the whole flow takes about a second.
+pub(super) const ENOUGH: usize = 9000;
+
+impl StylizeOptions {
+    /// Whether a mesh with so many vertices gets levels.
+    pub(super) fn uses_levels(&self, n_vertices: usize) -> bool {
+        match self.levels {
+            // Equal steps are those of the paper, each on the mesh itself.
+            Levels::Auto => {
+                n_vertices >= 2 * ENOUGH && (self.movement.is_some() || self.flat_share.is_some())
+            }
+            Levels::Always => n_vertices > ENOUGH,
+            Levels::Never => false,
         }
     }
 }
@@ -106,12 +139,18 @@ impl FlowStatus {
 pub struct Stylized {
     /// The vertices, as many and in the order of the input.
     pub vertices: Vec<[f64; 3]>,
-    /// `E_H` of the coordinates (18), before the first and after every step.
+    /// The steps from the beginning to the end of the flow. With levels the last of them were done on several
+    /// meshes, and what follows has an entry each time.
+    pub iterations: usize,
+    /// `E_H` of the coordinates (18), before the first and after every step, on the mesh of that step.
     pub energy: Vec<f64>,
     /// The relative duality gap of every step's convex problem.
     pub gap: Vec<f64>,
     /// The solver's iterations in every step.
     pub solver_iterations: Vec<usize>,
+    /// The vertices of the mesh that each step was done on: fewer than the mesh's own for those on coarse
+    /// levels.
+    pub level_vertices: Vec<usize>,
     /// Numeric factorizations in all.
     pub factorisations: usize,
     /// How far the shape is made of planes, before the first and after the last step.

@@ -37,7 +37,7 @@ const USUAL_GROWTH: f64 = 0.5;
 /// reaches depends on its time, hardly on the number of steps: ten steps that each double the time find the
 /// planes that a hundred equal ones find. So with a movement to reach, every step doubles the time, and the
 /// last ends where the movement does.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Pace {
     movement: Option<f64>,
     flat_share: Option<f64>,
@@ -48,6 +48,25 @@ pub(super) struct Pace {
     last: Option<(f64, f64)>,
     flat: Vec<f64>,
     fraction: f64,
+    /// The factors of all steps so far.
+    factors: Vec<f64>,
+    plan: Option<Plan>,
+}
+
+/// The steps that another flow of the same shape took.
+#[derive(Debug, Clone)]
+pub(super) struct Plan {
+    /// Their factors.
+    factors: Vec<f64>,
+    /// How it ended; `None` where it could not go on.
+    end: Option<FlowStatus>,
+}
+
+impl Plan {
+    /// Whether there is one.
+    pub(super) fn has_steps(&self) -> bool {
+        !self.factors.is_empty()
+    }
 }
 
 impl Pace {
@@ -61,7 +80,36 @@ impl Pace {
             last: None,
             flat: vec![start.flat_share],
             fraction: 0.0,
+            factors: Vec::new(),
+            plan: None,
         }
+    }
+
+    /// What a flow that ended with `status` did, for another one to do.
+    pub(super) fn plan(&self, status: FlowStatus) -> Plan {
+        use FlowStatus::{Converged, Reached, Settled};
+        let end = Some(status).filter(|status| matches!(status, Reached | Settled | Converged));
+        Plan { factors: self.factors.clone(), end }
+    }
+
+    /// The pace of a flow that stands where the one of `plan` stood after `done` steps.
+    pub(super) fn follow(&mut self, plan: Plan, done: usize) {
+        self.factors = plan.factors[..done].to_vec();
+        self.time = self.factors.iter().map(|factor| 1.0 / factor).sum();
+        self.factor = plan.factors.get(done).copied().unwrap_or(self.factor);
+        self.plan = Some(plan);
+    }
+
+    /// Sets the step after one that a plan had, or says how it ends.
+    fn planned(&mut self) -> Option<FlowStatus> {
+        let plan = self.plan.as_ref()?;
+        match (plan.factors.get(self.factors.len()), plan.end) {
+            (Some(&next), _) => self.factor = next,
+            (None, Some(end)) => return Some(end),
+            // The other flow could not go on: this one tries, with steps that double the time.
+            (None, None) => self.factor = 1.0 / self.time,
+        }
+        None
     }
 
     /// Whether there is nothing to do for a flow that looks for an end by itself.
@@ -96,11 +144,16 @@ impl Pace {
     /// sets the next one; the status where there shall be none.
     pub(super) fn after(&mut self, moved: f64, now: &Flatness) -> Option<FlowStatus> {
         if !self.looks_for_an_end() {
+            self.factors.push(self.factor);
             return None;
         }
         let gain = now.flat_share - self.flat.last().copied().unwrap_or(0.0);
         self.time += 1.0 / self.factor;
+        self.factors.push(self.factor);
         self.flat.push(now.flat_share);
+        if self.plan.is_some() {
+            return self.planned();
+        }
         let is_far = self.movement.is_some_and(|wanted| moved >= NEAR * wanted);
         let is_flat_enough = self.flat_share.is_some_and(|wanted| now.flat_share >= wanted && gain < FORMING);
         if is_far || is_flat_enough {

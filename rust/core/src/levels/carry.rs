@@ -1,0 +1,131 @@
+//! Where each vertex of a mesh lies on a coarser one.
+
+use rayon::prelude::*;
+
+use crate::buckets::Buckets;
+use crate::error::MeshError;
+use crate::mesh::vector::{add, area_vector, dot, norm, scale, sub, Point};
+use crate::mesh::Mesh;
+use crate::remesh::closest::closest_on_triangle;
+
+/// For every vertex of a fine mesh that is not held a point of a coarser one: three of its vertices with
+/// weights that sum to one.
+#[derive(Debug, Clone)]
+pub struct Carry {
+    places: Vec<Option<Place>>,
+}
+
+/// A point of the coarser mesh.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    face: u32,
+    corners: [u32; 3],
+    weights: [f64; 3],
+}
+
+impl Carry {
+    /// The closest points around the vertices that the fine ones collapsed into: the surface is walked from
+    /// there to ever closer faces, so that no point is found across a gap or on the other side of a sheet.
+    ///
+    /// # Errors
+    /// [`MeshError::NoPositions`].
+    pub(super) fn new(
+        fine: &[Point],
+        parents: &[u32],
+        is_held: &[bool],
+        coarse: &Mesh,
+    ) -> Result<Self, MeshError> {
+        let points = coarse.positions().ok_or(MeshError::NoPositions)?;
+        let faces = coarse.connectivity().faces();
+        let around = Buckets::new(points.len(), |visit| {
+            for (f, face) in (0_u32..).zip(faces) {
+                face.iter().for_each(|&v| visit(v as usize, f));
+            }
+        });
+        let corners = |f: u32| faces[f as usize].map(|v| points[v as usize]);
+        let squared = |p: Point, q: Point| dot(sub(p, q), sub(p, q));
+        let place = |p: Point, parent: u32| {
+            let mut best: Option<(f64, u32, Point)> = None;
+            let mut from = [parent, parent, parent];
+            loop {
+                let before = best.map_or(u32::MAX, |found| found.1);
+                for &f in from.iter().flat_map(|&v| around.of(v as usize)) {
+                    let point = closest_on_triangle(p, corners(f));
+                    let distance = squared(p, point);
+                    if best.is_none_or(|found| distance < found.0) {
+                        best = Some((distance, f, point));
+                    }
+                }
+                let (_, f, point) = best?;
+                if f == before {
+                    let weights = weights(corners(f), point);
+                    return Some(Place { face: f, corners: faces[f as usize], weights });
+                }
+                from = faces[f as usize];
+            }
+        };
+        let places = fine
+            .par_iter()
+            .zip(parents)
+            .zip(is_held)
+            .map(
+                |((&p, &parent), &is_held)| {
+                    if is_held || parent == u32::MAX {
+                        None
+                    } else {
+                        place(p, parent)
+                    }
+                },
+            )
+            .collect();
+        Ok(Self { places })
+    }
+
+    /// What `coarse` has at the vertices' points; `none` where a vertex is held or has no faces.
+    #[must_use]
+    pub fn points(&self, coarse: &[Point], none: Point) -> Vec<Point> {
+        let value = |Place { corners, weights, .. }: &Place| {
+            (0..3).fold([0.0; 3], |sum, k| add(sum, scale(coarse[corners[k] as usize], weights[k])))
+        };
+        self.places.par_iter().map(|place| place.as_ref().map_or(none, value)).collect()
+    }
+
+    /// The geometric mean of what the faces have that the corners of each of the `fine` faces lie on; 1 where
+    /// none does.
+    #[must_use]
+    pub fn factors(&self, coarse: &[f64], fine: &[[u32; 3]]) -> Vec<f64> {
+        let mean = |face: &[u32; 3]| {
+            let places = face.iter().filter_map(|&v| self.places[v as usize]);
+            let (sum, count) = places.fold((0.0, 0.0), |(sum, count), place| {
+                (sum + coarse[place.face as usize].ln(), count + 1.0)
+            });
+            if count > 0.0 {
+                f64::exp(sum / count)
+            } else {
+                1.0
+            }
+        };
+        fine.par_iter().map(mean).collect()
+    }
+}
+
+/// The weights of the corners at a point of their triangle.
+fn weights(corners: [Point; 3], point: Point) -> [f64; 3] {
+    let normal = area_vector(corners);
+    let square = dot(normal, normal);
+    if square <= 0.0 || norm(normal) <= 0.0 {
+        // A triangle without area: the closest corner.
+        let nearest = (0..3).min_by(|&i, &j| {
+            let distance = |k: usize| dot(sub(corners[k], point), sub(corners[k], point));
+            distance(i).total_cmp(&distance(j))
+        });
+        return std::array::from_fn(|k| if Some(k) == nearest { 1.0 } else { 0.0 });
+    }
+    let part = |k: usize| {
+        let area = area_vector([point, corners[(k + 1) % 3], corners[(k + 2) % 3]]);
+        (dot(area, normal) / square).clamp(0.0, 1.0)
+    };
+    let found: [f64; 3] = std::array::from_fn(part);
+    let sum: f64 = found.iter().sum();
+    found.map(|weight| weight / sum)
+}

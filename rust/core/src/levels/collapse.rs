@@ -1,0 +1,223 @@
+//! Edge collapses in the order of how far they leave the surface (Garland and Heckbert 1997).
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use crate::linear::small::Quadric;
+use crate::mesh::vector::{area_vector, cross, dot, norm, quality, sub, unit, Point};
+use crate::mesh::Connectivity;
+use crate::ordered::Ordered;
+use crate::remesh::EditableMesh;
+use crate::shape_guard::{is_thinned, is_turned};
+use crate::{Progress, Result};
+
+/// How much a distance along the surface counts beside one away from it, squared: enough that flat regions
+/// get even triangles, too little to draw a vertex from a ridge.
+const ALONG: f64 = 1e-3;
+
+/// Collapses between two looks at whether to go on.
+const CHECK_EVERY: usize = 1024;
+
+/// A surface whose edges collapse, with the planes of all faces that each vertex stands for.
+#[derive(Debug)]
+pub(super) struct Collapser {
+    mesh: EditableMesh,
+    quadrics: Vec<Quadric>,
+    kinds: Vec<Kind>,
+    /// How often a vertex has changed: candidates from before are void.
+    changes: Vec<u32>,
+    queue: BinaryHeap<Reverse<Candidate>>,
+    /// What a vertex collapsed into; itself while it is there.
+    into: Vec<u32>,
+    /// The vertices of the last level that was asked for.
+    last: Vec<u32>,
+    n_left: usize,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Kind {
+    is_held: bool,
+    is_border: bool,
+    /// At an edge with three faces, or where two fans meet.
+    is_locked: bool,
+}
+
+/// Cost, ends and the changes that the ends had seen.
+type Candidate = (Ordered, [u32; 2], [u32; 2]);
+
+impl Collapser {
+    pub(super) fn new(
+        connectivity: &Connectivity,
+        positions: &[Point],
+        held: Option<&[bool]>,
+    ) -> Result<Self> {
+        let n = positions.len();
+        let mesh = EditableMesh::new(positions.to_vec(), connectivity.faces().to_vec())?;
+        let mut quadrics = vec![Quadric::default(); n];
+        for (_, face) in mesh.faces() {
+            let area = area_vector(mesh.corners(face));
+            let (weight, normal) = (norm(area) / 3.0, unit(area));
+            for v in face {
+                let point = mesh.position(v);
+                quadrics[v as usize].add(weight, normal, dot(normal, point));
+                quadrics[v as usize].add_point(ALONG * weight, point);
+            }
+        }
+        // A border is kept by the planes through its edges across their faces.
+        for h in connectivity.boundary() {
+            let [tail, head, tip] = [connectivity.tail(h), connectivity.head(h), connectivity.opposite(h)];
+            let [a, b, c] = [tail, head, tip].map(|v| mesh.position(v));
+            let along = sub(b, a);
+            let across = unit(cross(along, area_vector([a, b, c])));
+            for v in [tail, head] {
+                quadrics[v as usize].add(dot(along, along), across, dot(across, a));
+            }
+        }
+        let mut kinds: Vec<Kind> = (0..n as u32)
+            .map(|v| Kind {
+                is_held: held.is_some_and(|held| held[v as usize]),
+                is_border: false,
+                is_locked: !mesh.is_manifold(v),
+            })
+            .collect();
+        for h in connectivity.boundary() {
+            for v in [connectivity.tail(h), connectivity.head(h)] {
+                kinds[v as usize].is_border = true;
+            }
+        }
+        let n_left = (0..n as u32).filter(|&v| !mesh.faces_of(v).is_empty()).count();
+        let mut collapser = Self {
+            quadrics,
+            kinds,
+            changes: vec![0; n],
+            queue: BinaryHeap::new(),
+            into: (0..n as u32).collect(),
+            last: (0..n as u32).collect(),
+            n_left,
+            mesh,
+        };
+        let edges: Vec<Candidate> =
+            collapser.mesh.edges().into_iter().filter_map(|[a, b]| collapser.candidate(a, b)).collect();
+        collapser.queue = edges.into_iter().map(Reverse).collect();
+        Ok(collapser)
+    }
+
+    /// How many vertices have faces.
+    pub(super) fn n_left(&self) -> usize {
+        self.n_left
+    }
+
+    /// Collapses edges until no more than `wanted` vertices are left, or none can any more.
+    pub(super) fn reduce_to(&mut self, wanted: usize, progress: &Progress) -> Result<()> {
+        let mut count = 0_usize;
+        while self.n_left > wanted {
+            if count.is_multiple_of(CHECK_EVERY) {
+                progress.check()?;
+            }
+            count += 1;
+            let Some(Reverse((_, [a, b], seen))) = self.queue.pop() else { break };
+            if seen == self.seen(a, b) {
+                self.collapse(a, b);
+            }
+        }
+        Ok(())
+    }
+
+    /// Which vertices of the last level are held.
+    pub(super) fn held(&self) -> Vec<bool> {
+        self.last.iter().map(|&v| self.kinds[v as usize].is_held).collect()
+    }
+
+    /// Points and faces as they are now, and which of the points stands for each vertex of the last level.
+    pub(super) fn level(&mut self) -> (Vec<Point>, Vec<[u32; 3]>, Vec<u32>) {
+        let kept: Vec<u32> =
+            (0..self.mesh.n_vertices() as u32).filter(|&v| !self.mesh.faces_of(v).is_empty()).collect();
+        let mut number = vec![u32::MAX; self.mesh.n_vertices()];
+        kept.iter().zip(0..).for_each(|(&v, new)| number[v as usize] = new);
+        let parents = self.last.iter().map(|&v| number[self.root(v) as usize]).collect();
+        let points = kept.iter().map(|&v| self.mesh.position(v)).collect();
+        let faces = self.mesh.faces().map(|(_, face)| face.map(|v| number[v as usize])).collect();
+        self.last = kept;
+        (points, faces, parents)
+    }
+
+    fn root(&self, mut v: u32) -> u32 {
+        while self.into[v as usize] != v {
+            v = self.into[v as usize];
+        }
+        v
+    }
+
+    fn seen(&self, a: u32, b: u32) -> [u32; 2] {
+        [self.changes[a as usize], self.changes[b as usize]]
+    }
+
+    fn candidate(&self, a: u32, b: u32) -> Option<Candidate> {
+        let point = self.place(a, b)?;
+        let cost = self.sum(a, b).value(point);
+        Some((Ordered(cost), [a, b], self.seen(a, b)))
+    }
+
+    fn sum(&self, a: u32, b: u32) -> Quadric {
+        self.quadrics[a as usize].plus(&self.quadrics[b as usize])
+    }
+
+    /// Where the two would become one, if they may.
+    fn place(&self, a: u32, b: u32) -> Option<Point> {
+        let (one, other) = (self.kinds[a as usize], self.kinds[b as usize]);
+        if one.is_locked || other.is_locked || one.is_held != other.is_held {
+            return None;
+        }
+        match (self.stays(a), self.stays(b)) {
+            (true, true) => None,
+            (true, false) => Some(self.mesh.position(a)),
+            (false, true) => Some(self.mesh.position(b)),
+            (false, false) if one.is_border != other.is_border => {
+                Some(self.mesh.position(if one.is_border { a } else { b }))
+            }
+            (false, false) => self.sum(a, b).minimizer(),
+        }
+    }
+
+    /// A vertex with thousands of faces is never moved: each move would look at all of them.
+    fn stays(&self, v: u32) -> bool {
+        self.mesh.is_hub(v)
+    }
+
+    fn collapse(&mut self, a: u32, b: u32) {
+        let Some(point) = self.place(a, b) else { return };
+        // Into the one that stays, or that is on the border.
+        let goes_to_a = self.stays(a) || !self.stays(b) && self.kinds[a as usize].is_border;
+        let (from, to) = if goes_to_a { (b, a) } else { (a, b) };
+        if !self.keeps_shape(from, to, point) || !self.mesh.collapse(from, to, point) {
+            return;
+        }
+        self.quadrics[to as usize] = self.sum(from, to);
+        self.into[from as usize] = to;
+        self.n_left -= 1;
+        if self.stays(to) {
+            return;
+        }
+        self.changes[to as usize] += 1;
+        for w in self.mesh.neighbors(to) {
+            let ends = if w < to { [w, to] } else { [to, w] };
+            if let Some(candidate) = self.candidate(ends[0], ends[1]) {
+                self.queue.push(Reverse(candidate));
+            }
+        }
+    }
+
+    /// Whether no face that stays turns over or becomes a sliver.
+    fn keeps_shape(&self, from: u32, to: u32, point: Point) -> bool {
+        let moved: &[u32] = if self.stays(to) { &[from] } else { &[from, to] };
+        moved.iter().flat_map(|&v| self.mesh.faces_of(v)).filter_map(|&f| self.mesh.face(f)).all(|face| {
+            if face.contains(&from) && face.contains(&to) {
+                return true;
+            }
+            let old = self.mesh.corners(face);
+            let new = face.map(|v| if v == from || v == to { point } else { self.mesh.position(v) });
+            let normal = area_vector(old);
+            (norm(normal) <= 0.0 || !is_turned(new, normal)) && !is_thinned(quality(new), quality(old))
+        })
+    }
+}

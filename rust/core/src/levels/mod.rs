@@ -1,0 +1,84 @@
+//! Coarser meshes of one surface, made by collapsing edges, and what is carried between them.
+//!
+//! Each [`Level`] has about a quarter of the vertices of the one before. A vertex of it stands for the
+//! vertices that collapsed into it, and is where their faces, weighted by area, have it (Garland and Heckbert
+//! 1997): under noise nearer to the surface than they are, at a corner the corner. So what a coarse level
+//! says of the surface is what remains of it without the finest detail, and not a sample of its noise.
+
+mod carry;
+mod collapse;
+
+pub use carry::Carry;
+use collapse::Collapser;
+
+use crate::error::MeshError;
+use crate::mesh::vector::Point;
+use crate::mesh::Mesh;
+use crate::{Progress, Result};
+
+/// A level has this part of the vertices of the finer one: edges twice as long.
+const PART: f64 = 0.25;
+
+/// A mesh with more than this part of the finer one's vertices is no level: most of them cannot collapse.
+const WORTHWHILE: f64 = 0.6;
+
+/// A coarser mesh of a surface.
+#[derive(Debug)]
+pub struct Level {
+    /// The mesh; its faces lie on the finer one's surface and look the same way.
+    pub mesh: Mesh,
+    /// From it to the finer one.
+    pub carry: Carry,
+    /// For every vertex of the finer mesh the one that stands for it, or `u32::MAX` for a vertex without
+    /// faces.
+    pub parents: Vec<u32>,
+}
+
+impl Level {
+    /// The mean of what the vertices have that a vertex stands for.
+    #[must_use]
+    pub fn mean_of(&self, fine: &[f64]) -> Vec<f64> {
+        let n = self.mesh.connectivity().n_vertices();
+        let (mut sums, mut counts) = (vec![0.0; n], vec![0_u32; n]);
+        for (value, &parent) in fine.iter().zip(&self.parents).filter(|(_, &parent)| parent != u32::MAX) {
+            sums[parent as usize] += value;
+            counts[parent as usize] += 1;
+        }
+        sums.iter().zip(counts).map(|(sum, count)| sum / f64::from(count.max(1))).collect()
+    }
+}
+
+/// The levels of `mesh` above it, each coarser than the one before, down to the first with no more than
+/// `enough` vertices, or to where edges no longer collapse. A vertex that is `held` never becomes one with
+/// another that is not, and nothing is carried to it.
+///
+/// # Errors
+/// [`MeshError::NoPositions`] and cancellation.
+pub fn levels(mesh: &Mesh, held: Option<&[bool]>, enough: usize, progress: &Progress) -> Result<Vec<Level>> {
+    let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
+    let mut collapser = Collapser::new(mesh.connectivity(), positions, held)?;
+    let mut found: Vec<Level> = Vec::new();
+    loop {
+        let finer = found.last().map_or(mesh, |level| &level.mesh);
+        let n = collapser.n_left();
+        if n <= enough {
+            return Ok(found);
+        }
+        // All levels of one ratio, so that the last is not needlessly small.
+        let steps = ((n as f64 / enough as f64).ln() / (1.0 / PART).ln()).ceil().max(1.0);
+        let wanted = (n as f64 * (enough as f64 / n as f64).powf(1.0 / steps)).ceil();
+        collapser.reduce_to(wanted as usize, progress)?;
+        if collapser.n_left() as f64 > WORTHWHILE * n as f64 {
+            return Ok(found);
+        }
+        let is_held = collapser.held();
+        let (points, faces, parents) = collapser.level();
+        let fine: &[Point] = finer.positions().ok_or(MeshError::NoPositions)?;
+        let coarse = Mesh::new(points, faces)?;
+        let carry = Carry::new(fine, &parents, &is_held, &coarse)?;
+        found.push(Level { mesh: coarse, carry, parents });
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,137 @@
+"""`stylize` by levels: the same as without, at any density, and what is held stays held."""
+
+import threading
+import time
+
+import numpy as np
+import pytest
+import ridgeform
+from known_shapes import shapes
+
+HALF = {"movement": 0.007, "flat_share": 0.5, "fidelity": 10**6.55, "scale": "area", "sharpness": 0.75}
+"""The settings of the add-on at half strength."""
+
+
+def moved(mesh, result):
+    """Root mean square movement in parts of the size."""
+    size = np.ptp(mesh.vertices, axis=0).max()
+    return shapes.root_mean_square(np.linalg.norm(result.vertices - mesh.vertices, axis=1)) / size
+
+
+def noisy_torus(segments, rings):
+    """A torus with noise of a fiftieth of an edge."""
+    vertices, faces = shapes.torus(segments, rings)
+    return ridgeform.Mesh(shapes.add_noise(vertices, faces, 0.02), faces)
+
+
+@pytest.fixture(scope="module")
+def torus():
+    """A dense torus, and what becomes of it."""
+    mesh = noisy_torus(170, 112)
+    return mesh, ridgeform.stylize(mesh, **HALF)
+
+
+def test_most_steps_are_done_on_a_coarser_mesh_and_the_last_on_the_mesh_itself(torus):
+    mesh, result = torus
+    assert result.status in {"reached", "settled"}
+    assert (result.level_vertices[-2:] == mesh.n_vertices).all()
+    assert (result.level_vertices[:-2] <= 9000).all()
+    steps = len(result.level_vertices)
+    assert (steps, result.iterations) == (len(result.gap), steps - 2)
+    assert len(result.energy) == steps + 1
+    assert len(result.solver_iterations) == steps
+    assert (result.gap <= 1e-3).all()
+
+
+def test_a_dense_shape_becomes_what_a_coarse_one_becomes(torus):
+    mesh, dense = torus
+    small = noisy_torus(112, 75)
+    coarse = ridgeform.stylize(small, **HALF)
+    assert len(coarse.level_vertices) == coarse.iterations
+    assert moved(mesh, dense) == pytest.approx(moved(small, coarse), rel=0.25)
+    assert dense.flat_share[1] == pytest.approx(coarse.flat_share[1], abs=0.12)
+
+
+def test_it_is_as_flat_as_all_steps_on_the_mesh_itself_make_it(torus):
+    mesh, result = torus
+    alone = ridgeform.stylize(mesh, coarse_to_fine=False, **HALF)
+    assert (alone.level_vertices == mesh.n_vertices).all()
+    assert result.energy[-1] <= 1.05 * alone.energy[-1]
+    assert result.energy[0] == alone.energy[0]
+
+
+def test_a_noisy_cube_is_restored_as_well():
+    vertices, faces = shapes.cube(60)
+    mesh = ridgeform.Mesh(shapes.add_noise(vertices, faces, 0.2), faces)
+    off = {
+        levels: shapes.root_mean_square(
+            shapes.distance_to_cube(ridgeform.stylize(mesh, coarse_to_fine=levels, **HALF).vertices)
+        )
+        for levels in (None, False)
+    }
+    assert off[None] <= 1.25 * off[False]
+
+
+def test_equal_steps_are_those_of_the_paper_unless_levels_are_asked_for(torus):
+    mesh, _ = torus
+    plain = ridgeform.stylize(mesh, iterations=1, tolerance=1e-2)
+    assert plain.level_vertices.tolist() == [mesh.n_vertices]
+    levels = ridgeform.stylize(mesh, iterations=2, tolerance=1e-2, coarse_to_fine=True)
+    assert levels.status == "finished"
+    assert levels.iterations == 2
+    assert levels.level_vertices[-1] == mesh.n_vertices
+
+
+def test_small_meshes_have_no_levels():
+    mesh = noisy_torus(32, 16)
+    with_levels = ridgeform.stylize(mesh, coarse_to_fine=True, **HALF)
+    without = ridgeform.stylize(mesh, coarse_to_fine=False, **HALF)
+    np.testing.assert_array_equal(with_levels.vertices, without.vertices)
+
+
+def test_held_vertices_keep_their_bits_and_weights_hold_on_every_level(torus):
+    mesh, _ = torus
+    held = mesh.vertices[:, 0] > 0
+    strength = np.clip(mesh.vertices[:, 1] + 1.4, 0.0, 1.0) * 0.5
+    result = ridgeform.stylize(
+        mesh, fixed=held, strength=strength, ridge_weights=np.full(mesh.n_faces, 2.0), **HALF
+    )
+    np.testing.assert_array_equal(result.vertices[held], mesh.vertices[held])
+    still = strength <= 0
+    np.testing.assert_array_equal(result.vertices[still], mesh.vertices[still])
+    assert np.linalg.norm(result.vertices - mesh.vertices, axis=1)[~held].max() > 1e-3
+    assert len(result.level_vertices) > result.iterations
+
+
+def test_the_sides_of_a_seam_stay_together(torus):
+    mesh, _ = torus
+    # The faces of one half get vertices of their own along the cut.
+    half = mesh.vertices[mesh.faces].mean(axis=1)[:, 0] > 0
+    split, inverse = np.unique(mesh.faces[half], return_inverse=True)
+    faces = mesh.faces.copy()
+    faces[half] = inverse.reshape(-1, 3) + mesh.n_vertices
+    vertices = np.vstack([mesh.vertices, mesh.vertices[split]])
+    result = ridgeform.stylize(ridgeform.Mesh(vertices, faces), **HALF)
+    shared = np.isin(split, mesh.faces[~half])
+    copies = result.vertices[mesh.n_vertices :][shared]
+    np.testing.assert_array_equal(copies, result.vertices[split[shared]])
+
+
+def test_a_coarse_step_is_shown_on_the_mesh_and_can_be_kept(torus):
+    mesh, _ = torus
+    progress = ridgeform.Progress()
+    found = []
+    run = threading.Thread(
+        target=lambda: found.append(ridgeform.stylize(mesh, progress=progress, tolerance=1e-9, **HALF))
+    )
+    run.start()
+    while progress.snapshot() is None and run.is_alive():
+        time.sleep(0.01)
+    progress.finish()
+    run.join()
+    assert progress.snapshot().shape == mesh.vertices.shape
+    (result,) = found
+    assert result.status == "stopped"
+    assert result.vertices.shape == mesh.vertices.shape
+    assert (result.level_vertices < mesh.n_vertices).all()
+    assert 0 < moved(mesh, result) < 0.1
