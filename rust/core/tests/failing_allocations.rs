@@ -31,8 +31,8 @@ const LARGE: usize = 128 << 10;
 /// So many of a call are tried, evenly spread.
 const TRIED: usize = 3;
 
-/// How many allocations of ours end the process at most, in calls that have been gone through: a number may fall
-/// and not rise. Those of a library can: they have nothing to return an error with.
+/// How many allocations of ours end the process at most, in calls that have been gone through: a number may
+/// fall and not rise. Those of a library can: they have nothing to return an error with.
 const MOST: [(&str, usize); 8] = [
     ("stylize", 0),
     ("denoise", 0),
