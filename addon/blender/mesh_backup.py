@@ -5,7 +5,7 @@ import bmesh
 import bpy
 import numpy as np
 
-from . import blending, mesh_io, mesh_layers
+from . import blending, mesh_io, mesh_layers, selected_elements
 
 
 class MeshBackup:
@@ -41,7 +41,11 @@ class MeshBackup:
             for items, flags in zip(_elements(mesh), self._flags, strict=True):
                 for name, values in flags.items():
                     # Newer versions make an attribute of what is set, even if nothing is hidden.
-                    if not np.array_equal(values, _flags(items)[name]):
+                    if np.array_equal(values, _flags(items)[name]):
+                        continue
+                    if name == "select":
+                        selected_elements.write(mesh, items, values)
+                    else:
                         items.foreach_set(name, values)
         self._remove_keys()
         for name, values in self._marks.items():

@@ -107,7 +107,12 @@ def read_attributes(mesh: bpy.types.Mesh) -> list[Layer]:
 
 def read_flags(mesh: bpy.types.Mesh) -> list[Layer]:
     """What is selected and hidden of a mesh in Object Mode; all flags of a kind are off where none is."""
-    return _read(attribute for attribute in mesh.attributes if attribute.name in FLAGS)
+    return _read(
+        attribute
+        for attribute in mesh.attributes
+        # See `selected_elements.mend`.
+        if attribute.name in FLAGS and attribute.data_type == "BOOLEAN"
+    )
 
 
 def _read(found: Iterable[bpy.types.Attribute]) -> list[Layer]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import bpy
 import numpy as np
 
-from . import kept_normals, mesh_io, mesh_layers
+from . import kept_normals, mesh_io, mesh_layers, selected_elements
 from .carrying import Triangulation
 from .mesh_layers import ATTRIBUTE_KINDS, Layers
 from .mesh_state import ChangedError
@@ -105,6 +105,7 @@ def write(obj: bpy.types.Object, made: Rebuilt) -> np.ndarray:
     mesh.polygons.foreach_set("loop_start", np.ascontiguousarray(faces.starts, np.int32))
     mesh.loops.foreach_set("vertex_index", np.ascontiguousarray(faces.corners, np.int32))
     mesh.update(calc_edges=True)
+    selected_elements.mend(mesh)
     edge_rows = _edge_rows(mesh, faces.edges)
     for layer in made.layers.attributes:
         values = layer.values[edge_rows] if layer.domain == "EDGE" else layer.values

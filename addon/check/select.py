@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import bpy
 import numpy as np
 
-from ..blender import mesh_io
+from ..blender import mesh_io, selected_elements
 from .kinds import Domain, Finding
 
 MODES = {
@@ -28,13 +28,13 @@ def select(found: Mapping[bpy.types.Object, Finding | None], domain: Domain, sce
         mesh = obj.data
         own = {Domain.VERTEX: mesh.vertices, Domain.EDGE: mesh.edges, Domain.FACE: mesh.polygons}
         for items in own.values():
-            items.foreach_set("select", np.zeros(len(items), bool))
+            selected_elements.write(mesh, items, np.zeros(len(items), bool))
         if finding is None:
             continue
         items = own[domain]
         chosen = np.zeros(len(items), bool)
         chosen[finding.elements] = True
-        items.foreach_set("select", chosen)
+        selected_elements.write(mesh, items, chosen)
         _show(mesh, domain, finding.elements)
     scene.tool_settings.mesh_select_mode = MODES[domain]
     bpy.ops.object.mode_set(mode="EDIT")

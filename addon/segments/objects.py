@@ -5,6 +5,7 @@ import bmesh
 import bpy
 import numpy as np
 
+from ..blender import selected_elements
 from ..blender.stored_numbers import read_ints, write_numbers
 from . import layers, slots
 
@@ -57,7 +58,7 @@ def _select_only(obj: bpy.types.Object) -> None:
 def _select_faces(mesh: bpy.types.Mesh, chosen: np.ndarray) -> None:
     bpy.context.scene.tool_settings.mesh_select_mode = (False, False, True)
     mesh.vertices.foreach_set("select", np.zeros(len(mesh.vertices), bool))
-    mesh.edges.foreach_set("select", np.zeros(len(mesh.edges), bool))
+    selected_elements.write(mesh, mesh.edges, np.zeros(len(mesh.edges), bool))
     mesh.polygons.foreach_set("hide", np.zeros(len(mesh.polygons), bool))
     mesh.polygons.foreach_set("select", chosen)
     mesh.update()

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 import bmesh
 import bpy
 import numpy as np
+from bl_ext.user_default.ridgeform.blender import selected_elements
 
 
 def empty_scene() -> None:
@@ -105,7 +106,7 @@ def same_bits(a: np.ndarray, b: np.ndarray) -> bool:
 def select_only(obj: bpy.types.Object, mask: np.ndarray) -> None:
     """Enter Edit Mode with exactly these vertices selected."""
     obj.data.polygons.foreach_set("select", np.zeros(len(obj.data.polygons), bool))
-    obj.data.edges.foreach_set("select", np.zeros(len(obj.data.edges), bool))
+    selected_elements.write(obj.data, obj.data.edges, np.zeros(len(obj.data.edges), bool))
     obj.data.vertices.foreach_set("select", mask)
     bpy.context.scene.tool_settings.mesh_select_mode = (True, False, False)
     bpy.ops.object.mode_set(mode="EDIT")

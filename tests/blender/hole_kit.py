@@ -4,7 +4,7 @@ import addon_kit as kit
 import bpy
 import numpy as np
 import ridgeform
-from bl_ext.user_default.ridgeform.blender import mesh_io
+from bl_ext.user_default.ridgeform.blender import mesh_io, selected_elements
 from bl_ext.user_default.ridgeform.framework.settings import defaults_of
 from bl_ext.user_default.ridgeform.holes.settings import HoleSettings, hole_options
 
@@ -106,9 +106,10 @@ def pick(obj, *edges):
     """Enter Edit Mode with exactly these edges, pairs of vertices, selected."""
     mesh = obj.data
     for kind in (mesh.vertices, mesh.edges, mesh.polygons):
-        kind.foreach_set("select", np.zeros(len(kind), bool))
+        selected_elements.write(mesh, kind, np.zeros(len(kind), bool))
     wanted = {frozenset(edge) for edge in edges}
-    mesh.edges.foreach_set("select", [frozenset(edge.vertices) in wanted for edge in mesh.edges])
+    chosen = np.array([frozenset(edge.vertices) in wanted for edge in mesh.edges], bool)
+    selected_elements.write(mesh, mesh.edges, chosen)
     mesh.vertices.foreach_set("select", np.isin(np.arange(len(mesh.vertices)), list(set().union(*wanted))))
     bpy.context.scene.tool_settings.mesh_select_mode = (False, True, False)
     bpy.ops.object.mode_set(mode="EDIT")

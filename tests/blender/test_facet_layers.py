@@ -4,7 +4,7 @@ import addon_kit as kit
 import bpy
 import numpy as np
 import pytest
-from bl_ext.user_default.ridgeform.blender import mesh_io
+from bl_ext.user_default.ridgeform.blender import mesh_io, selected_elements
 from facet_kit import facet, is_closed, layered_box
 
 
@@ -81,8 +81,8 @@ def test_the_rest_stays_in_every_bit(how):
             face.select = not any(low(mesh.vertices[vertex].co) for vertex in face.vertices)
         for vertex in mesh.vertices:
             vertex.select = not low(vertex.co)
-        for edge in mesh.edges:
-            edge.select = all(mesh.vertices[vertex].select for vertex in edge.vertices)
+        chosen = [all(mesh.vertices[vertex].select for vertex in edge.vertices) for edge in mesh.edges]
+        selected_elements.write(mesh, mesh.edges, np.array(chosen))
         bpy.ops.object.mode_set(mode="EDIT")
     n = len(mesh.polygons)
     facet(mode="COUNT", facets=12, **settings)

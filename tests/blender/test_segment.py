@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 import ridgeform
-from bl_ext.user_default.ridgeform.blender import attribute_io, mesh_io
+from bl_ext.user_default.ridgeform.blender import attribute_io, mesh_io, selected_elements
 from bl_ext.user_default.ridgeform.blender.stored_numbers import read_ints
 from bl_ext.user_default.ridgeform.framework import job
 from bl_ext.user_default.ridgeform.framework.settings import defaults_of
@@ -46,7 +46,7 @@ def flags(obj, name):
 def select_faces(obj, mask):
     """Enter Edit Mode with exactly these faces selected."""
     obj.data.vertices.foreach_set("select", np.zeros(len(obj.data.vertices), bool))
-    obj.data.edges.foreach_set("select", np.zeros(len(obj.data.edges), bool))
+    selected_elements.write(obj.data, obj.data.edges, np.zeros(len(obj.data.edges), bool))
     obj.data.polygons.foreach_set("select", mask)
     bpy.context.scene.tool_settings.mesh_select_mode = (False, False, True)
     bpy.ops.object.mode_set(mode="EDIT")
