@@ -7,9 +7,9 @@ use ridgeform_core::remesh::{remesh, RemeshOptions};
 use ridgeform_core::shapes::Random;
 use ridgeform_core::solve::{Coupling, Solution, Solver};
 use ridgeform_core::tools::{
-    color_regions, denoise, diffusion_curves, fill_holes, interpolate, segment, stylize, vibration_modes,
-    DenoiseOptions, DiffusionCurvesOptions, EnergyOptions, FillHolesOptions, ModeOptions, ScalarOptions,
-    SegmentOptions, Sharpness, SolveOptions, StylizeOptions,
+    color_regions, denoise, diffusion_curves, facet, fill_holes, interpolate, restore, segment, stylize,
+    vibration_modes, DenoiseOptions, DiffusionCurvesOptions, EnergyOptions, FacetOptions, FillHolesOptions,
+    ModeOptions, RestoreOptions, ScalarOptions, SegmentOptions, Sharpness, SolveOptions, StylizeOptions,
 };
 use ridgeform_core::{Progress, Result};
 
@@ -24,10 +24,12 @@ pub(crate) enum Tool {
     FillHoles,
     Remesh,
     Curves,
+    Facet,
+    Restore,
 }
 
 /// All of them.
-pub(crate) const TOOLS: [(&str, Tool); 8] = [
+pub(crate) const TOOLS: [(&str, Tool); 10] = [
     ("denoise", Tool::Denoise),
     ("interpolate", Tool::Interpolate),
     ("modes", Tool::Modes),
@@ -36,6 +38,8 @@ pub(crate) const TOOLS: [(&str, Tool); 8] = [
     ("fill holes", Tool::FillHoles),
     ("remesh", Tool::Remesh),
     ("curves", Tool::Curves),
+    ("facet", Tool::Facet),
+    ("restore", Tool::Restore),
 ];
 
 fn any<T: Copy>(random: &mut Random, of: &[T]) -> T {
@@ -203,6 +207,46 @@ pub(crate) fn check(tool: Tool, mesh: &Mesh, random: &mut Random) -> Result<()> 
                 assert_finite("energy and gap", hole.energy.iter().chain([&hole.gap]));
                 assert!(hole.gap >= 0.0);
             }
+        }
+        Tool::Facet => {
+            let faces: Vec<bool> =
+                mesh.connectivity().faces().iter().map(|_| random.uniform() < 0.7).collect();
+            let distance = power(random);
+            let options = FacetOptions {
+                facets: any(random, &[None, Some(1), Some(7), Some(100_000)]),
+                error: any(random, &[None, None, Some(distance)]),
+                faces: Some(faces).filter(|_| random.uniform() < 0.3),
+                threads: Some(1),
+                ..FacetOptions::default()
+            };
+            let found = facet(mesh, None, &options, &progress)?;
+            assert_near(mesh, &found.vertices);
+            assert_finite("distances", found.planes.iter().flatten().chain([&found.rms, &found.largest]));
+            let named = found.faces.iter().flatten().chain(found.polygons.iter().flatten());
+            assert!(named.copied().all(|v| (v as usize) < found.vertices.len()), "corners that do not exist");
+            assert!(found.polygons.iter().all(|polygon| polygon.len() >= 3));
+            assert!(found.labels.iter().all(|&l| l < found.planes.len() as i32));
+        }
+        Tool::Restore => {
+            let fixed: Vec<bool> = (0..n).map(|_| random.uniform() < 0.2).collect();
+            let lengths = [power(random), power(random)];
+            let options = RestoreOptions {
+                max_move: any(random, &[None, None, Some(lengths[0])]),
+                noise: any(random, &[None, None, Some(lengths[1])]),
+                regularize: any(random, &[None, Some(5.0)]),
+                free: any(random, &[true, false]),
+                fixed: Some(fixed).filter(|_| random.uniform() < 0.3),
+                solve: solving(random),
+                ..RestoreOptions::default()
+            };
+            let found = restore(mesh, &options, &progress)?;
+            let corners = mesh.connectivity().faces().iter().flatten();
+            assert_near(mesh, &corners.map(|&v| found.vertices[v as usize]).collect::<Vec<_>>());
+            assert_finite("noise", &[found.noise]);
+            let before = mesh.positions().unwrap_or_default();
+            let kept =
+                |v: usize| !options.fixed.as_ref().is_some_and(|f| f[v]) || found.vertices[v] == before[v];
+            assert!((0..n).all(kept), "fixed vertices have moved");
         }
         Tool::Remesh => {
             let iterations = (random.bits() % 3) as usize;

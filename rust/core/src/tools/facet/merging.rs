@@ -1,7 +1,7 @@
 //! Merging faces into ever fewer facets, in the order of what that costs.
 
 use std::cmp::Reverse;
-use std::collections::{BinaryHeap, HashMap};
+use std::collections::{BinaryHeap, HashMap, HashSet};
 
 use super::constants::{FLAT, PATIENCE};
 use super::moments::Moments;
@@ -37,17 +37,26 @@ struct Merging<'r, 'a, W> {
     weight: W,
 }
 
-/// Pairs that could not be merged, or not alone, at both of their regions.
+/// Pairs that could not be merged, or not alone, until something beside them changes.
 #[derive(Default)]
-struct Refused(HashMap<u32, Vec<[u32; 2]>>);
+struct Refused {
+    waiting: HashSet<[u32; 2]>,
+    /// The pairs of a region; some no longer wait.
+    at: HashMap<u32, Vec<[u32; 2]>>,
+}
 
 impl Refused {
     fn push(&mut self, pair: [u32; 2]) {
-        pair.into_iter().for_each(|region| self.0.entry(region).or_default().push(pair));
+        // Once, however often it was offered: otherwise offers of a pair double whenever both its regions change.
+        if self.waiting.insert(pair) {
+            pair.into_iter().for_each(|region| self.at.entry(region).or_default().push(pair));
+        }
     }
 
     fn take(&mut self, region: u32) -> Vec<[u32; 2]> {
-        self.0.remove(&region).unwrap_or_default()
+        let mut pairs = self.at.remove(&region).unwrap_or_default();
+        pairs.retain(|pair| self.waiting.remove(pair));
+        pairs
     }
 }
 
