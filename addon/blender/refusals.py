@@ -10,7 +10,15 @@ class RefusedError(Exception):
 
 
 class NothingToDoError(RefusedError):
-    """Something that is as it should be already: no fault of anybody's."""
+    """Something that is as it should be already: no fault of anybody's.
+
+    `figures` are what a script reads of it, as of a mesh that was worked on.
+    """
+
+    def __init__(self, message: str, figures: dict[str, object]) -> None:
+        """Keep both."""
+        super().__init__(message)
+        self.figures = figures
 
 
 class AttributeRefusedError(RefusedError):

@@ -10,7 +10,7 @@ from bpy.props import BoolProperty
 from ..blender import mesh_io, selection
 from ..blender.refusals import NothingToDoError, RefusedError
 from . import bound, former, rows
-from .job import shown_summary
+from .job import hide_summary, shown_summary, store_summary
 from .modal import ModalRun
 from .run import Run
 from .settings import properties_of, setting_names, values_of
@@ -132,8 +132,13 @@ class ToolOperator(ModalRun):
         try:
             # A plain object: a job reads it in a thread of its own, where Blender's must not be touched.
             return self.tool.run(chosen.objects, values_of(self.tool.settings, self), chosen.skipped)
+        except NothingToDoError as nothing:
+            store_summary([nothing.figures])
+            hide_summary()
+            self.report({"INFO"}, str(nothing))
+            return None
         except RefusedError as refusal:
-            self.report({"INFO"} if isinstance(refusal, NothingToDoError) else {"ERROR"}, str(refusal))
+            self.report({"ERROR"}, str(refusal))
             return None
 
 

@@ -83,7 +83,8 @@ class HoleFilling(Run):
         except ridgeform.RidgeformError as error:
             raise RefusedError(f'"{obj.name}": {error}') from error
         if not holes:
-            raise NothingToDoError(f'"{obj.name}" has no holes')
+            none = {"name": obj.name, "holes": 0, "vertices_added": 0, "faces_added": 0, "ridge_edges": 0}
+            raise NothingToDoError(f'"{obj.name}" has no holes', none)
         if self._in_edit_mode:
             holes = _picked(holes, weld.vertex[picked_edges(obj.data)], len(weld.first))
             if not holes:

@@ -119,6 +119,10 @@ def test_larger_holes_are_skipped_and_named():
 
 def test_a_closed_mesh_has_no_holes():
     assert refusal(kit.bumpy_box()) == '"Box" has no holes'
+    assert bpy.ops.ridgeform.fill_holes() == {"CANCELLED"}
+    (entry,) = job.last_summary()
+    assert (entry["name"], entry["holes"], entry["faces_added"]) == ("Box", 0, 0)
+    assert job.shown_summary() == []
 
 
 def test_edit_mode_fills_the_picked_hole_and_selects_the_patch():

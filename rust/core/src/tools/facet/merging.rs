@@ -47,7 +47,7 @@ struct Refused {
 
 impl Refused {
     fn push(&mut self, pair: [u32; 2]) {
-        // Once, however often it was offered: otherwise offers of a pair double whenever both its regions change.
+        // Once, however often it was offered: its offers would double whenever both its regions change.
         if self.waiting.insert(pair) {
             pair.into_iter().for_each(|region| self.at.entry(region).or_default().push(pair));
         }
