@@ -170,14 +170,17 @@ impl<'a> Flow<'a> {
         self
     }
 
-    /// The place `back` steps before the end, or the earliest that is remembered, and the steps to the end.
-    pub(super) fn legacy(&self, back: usize) -> Legacy {
-        let kept = self.trail.len();
-        let mark = match self.trail.get(kept.saturating_sub(back)) {
-            Some(mark) if back > 0 => mark.clone(),
-            _ => self.here(),
+    /// What a finer level goes on from, by `count` short steps: the place `back` steps before the end, or so
+    /// far back that the flow has gone on from there for no longer than those steps take.
+    pub(super) fn legacy(&self, back: Option<usize>, count: usize) -> Legacy {
+        let plan = self.pace.plan(self.end);
+        let back = back.unwrap_or_else(|| plan.within(count)).min(self.trail.len());
+        let points = match back {
+            0 => self.points.clone(),
+            _ => self.trail[self.trail.len() - back].points.clone(),
         };
-        Legacy { mark, plan: self.pace.plan(self.end), sharpening: self.sharpening.clone() }
+        let mark = Mark { done: plan.n_steps().saturating_sub(count), points };
+        Legacy { mark, plan: plan.ending_shortly(count), sharpening: self.sharpening.clone() }
     }
 
     fn here(&self) -> Mark {
@@ -339,14 +342,14 @@ impl<'a> Flow<'a> {
         Ok(Step { operator, areas, base, mass, norms, unit })
     }
 
-    /// The weights of the faces: by their own curvature, and in the first step on a finer level by that which
-    /// the coarser one has ended with as well.
+    /// The weights of the faces: by their own curvature, and in the first step on a finer level by that
+    /// which the coarser one has ended with as well.
     ///
-    /// The coarser level knows ridges from noise, but not on which of the finer faces they are; the finer one
-    /// has them to the face, under noise. Their geometric mean is low where both say so: with the finer one's
-    /// alone facets of a noisy skull melt (0.39 of it flat, 0.66 by all steps on the mesh itself, 0.72 with
-    /// the mean), with the coarser one's alone the ridges of a noisy cube are chamfered (0.0022 off; 0.0014;
-    /// 0.0017).
+    /// The coarser level knows ridges from noise, but not on which of the finer faces they are; the finer
+    /// one has them to the face, under noise. Their geometric mean is low where both say so: with the finer
+    /// one's alone facets of a noisy skull melt (0.39 of it flat, 0.66 by all steps on the mesh itself, 0.72
+    /// with the mean), with the coarser one's alone the ridges of a noisy cube are chamfered (0.0022 off;
+    /// 0.0014; 0.0017).
     fn weights(&mut self, step: &Step) -> Result<Vec<f64>> {
         let mut weights = sharpened_weights(&step.norms, &step.areas, &step.base, self.options.sharpness)?;
         if let Some(factors) = self.sharpening.take() {

@@ -3,9 +3,9 @@
 use super::flatness::Flatness;
 use super::FlowStatus;
 
-/// Bend in edges under the ridge angle, as a part of all bend, at which a shape counts as made of planes that
-/// meet in ridges, if [`PLANES`] agrees. An exact model has none, one whose coordinates were rounded to `f32`
-/// under 1e-4; a 32-sided cylinder 1.
+/// Bend in edges under the ridge angle, as a part of all bend, at which a shape counts as made of planes
+/// that meet in ridges, if [`PLANES`] agrees. An exact model has none, one whose coordinates were rounded to
+/// `f32` under 1e-4; a 32-sided cylinder 1.
 const SOFT: f64 = 0.02;
 
 /// Rough noise has no soft edges, either, but every face lies in a plane of its own; a model has most of its
@@ -25,6 +25,9 @@ const BEGUN: f64 = 0.05;
 /// step gains more than 0.07.
 const FORMING: f64 = 0.1;
 
+/// Times of steps are sums: their rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// The flow ends within this part of the movement asked for.
 const NEAR: f64 = 0.97;
 
@@ -33,10 +36,10 @@ const USUAL_GROWTH: f64 = 0.5;
 
 /// The pace of one flow.
 ///
-/// A step with fidelity `η` is a step of length `1 / η` in the time of the flow (implicit Euler). What a flow
-/// reaches depends on its time, hardly on the number of steps: ten steps that each double the time find the
-/// planes that a hundred equal ones find. So with a movement to reach, every step doubles the time, and the
-/// last ends where the movement does.
+/// A step with fidelity `η` is a step of length `1 / η` in the time of the flow (implicit Euler). What a
+/// flow reaches depends on its time, hardly on the number of steps: ten steps that each double the time find
+/// the planes that a hundred equal ones find. So with a movement to reach, every step doubles the time, and
+/// the last ends where the movement does.
 #[derive(Debug, Clone)]
 pub(super) struct Pace {
     movement: Option<f64>,
@@ -63,9 +66,29 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// Whether there is one.
-    pub(super) fn has_steps(&self) -> bool {
-        !self.factors.is_empty()
+    /// How many.
+    pub(super) fn n_steps(&self) -> usize {
+        self.factors.len()
+    }
+
+    /// The same with steps as short as the first in the place of the last `count`.
+    pub(super) fn ending_shortly(mut self, count: usize) -> Self {
+        let n = self.factors.len();
+        if let Some(&first) = self.factors.first() {
+            self.factors[n.saturating_sub(count)..].fill(first);
+        }
+        self
+    }
+
+    /// How many of the last steps take no longer, all together, than `count` of the first.
+    pub(super) fn within(&self, count: usize) -> usize {
+        let Some(first) = self.factors.first() else { return 0 };
+        let (most, mut time) = (count as f64 * (1.0 + ROUNDING) / first, 0.0);
+        let is_within = |factor: &&f64| {
+            time += 1.0 / **factor;
+            time <= most
+        };
+        self.factors.iter().rev().take_while(is_within).count()
     }
 }
 
