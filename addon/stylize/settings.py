@@ -36,7 +36,7 @@ def movement_of(strength: float) -> float:
 def flat_share_of(strength: float) -> float:
     """The part of the surface that a strength from 0 to 1 makes flat, unless that moves it too far.
 
-    From the same sheets: at 0.5 (a half) a bust keeps nose, brows, and chin, a bunny its muzzle. At two
+    From the same sheets: at 0.5 (a half) a bust keeps nose and chin, a bunny its muzzle. At two
     thirds the face of the bust is gone.
     """
     return min(0.15 + 0.7 * strength, 1.0)
