@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::buckets::Buckets;
 use crate::error::MeshError;
-use crate::mesh::vector::{add, area_vector, dot, norm, scale, sub, Point};
+use crate::mesh::vector::{add, area_vector, dot, scale, sub, Point};
 use crate::mesh::Mesh;
 use crate::remesh::closest::closest_on_triangle;
 
@@ -113,7 +113,7 @@ impl Carry {
 fn weights(corners: [Point; 3], point: Point) -> [f64; 3] {
     let normal = area_vector(corners);
     let square = dot(normal, normal);
-    if square <= 0.0 || norm(normal) <= 0.0 {
+    if square <= 0.0 {
         // A triangle without area: the closest corner.
         let nearest = (0..3).min_by(|&i, &j| {
             let distance = |k: usize| dot(sub(corners[k], point), sub(corners[k], point));

@@ -38,14 +38,19 @@ impl Level {
     /// The mean of what the vertices have that a vertex stands for.
     #[must_use]
     pub fn mean_of(&self, fine: &[f64]) -> Vec<f64> {
-        let n = self.mesh.connectivity().n_vertices();
-        let (mut sums, mut counts) = (vec![0.0; n], vec![0_u32; n]);
-        for (value, &parent) in fine.iter().zip(&self.parents).filter(|(_, &parent)| parent != u32::MAX) {
-            sums[parent as usize] += value;
-            counts[parent as usize] += 1;
-        }
-        sums.iter().zip(counts).map(|(sum, count)| sum / f64::from(count.max(1))).collect()
+        let values = self.parents.iter().copied().zip(fine.iter().copied());
+        means(self.mesh.connectivity().n_vertices(), values.filter(|(parent, _)| *parent != u32::MAX))
     }
+}
+
+/// The mean of the values of each of `n` vertices; 0 where one has none.
+pub(crate) fn means(n: usize, values: impl Iterator<Item = (u32, f64)>) -> Vec<f64> {
+    let (mut sums, mut counts) = (vec![0.0; n], vec![0_u32; n]);
+    for (v, value) in values {
+        sums[v as usize] += value;
+        counts[v as usize] += 1;
+    }
+    sums.iter().zip(counts).map(|(sum, count)| sum / f64::from(count.max(1))).collect()
 }
 
 /// The levels of `mesh` above it, each coarser than the one before, down to the first with no more than

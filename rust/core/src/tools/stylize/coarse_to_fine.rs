@@ -7,11 +7,11 @@
 //! levels have one unit of length, so what a flow makes of a shape does not depend on how densely it is
 //! sampled.
 
-use super::flow::{Flow, Legacy, Mark, Show};
+use super::flow::{Flow, Legacy, Show};
 use super::options::{StylizeOptions, Stylized, ENOUGH};
 use super::Flatness;
 use crate::error::MeshError;
-use crate::levels::{levels, Level};
+use crate::levels::{levels, means, Level};
 use crate::mesh::vector::{add, sub, Point};
 use crate::mesh::{edge_lengths, Mesh};
 use crate::progress::Progress;
@@ -38,11 +38,12 @@ pub(super) fn coarse_to_fine(
     progress: &Progress,
 ) -> Result<Stylized> {
     let start = mesh.positions().ok_or(MeshError::NoPositions)?;
-    let levels = levels(mesh, held(options).as_deref(), ENOUGH, progress)?;
+    let held = held(options, start.len());
+    let levels = levels(mesh, held.as_deref(), ENOUGH, progress)?;
     // One unit of length for all levels.
     let lengths = edge_lengths(mesh.connectivity().faces(), start);
     let coarse_scale = Scale::Length(scale.unit(mesh.connectivity(), start, &lengths));
-    let all = options_by_level(mesh, options, &levels);
+    let all = options_by_level(mesh, options, held.as_deref(), &levels);
     let fractions = fractions(mesh, &levels);
     let energy = finest.energy()?;
     let mut account = Account { energy: vec![energy], ..Account::default() };
@@ -64,10 +65,10 @@ pub(super) fn coarse_to_fine(
         }
         if left.plan.n_steps() > 0 {
             let finer = mesh_at(mesh, &levels, depth - 1);
-            let points = carried(finer, &levels[depth - 1..depth], left.mark.points);
+            let points = carried(finer, &levels[depth - 1..depth], left.points);
             let faces = finer.connectivity().faces();
-            let sharpening = left.sharpening.map(|factors| level.carry.factors(&factors, faces));
-            legacy = Some(Legacy { mark: Mark { points, ..left.mark }, plan: left.plan, sharpening });
+            let sharpening = left.sharpening.as_ref().map(|factors| level.carry.factors(factors, faces));
+            legacy = Some(Legacy { points, sharpening, ..left });
         }
     }
     if let Some(legacy) = legacy {
@@ -89,23 +90,21 @@ fn mesh_at<'m>(mesh: &'m Mesh, levels: &'m [Level], depth: usize) -> &'m Mesh {
 }
 
 /// Which vertices do not move at all: none of the others collapses into one of them.
-fn held(options: &StylizeOptions) -> Option<Vec<bool>> {
-    let by_strength = options.strength.as_ref().map(|strength| strength.iter().map(|s| *s <= 0.0).collect());
-    match (&options.fixed, by_strength) {
-        (Some(fixed), Some(weak)) => {
-            let weak: Vec<bool> = weak;
-            Some(fixed.iter().zip(weak).map(|(fixed, weak)| *fixed || weak).collect())
-        }
-        (Some(fixed), None) => Some(fixed.clone()),
-        (None, weak) => weak,
-    }
+fn held(options: &StylizeOptions, n_vertices: usize) -> Option<Vec<bool>> {
+    let may_hold = options.fixed.is_some() || options.strength.is_some();
+    may_hold.then(|| (0..n_vertices).map(|v| options.holds(v)).collect())
 }
 
 /// What is asked of each level, the finest first.
-fn options_by_level(mesh: &Mesh, options: &StylizeOptions, levels: &[Level]) -> Vec<StylizeOptions> {
+fn options_by_level(
+    mesh: &Mesh,
+    options: &StylizeOptions,
+    held: Option<&[bool]>,
+    levels: &[Level],
+) -> Vec<StylizeOptions> {
     let mut all = vec![options.clone()];
     let mut fixed: Option<Vec<f64>> =
-        held(options).map(|held| held.into_iter().map(|is| f64::from(u8::from(is))).collect());
+        held.map(|held| held.iter().map(|&is| f64::from(u8::from(is))).collect());
     let mut strength = options.strength.clone();
     let mut ridges = options.ridge_weights.as_ref().map(|weights| at_vertices(mesh, weights));
     for level in levels {
@@ -124,15 +123,8 @@ fn options_by_level(mesh: &Mesh, options: &StylizeOptions, levels: &[Level]) -> 
 
 /// The mean of a face's value over the faces of each vertex.
 fn at_vertices(mesh: &Mesh, values: &[f64]) -> Vec<f64> {
-    let n = mesh.connectivity().n_vertices();
-    let (mut sums, mut counts) = (vec![0.0; n], vec![0_u32; n]);
-    for (face, value) in mesh.connectivity().faces().iter().zip(values) {
-        for &v in face {
-            sums[v as usize] += value;
-            counts[v as usize] += 1;
-        }
-    }
-    sums.iter().zip(counts).map(|(sum, count)| sum / f64::from(count.max(1))).collect()
+    let faces = mesh.connectivity().faces().iter().zip(values);
+    means(mesh.connectivity().n_vertices(), faces.flat_map(|(face, &value)| face.map(|v| (v, value))))
 }
 
 fn at_faces(mesh: &Mesh, values: &[f64]) -> Vec<f64> {

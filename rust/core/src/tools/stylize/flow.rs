@@ -28,18 +28,12 @@ const STILL: f64 = 1e-7;
 /// or its area below the tenth of that.
 const COLLAPSED: f64 = 1e-2;
 
-/// Where a flow stands between two steps.
-#[derive(Debug, Clone)]
-pub(super) struct Mark {
-    /// The steps so far.
-    pub done: usize,
-    pub points: Vec<Point>,
-}
-
 /// What a flow leaves to the one of a finer mesh.
 pub(super) struct Legacy {
+    /// The steps that count as done.
+    pub done: usize,
     /// From where it goes on.
-    pub mark: Mark,
+    pub points: Vec<Point>,
     pub plan: Plan,
     /// By how much curvature has changed the weight of each face at its end, if that is known.
     pub sharpening: Option<Vec<f64>>,
@@ -57,7 +51,7 @@ pub(super) struct Flow<'a> {
     /// How many of the last places are kept, the present one not counted.
     memory: usize,
     /// The last places, oldest first.
-    trail: VecDeque<Mark>,
+    trail: VecDeque<Vec<Point>>,
     done: usize,
     /// How the steps ended, however exact they were.
     end: FlowStatus,
@@ -155,8 +149,8 @@ impl<'a> Flow<'a> {
     }
 
     /// Goes on from the place that was reached elsewhere.
-    pub(super) fn resume(&mut self, Legacy { mark, plan, sharpening }: Legacy) -> Result<()> {
-        (self.done, self.points) = (mark.done, mark.points);
+    pub(super) fn resume(&mut self, Legacy { done, points, plan, sharpening }: Legacy) -> Result<()> {
+        (self.done, self.points) = (done, points);
         self.pace.follow(plan, self.done);
         self.sharpening = sharpening;
         (self.result.iterations, self.result.vertices) = (self.done, self.points.clone());
@@ -177,14 +171,10 @@ impl<'a> Flow<'a> {
         let back = back.unwrap_or_else(|| plan.within(count)).min(self.trail.len());
         let points = match back {
             0 => self.points.clone(),
-            _ => self.trail[self.trail.len() - back].points.clone(),
+            _ => self.trail[self.trail.len() - back].clone(),
         };
-        let mark = Mark { done: plan.n_steps().saturating_sub(count), points };
-        Legacy { mark, plan: plan.ending_shortly(count), sharpening: self.sharpening.clone() }
-    }
-
-    fn here(&self) -> Mark {
-        Mark { done: self.done, points: self.points.clone() }
+        let done = plan.n_steps().saturating_sub(count);
+        Legacy { done, points, plan: plan.ending_shortly(count), sharpening: self.sharpening.clone() }
     }
 
     /// The steps that are left, or until an end.
@@ -261,7 +251,7 @@ impl<'a> Flow<'a> {
     /// Keeps the place before a step.
     fn remember(&mut self) {
         if self.memory > 0 {
-            self.trail.push_back(self.here());
+            self.trail.push_back(self.points.clone());
             if self.trail.len() > self.memory {
                 self.trail.pop_front();
             }
@@ -303,11 +293,7 @@ impl<'a> Flow<'a> {
 
     /// Which vertices do not move.
     fn fixed(&self, step: &Step) -> Result<Vec<bool>> {
-        let is_fixed = |i: usize| {
-            self.options.fixed.as_ref().is_some_and(|f| f[i])
-                || self.options.strength.as_ref().is_some_and(|s| s[i] <= 0.0)
-                || step.mass[i] <= 0.0
-        };
+        let is_fixed = |i: usize| self.options.holds(i) || step.mass[i] <= 0.0;
         Ok(memory::gathered((0..self.points.len()).map(is_fixed))?)
     }
 

@@ -82,6 +82,12 @@ pub enum Levels {
 pub(super) const ENOUGH: usize = 9000;
 
 impl StylizeOptions {
+    /// Whether a vertex is asked not to move at all.
+    pub(super) fn holds(&self, v: usize) -> bool {
+        self.fixed.as_ref().is_some_and(|fixed| fixed[v])
+            || self.strength.as_ref().is_some_and(|strength| strength[v] <= 0.0)
+    }
+
     /// Whether a mesh with so many vertices gets levels.
     pub(super) fn uses_levels(&self, n_vertices: usize) -> bool {
         match self.levels {

@@ -166,13 +166,12 @@ impl Pace {
     /// Takes note of a step that has left the shape `moved` from where it began (as a part of its size), and
     /// sets the next one; the status where there shall be none.
     pub(super) fn after(&mut self, moved: f64, now: &Flatness) -> Option<FlowStatus> {
+        self.factors.push(self.factor);
         if !self.looks_for_an_end() {
-            self.factors.push(self.factor);
             return None;
         }
         let gain = now.flat_share - self.flat.last().copied().unwrap_or(0.0);
         self.time += 1.0 / self.factor;
-        self.factors.push(self.factor);
         self.flat.push(now.flat_share);
         if self.plan.is_some() {
             return self.planned();
