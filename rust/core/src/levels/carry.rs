@@ -46,10 +46,10 @@ impl Carry {
         let squared = |p: Point, q: Point| dot(sub(p, q), sub(p, q));
         let place = |p: Point, parent: u32| {
             let mut best: Option<(f64, u32, Point)> = None;
-            let mut from = [parent, parent, parent];
+            let (mut known, mut from): ([u32; 3], &[u32]) = ([u32::MAX; 3], &[parent]);
             loop {
                 let before = best.map_or(u32::MAX, |found| found.1);
-                for &f in from.iter().flat_map(|&v| around.of(v as usize)) {
+                for &f in from.iter().filter(|v| !known.contains(v)).flat_map(|&v| around.of(v as usize)) {
                     let point = closest_on_triangle(p, corners(f));
                     let distance = squared(p, point);
                     if best.is_none_or(|found| distance < found.0) {
@@ -61,7 +61,8 @@ impl Carry {
                     let weights = weights(corners(f), point);
                     return Some(Place { face: f, corners: faces[f as usize], weights });
                 }
-                from = faces[f as usize];
+                known = std::array::from_fn(|k| from.get(k).copied().unwrap_or(u32::MAX));
+                from = &faces[f as usize];
             }
         };
         let places = fine

@@ -1,7 +1,10 @@
-//! Edge collapses in the order of how far they leave the surface (Garland and Heckbert 1997).
+//! Edge collapses in the order of how far they leave the surface (Garland and Heckbert 1997), in bulk.
+//!
+//! A queue of all edges costs more than the collapses. So edges collapse in passes: of as many edges as
+//! vertices are still to go, the cheapest, each whose ends have not changed in the pass. What the queue
+//! would do is done in the same order but for the neighborhoods of collapses, which wait for the next pass.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use rayon::prelude::*;
 
 use crate::linear::small::Quadric;
 use crate::mesh::vector::{area_vector, cross, dot, norm, quality, sub, unit, Point};
@@ -18,15 +21,19 @@ const ALONG: f64 = 1e-3;
 /// Collapses between two looks at whether to go on.
 const CHECK_EVERY: usize = 1024;
 
+/// How many vertices or edges a thread takes at once: some microseconds of work.
+const AT_ONCE: usize = 256;
+
 /// A surface whose edges collapse, with the planes of all faces that each vertex stands for.
 #[derive(Debug)]
 pub(super) struct Collapser {
     mesh: EditableMesh,
     quadrics: Vec<Quadric>,
     kinds: Vec<Kind>,
-    /// How often a vertex has changed: candidates from before are void.
-    changes: Vec<u32>,
-    queue: BinaryHeap<Reverse<Candidate>>,
+    /// The edges that may collapse, each with its cost.
+    candidates: Vec<Candidate>,
+    /// Which vertices have changed in the present pass.
+    is_changed: Vec<bool>,
     /// What a vertex collapsed into; itself while it is there.
     into: Vec<u32>,
     /// The vertices of the last level that was asked for.
@@ -42,8 +49,8 @@ struct Kind {
     is_locked: bool,
 }
 
-/// Cost, ends and the changes that the ends had seen.
-type Candidate = (Ordered, [u32; 2], [u32; 2]);
+/// Cost and ends.
+type Candidate = (Ordered, [u32; 2]);
 
 impl Collapser {
     pub(super) fn new(
@@ -53,16 +60,17 @@ impl Collapser {
     ) -> Result<Self> {
         let n = positions.len();
         let mesh = EditableMesh::new(positions.to_vec(), connectivity.faces().to_vec())?;
-        let mut quadrics = vec![Quadric::default(); n];
-        for (_, face) in mesh.faces() {
-            let area = area_vector(mesh.corners(face));
-            let (weight, normal) = (norm(area) / 3.0, unit(area));
-            for v in face {
-                let point = mesh.position(v);
-                quadrics[v as usize].add(weight, normal, dot(normal, point));
-                quadrics[v as usize].add_point(ALONG * weight, point);
-            }
-        }
+        let mut quadrics: Vec<Quadric> =
+            (0..n as u32).into_par_iter().with_min_len(AT_ONCE).map(|v| quadric(&mesh, v)).collect();
+        let manifold = (0..n as u32).into_par_iter().with_min_len(AT_ONCE).map(|v| mesh.is_manifold(v));
+        let mut kinds: Vec<Kind> = manifold
+            .enumerate()
+            .map(|(v, is_manifold)| Kind {
+                is_held: held.is_some_and(|held| held[v]),
+                is_border: false,
+                is_locked: !is_manifold,
+            })
+            .collect();
         // A border is kept by the planes through its edges across their faces.
         for h in connectivity.boundary() {
             let [tail, head, tip] = [connectivity.tail(h), connectivity.head(h), connectivity.opposite(h)];
@@ -71,34 +79,21 @@ impl Collapser {
             let across = unit(cross(along, area_vector([a, b, c])));
             for v in [tail, head] {
                 quadrics[v as usize].add(dot(along, along), across, dot(across, a));
-            }
-        }
-        let mut kinds: Vec<Kind> = (0..n as u32)
-            .map(|v| Kind {
-                is_held: held.is_some_and(|held| held[v as usize]),
-                is_border: false,
-                is_locked: !mesh.is_manifold(v),
-            })
-            .collect();
-        for h in connectivity.boundary() {
-            for v in [connectivity.tail(h), connectivity.head(h)] {
                 kinds[v as usize].is_border = true;
             }
         }
-        let n_left = (0..n as u32).filter(|&v| !mesh.faces_of(v).is_empty()).count();
         let mut collapser = Self {
+            n_left: (0..n as u32).filter(|&v| !mesh.faces_of(v).is_empty()).count(),
             quadrics,
             kinds,
-            changes: vec![0; n],
-            queue: BinaryHeap::new(),
+            candidates: Vec::new(),
+            is_changed: vec![true; n],
             into: (0..n as u32).collect(),
             last: (0..n as u32).collect(),
-            n_left,
             mesh,
         };
-        let edges: Vec<Candidate> =
-            collapser.mesh.edges().into_iter().filter_map(|[a, b]| collapser.candidate(a, b)).collect();
-        collapser.queue = edges.into_iter().map(Reverse).collect();
+        collapser.candidates = collapser.candidates_at(&collapser.into);
+        collapser.is_changed.fill(false);
         Ok(collapser)
     }
 
@@ -109,16 +104,28 @@ impl Collapser {
 
     /// Collapses edges until no more than `wanted` vertices are left, or none can any more.
     pub(super) fn reduce_to(&mut self, wanted: usize, progress: &Progress) -> Result<()> {
-        let mut count = 0_usize;
-        while self.n_left > wanted {
-            if count.is_multiple_of(CHECK_EVERY) {
-                progress.check()?;
+        while self.n_left > wanted && !self.candidates.is_empty() {
+            let count = (self.n_left - wanted).min(self.candidates.len());
+            let mut rest = std::mem::take(&mut self.candidates);
+            if count < rest.len() {
+                rest.select_nth_unstable(count);
             }
-            count += 1;
-            let Some(Reverse((_, [a, b], seen))) = self.queue.pop() else { break };
-            if seen == self.seen(a, b) {
-                self.collapse(a, b);
+            let mut tried: Vec<Candidate> = rest.drain(..count).collect();
+            tried.par_sort_unstable();
+            let mut changed = Vec::new();
+            for (i, (_, [a, b])) in tried.into_iter().enumerate() {
+                if i.is_multiple_of(CHECK_EVERY) {
+                    progress.check()?;
+                }
+                if !self.is_changed[a as usize] && !self.is_changed[b as usize] {
+                    self.collapse(a, b, &mut changed);
+                }
             }
+            rest.retain(|&(_, ends)| ends.iter().all(|&v| !self.is_changed[v as usize]));
+            self.candidates = rest;
+            let found = self.candidates_at(&changed);
+            self.candidates.extend(found);
+            changed.iter().for_each(|&v| self.is_changed[v as usize] = false);
         }
         Ok(())
     }
@@ -148,14 +155,21 @@ impl Collapser {
         v
     }
 
-    fn seen(&self, a: u32, b: u32) -> [u32; 2] {
-        [self.changes[a as usize], self.changes[b as usize]]
+    /// The edges at the vertices that have changed, each once.
+    fn candidates_at(&self, vertices: &[u32]) -> Vec<Candidate> {
+        let at = |&v: &u32| {
+            let others = self.mesh.neighbors(v).into_iter();
+            others.filter(move |&w| v < w || !self.is_changed[w as usize]).filter_map(move |w| {
+                let ends = if v < w { [v, w] } else { [w, v] };
+                self.candidate(ends)
+            })
+        };
+        vertices.par_iter().with_min_len(AT_ONCE).flat_map_iter(at).collect()
     }
 
-    fn candidate(&self, a: u32, b: u32) -> Option<Candidate> {
+    fn candidate(&self, [a, b]: [u32; 2]) -> Option<Candidate> {
         let point = self.place(a, b)?;
-        let cost = self.sum(a, b).value(point);
-        Some((Ordered(cost), [a, b], self.seen(a, b)))
+        Some((Ordered(self.sum(a, b).value(point)), [a, b]))
     }
 
     fn sum(&self, a: u32, b: u32) -> Quadric {
@@ -184,7 +198,9 @@ impl Collapser {
         self.mesh.is_hub(v)
     }
 
-    fn collapse(&mut self, a: u32, b: u32) {
+    /// Makes two vertices one if that keeps the surface, and notes which have changed. A hub has not, it only
+    /// has more faces.
+    fn collapse(&mut self, a: u32, b: u32, changed: &mut Vec<u32>) {
         let Some(point) = self.place(a, b) else { return };
         // Into the one that stays, or that is on the border.
         let goes_to_a = self.stays(a) || !self.stays(b) && self.kinds[a as usize].is_border;
@@ -195,16 +211,9 @@ impl Collapser {
         self.quadrics[to as usize] = self.sum(from, to);
         self.into[from as usize] = to;
         self.n_left -= 1;
-        if self.stays(to) {
-            return;
-        }
-        self.changes[to as usize] += 1;
-        for w in self.mesh.neighbors(to) {
-            let ends = if w < to { [w, to] } else { [to, w] };
-            if let Some(candidate) = self.candidate(ends[0], ends[1]) {
-                self.queue.push(Reverse(candidate));
-            }
-        }
+        let noted: &[u32] = if self.stays(to) { &[from] } else { &[from, to] };
+        changed.extend(noted);
+        noted.iter().for_each(|&v| self.is_changed[v as usize] = true);
     }
 
     /// Whether no face that stays turns over or becomes a sliver.
@@ -220,4 +229,17 @@ impl Collapser {
             (norm(normal) <= 0.0 || !is_turned(new, normal)) && !is_thinned(quality(new), quality(old))
         })
     }
+}
+
+/// The planes of the faces of `v`, each by a third of its area.
+fn quadric(mesh: &EditableMesh, v: u32) -> Quadric {
+    let mut sum = Quadric::default();
+    let point = mesh.position(v);
+    for face in mesh.faces_of(v).iter().filter_map(|&f| mesh.face(f)) {
+        let area = area_vector(mesh.corners(face));
+        let (weight, normal) = (norm(area) / 3.0, unit(area));
+        sum.add(weight, normal, dot(normal, point));
+        sum.add_point(ALONG * weight, point);
+    }
+    sum
 }
