@@ -157,7 +157,9 @@ def normal_notes(mesh: bpy.types.Mesh) -> list[str]:
     normals = mesh.attributes.get("custom_normal")
     if normals is None or normals.data_type != "FLOAT_VECTOR":
         return []
-    return ["its free custom normals stay as they are and hide the facets (Clear Custom Split Normals Data)"]
+    # Newer versions call it otherwise.
+    cure = bpy.ops.mesh.customdata_custom_splitnormals_clear.get_rna_type().name
+    return [f"its free custom normals stay as they are and hide the facets ({cure})"]
 
 
 def key_notes(obj: bpy.types.Object) -> list[str]:
