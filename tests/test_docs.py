@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from american_words import british_lines, british_words
+from american_words import british_lines, british_strings, british_words
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted(
@@ -144,6 +144,9 @@ def test_the_words_are_american():
     ]
     assert british_words("Colors, centers, realistic analyses, l2_norm, revise, promise, raised") == []
     assert [line for page in PAGES for line in british_lines(page)] == []
+    addon = ROOT / "addon"
+    assert [line for table in addon.rglob("*.toml") for line in british_lines(table)] == []
+    assert [line for file in addon.rglob("*.py") for line in british_strings(file)] == []
 
 
 def prose(page):

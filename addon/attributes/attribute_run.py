@@ -15,7 +15,7 @@ from ..blender import attribute_io, attribute_names, display, mesh_io
 from ..blender.attribute_io import PointValues
 from ..blender.refusals import RefusedError
 from ..blender.welding import Weld
-from ..framework.run import Part, Run, meshes_phrase
+from ..framework.run import Part, Run, meshes_phrase, most, total
 from ..framework.sources import source_of
 from ..framework.surface import Surface, painted_ridges, surface_of
 from .settings import solve_options
@@ -134,11 +134,10 @@ class AttributeRun(Run):
         results = sorted({str(entry["result"]) for entry in done})
         into = f' into "{results[0]}"' if len(results) == 1 and results != names else ""
         what = f'"{names[0]}"' if len(names) == 1 else f"{len(names)} attributes"
-        after = f"{sum(entry['energy_after'] for entry in done):.4g}"
+        after = f"{total(done, 'energy_after'):.4g}"
         befores = [entry["energy_before"] for entry in done if entry["energy_before"] is not None]
         energy = f"{sum(befores):.4g} → {after}" if befores else after
-        gap = max(entry["gap"] for entry in done)
-        seconds = sum(entry["seconds"] for entry in done)
+        gap, seconds = most(done, "gap"), total(done, "seconds")
         where = meshes_phrase(done)
         return f"{self.done_word} {what} of {where}{into}: energy {energy}, gap {gap:.1g}, {seconds:.1f} s"
 

@@ -13,7 +13,7 @@ from ..blender import attribute_io, display, mesh_io
 from ..blender.selection import Needs
 from ..blender.welding import Weld
 from ..framework.job import Task
-from ..framework.run import Part, Run, meshes_phrase
+from ..framework.run import Part, Run, meshes_phrase, most, total
 from ..framework.surface import Surface, half_notes, surface_of
 from .attribute_run import energy_on
 from .settings import ModesSettings, energy_options
@@ -80,9 +80,7 @@ class VibrationModes(Run):
 
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """How many modes of which mesh, the energy of the last one, time."""
-        count = max(entry["steps"] for entry in done)
-        energy = max(entry["energy_after"] for entry in done)
-        seconds = sum(entry["seconds"] for entry in done)
+        count, energy, seconds = most(done, "steps"), most(done, "energy_after"), total(done, "seconds")
         where = meshes_phrase(done)
         return f"{count} vibration modes of {where}, energies up to {energy:.4g}, {seconds:.1f} s"
 

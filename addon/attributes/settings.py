@@ -49,9 +49,7 @@ STRENGTHS = {
     "l1_hessian": (6.0, 4.0),
     "l1_hessian_stein2018": (6.0, 4.0),
     "l1_edge_laplacian": (5.5, 4.0),
-    "l2_hessian": (9.25, 6.0),
-    "l2_curved_hessian": (9.25, 6.0),
-    "l2_laplacian": (9.25, 6.0),
+    **dict.fromkeys(QUADRATIC, (9.25, 6.0)),
 }
 """The power of ten of the fidelity weight at strength 0, and by how much it falls up to strength 1.
 

@@ -14,7 +14,7 @@ from ..blender.attribute_names import FACE_NUMBERS
 from ..blender.refusals import RefusedError
 from ..blender.selection import Needs
 from ..framework.job import Task
-from ..framework.run import Part, Run, counted, meshes_phrase
+from ..framework.run import Part, Run, counted, meshes_phrase, total
 from ..framework.settings import chosen
 from ..framework.surface import Surface, half_notes, surface_of
 from . import curves_io, drawing
@@ -134,14 +134,14 @@ class DiffusionCurves(Run):
         curves, before, after = _totals(done)
         quality = [entry["psnr"] for entry in done if entry["psnr"] is not None]
         error = f"PSNR {min(quality):.1f} dB" if quality else "no error"
-        seconds = sum(entry["seconds"] for entry in done)
+        seconds = total(done, "seconds")
         what = f"{counted(curves, 'curve')} of {meshes_phrase(done)}"
         return f"{what}: {after} numbers instead of {before}, {error}, {seconds:.1f} s"
 
 
 def _totals(done: Sequence[dict[str, object]]) -> tuple[int, int, int]:
     """Curves, and the numbers before and after, of all meshes."""
-    return tuple(sum(entry[key] for entry in done) for key in ("curves", "numbers_before", "numbers_after"))
+    return tuple(total(done, key) for key in ("curves", "numbers_before", "numbers_after"))
 
 
 def _face_labels(obj: bpy.types.Object, settings: object) -> np.ndarray:

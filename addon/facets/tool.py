@@ -14,7 +14,7 @@ from ..blender.refusals import RefusedError
 from ..framework import faceting
 from ..framework.faceting import Facetable, FacetMesh
 from ..framework.job import Task
-from ..framework.run import Part, Run, counted, meshes_phrase
+from ..framework.run import Part, Run, counted, meshes_phrase, most, total
 from ..framework.surface import group_weights, painted_edges, surface_of
 from .settings import FacetSettings, by_count, by_error
 
@@ -116,13 +116,8 @@ class Faceting(Run):
 
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """How many facets of which mesh, how far from it, time."""
-        seconds = sum(entry["seconds"] for entry in done)
-        count = sum(entry["facets"] for entry in done)
-        off = max((entry["rms"] for entry in done), default=0.0)
-        return (
-            f"{counted(count, 'facet')} of {meshes_phrase(done)} in {seconds:.1f} s, "
-            f"{100.0 * off:.2g} % of the size off"
-        )
+        what = f"{counted(total(done, 'facets'), 'facet')} of {meshes_phrase(done)}"
+        return f"{what} in {total(done, 'seconds'):.1f} s, {100.0 * most(done, 'rms'):.2g} % of the size off"
 
 
 def _taking(obj: bpy.types.Object, settings: object, edited: bool) -> np.ndarray:

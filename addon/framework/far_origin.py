@@ -41,7 +41,7 @@ def is_rounded(places: np.ndarray) -> bool:
 
 
 def offset_of(path: Path, output: Path) -> np.ndarray | None:
-    """How far (3,) the coordinates of a file are to be moved towards the origin; `None` if not at all.
+    """How far (3,) the coordinates of a file are to be moved toward the origin; `None` if not at all.
 
     Only where the file to be written can hold them again. In whole units, so that digits stay digits.
     """

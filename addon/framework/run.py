@@ -140,7 +140,7 @@ class Run(ABC):
         if cls.sums is None or not done:
             return []
         figure, what, done_to_it = cls.sums
-        return [counted(sum(entry[figure] for entry in done), what) + done_to_it]
+        return [counted(total(done, figure), what) + done_to_it]
 
     def kept_settings(self) -> dict[str, object]:
         """Settings that a redo repeats with other values than those asked for."""
@@ -296,6 +296,16 @@ class Run(ABC):
 def counted(number: int, word: str) -> str:
     """A number of things, the word in the plural where there is not one."""
     return f"{number} {word}" if number == 1 else f"{number} {word}s"
+
+
+def total(done: Sequence[dict[str, object]], figure: str) -> float:
+    """The sum of a figure over the summaries of meshes."""
+    return sum(entry[figure] for entry in done)
+
+
+def most(done: Sequence[dict[str, object]], figure: str) -> float:
+    """The largest of a figure over the summaries of meshes; 0 without any."""
+    return max((entry[figure] for entry in done), default=0.0)
 
 
 def meshes_phrase(done: Sequence[dict[str, object]]) -> str:

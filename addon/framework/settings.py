@@ -113,8 +113,18 @@ def integer(name: str, description: str, values: Range, **more: object) -> Setti
 
 
 def number(name: str, description: str, values: Range, **more: object) -> Setting:
-    """A decimal number; with the subtype `ANGLE` in radians, and in degrees on the command line."""
+    """A decimal number."""
     return _setting(bpy.props.FloatProperty, name, description, {**values.keywords(), **more})
+
+
+def angle(name: str, description: str, values: Range, **more: object) -> Setting:
+    """An angle: in radians, in degrees where Blender shows it and on the command line."""
+    return number(name, description, values, subtype="ANGLE", **more)
+
+
+def distance(name: str, description: str, values: Range, **more: object) -> Setting:
+    """A length in the units of the object, which Blender shows in those of the scene."""
+    return number(name, description, values, subtype="DISTANCE", **more)
 
 
 def factor(name: str, description: str, *, default: float, **more: object) -> Setting:

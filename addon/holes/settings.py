@@ -4,7 +4,7 @@
 import numpy as np
 
 from ..framework import shared_settings as shared
-from ..framework.settings import Range, Settings, boolean, choice, chosen, factor, integer, number
+from ..framework.settings import Range, Settings, boolean, choice, chosen, distance, factor, integer
 
 SHAPES = (
     (
@@ -51,12 +51,11 @@ class HoleSettings(Settings):
         default=0.5,
         active=lambda settings: settings.shape == "SHARP",
     )
-    edge_length: number(
+    edge_length: distance(
         "Edge Length",
         "Length of the edges in the patch, in the units of the object",
         Range(0.1, min=0.0, precision=4),
         otherwise="it is that of the edges around the hole",
-        subtype="DISTANCE",
         metavar="LENGTH",
     )
     material: choice(

@@ -17,7 +17,7 @@ from ..blender.refusals import NothingToDoError, RefusedError
 from ..blender.welding import Weld
 from ..framework.job import Task
 from ..framework.preflight import reason_too_long
-from ..framework.run import Part, Run, counted, meshes_phrase
+from ..framework.run import Part, Run, counted, meshes_phrase, total
 from ..framework.settings import chosen as value_of
 from ..framework.surface import welded
 from .append import append
@@ -161,13 +161,12 @@ class HoleFilling(Run):
 
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """Holes, faces, ridges, time."""
-        holes, faces, ridges = (sum(e[key] for e in done) for key in ("holes", "faces_added", "ridge_edges"))
-        seconds = sum(entry["seconds"] for entry in done)
-        ridge_phrase = f", ridges along {counted(ridges, 'edge')}" if ridges else ""
-        return (
-            f"Filled {counted(holes, 'hole')} of {meshes_phrase(done)}: {counted(faces, 'face')} added"
-            f"{ridge_phrase}, {seconds:.1f} s"
-        )
+        holes = counted(total(done, "holes"), "hole")
+        faces = counted(total(done, "faces_added"), "face")
+        ridges = total(done, "ridge_edges")
+        along = f", ridges along {counted(ridges, 'edge')}" if ridges else ""
+        seconds = total(done, "seconds")
+        return f"Filled {holes} of {meshes_phrase(done)}: {faces} added{along}, {seconds:.1f} s"
 
 
 def own_holes(holes: Sequence[ridgeform.Hole], weld: Weld) -> list[ridgeform.Hole]:

@@ -13,7 +13,7 @@ from ..blender.refusals import NothingToDoError, RefusedError
 from ..framework import files
 from ..framework.far_origin import offset_of
 from ..framework.precision import moved_notes, rounding_notes
-from ..framework.run import NO_RESULT, Run
+from ..framework.run import NO_RESULT, Run, total
 from ..framework.targets import Ledger, Target
 from ..framework.tool import Tool
 from . import thumbnails
@@ -162,8 +162,8 @@ def _record_of(outcomes: Sequence[_Outcome]) -> dict[str, object]:
     if len(outcomes) == 1:
         energies = {key: _total(done[0], key) for key in energies}
     return energies | {
-        "vertices": sum(entry["vertices"] for entry in done[0]),
-        "faces": sum(entry["faces"] for entry in done[-1]),
+        "vertices": total(done[0], "vertices"),
+        "faces": total(done[-1], "faces"),
         "gap": max((e["gap"] for entries in done for e in entries if e["gap"] is not None), default=None),
         "warnings": [f'"{entry["name"]}": {note}' for entry in every for note in entry["warnings"]]
         + [note for outcome in outcomes for note in outcome.skipped],

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from ..framework.settings import Range, Settings, boolean, choices, chosen, number, vertex_group
+from ..framework.settings import Range, Settings, angle, boolean, choices, chosen, number, vertex_group
 
 OUTPUTS = (
     (
@@ -24,12 +24,11 @@ OUTPUTS = (
 class RestoreSettings(Settings):
     """The settings of restoring."""
 
-    regularize: number(
+    regularize: angle(
         "Regularize",
         "Make surfaces exactly parallel or orthogonal that are so within this angle, and radii equal that "
         "differ by as little",
         Range(np.radians(3.0), min=0.0, max=np.radians(30.0)),
-        subtype="ANGLE",
         otherwise="surfaces stay as they were fitted",
     )
     free: boolean(

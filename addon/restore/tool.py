@@ -15,7 +15,7 @@ from ..blender.stored_numbers import write_numbers
 from ..blender.welding import Weld
 from ..framework.job import Task
 from ..framework.preflight import uneven_scale
-from ..framework.run import Part, Run, counted, meshes_phrase
+from ..framework.run import Part, Run, counted, meshes_phrase, total
 from ..framework.surface import group_weights, surface_of
 from . import empties
 from .settings import RestoreSettings, restore_options
@@ -142,8 +142,7 @@ class Restoring(Run):
 
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """How many surfaces of which kind, and how long it took."""
-        seconds = sum(entry["seconds"] for entry in done)
-        return f"Restored {meshes_phrase(done)} in {seconds:.1f} s: {_kinds_phrase(done)}"
+        return f"Restored {meshes_phrase(done)} in {total(done, 'seconds'):.1f} s: {_kinds_phrase(done)}"
 
 
 def _restored(

@@ -11,11 +11,13 @@ from ..framework.settings import (
     Range,
     Setting,
     Settings,
+    angle,
     boolean,
     choice,
     choices,
     chosen,
     data_name,
+    distance,
     factor,
     integer,
     number,
@@ -47,6 +49,9 @@ def by_weight(settings: object) -> bool:
     return of_faces(settings) and settings.source == "ATTRIBUTE" and not by_count(settings)
 
 
+EXPERT_OF_FACES = {"section": shared.EXPERT, "shown": of_faces}
+"""Where the numbers of the functional are, which only finds faces."""
+
 BEND = 0.8
 """The angle (radians) at which two faces of a shape become one segment is so many times the weight λ."""
 
@@ -60,7 +65,7 @@ def weight_of(angle: float) -> float:
 def _width(name: str, description: str, *, default: float) -> Setting:
     """A width of the bands around borders."""
     values = Range(default, min=1e-5, max=10.0, precision=4)
-    return number(name, description, values, section=shared.EXPERT, shown=of_faces)
+    return number(name, description, values, **EXPERT_OF_FACES)
 
 
 KINDS = (
@@ -156,14 +161,13 @@ class SegmentSettings(Settings):
     mode: choice(
         "Mode", "What determines how many segments there are", MODES, default="AUTO", expand=True, flag=None
     )
-    angle: number(
+    angle: angle(
         "Angle",
         "Two faces of a shape become one segment if they meet at an edge bent by less than about this "
         "angle. Larger angles give fewer segments",
         Range(
             BEND * 0.5, min=np.radians(0.005), max=np.pi, soft_min=np.radians(2.0), soft_max=np.radians(120.0)
         ),
-        subtype="ANGLE",
         shown=by_angle,
     )
     length_weight: number(
@@ -196,12 +200,11 @@ class SegmentSettings(Settings):
         default={"MATERIALS"},
         flag="--make",
     )
-    transition: number(
+    transition: distance(
         "Transition",
         "Width of the band around a border in which the weights of vertex groups change from 0 to 1, for "
         "rigging. 0 gives every vertex the full weight of its segment",
         Range(0.0, min=0.0, soft_max=10.0, precision=3),
-        subtype="DISTANCE",
         active=lambda settings: "VERTEX_GROUPS" in settings.outputs,
     )
     use_caps: boolean(
@@ -229,24 +232,21 @@ class SegmentSettings(Settings):
         "Segments with fewer triangles are merged with a neighbor",
         Range(20, min=0, soft_min=1, soft_max=200),
         otherwise="it is as many as the noise of the mesh calls for",
-        section=shared.EXPERT,
-        shown=of_faces,
+        **EXPERT_OF_FACES,
     )
     method: choice(
         "Method",
         "How segments are made from the indicator of borders",
         METHODS,
         default="fitted",
-        section=shared.EXPERT,
-        shown=of_faces,
+        **EXPERT_OF_FACES,
     )
     cut_threshold: factor(
         "Threshold",
         "For the method Paper: the indicator is 1 inside a segment and falls to 0 on a border. Faces are cut "
         "apart where it is below this value: higher values cut along weaker borders as well",
         default=0.6,
-        section=shared.EXPERT,
-        shown=of_faces,
+        **EXPERT_OF_FACES,
         active=lambda settings: settings.method == "paper",
     )
     use_fidelity: shared.USE_FIDELITY.but(
@@ -269,9 +269,7 @@ class SegmentSettings(Settings):
         "Final width of the bands around borders. The method Fitted stops at the resolution of the mesh",
         default=0.001,
     )
-    scale: choice(
-        "Unit", "Length that counts as 1", UNITS, default="extent", section=shared.EXPERT, shown=of_faces
-    )
+    scale: choice("Unit", "Length that counts as 1", UNITS, default="extent", **EXPERT_OF_FACES)
     solver: shared.SOLVER.but(shown=of_faces)
     max_iterations: shared.MAX_ITERATIONS.but(shown=of_faces)
 

@@ -17,7 +17,7 @@ from ..blender.stored_numbers import write_numbers
 from ..blender.welding import Weld
 from ..framework.job import Task
 from ..framework.results import Results
-from ..framework.run import Part, Run, counted, meshes_phrase
+from ..framework.run import Part, Run, counted, meshes_phrase, total
 from ..framework.sources import (
     as_argument,
     source_of,
@@ -231,9 +231,9 @@ class Segmenting(Run):
 
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """How many segments of which mesh, how many there might be, time."""
-        count = sum(entry["segments"] for entry in done)
+        count = total(done, "segments")
         fewest, most = (sum(ends) for ends in zip(*(entry["possible"] for entry in done), strict=True))
-        seconds = sum(entry["seconds"] for entry in done)
+        seconds = total(done, "seconds")
         where = meshes_phrase(done)
         return f"{counted(count, 'segment')} on {where} ({fewest} to {most} are possible), {seconds:.1f} s"
 

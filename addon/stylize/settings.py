@@ -10,6 +10,7 @@ from ..framework import shared_settings as shared
 from ..framework.settings import (
     Range,
     Settings,
+    angle,
     boolean,
     choice,
     chosen,
@@ -155,11 +156,10 @@ class StylizeSettings(Settings):
         section=FINISH_OPTIONS,
     )
     marks: shared.MARKS.but(section=FINISH_OPTIONS, default={"SHARP"})
-    mark_angle: number(
+    mark_angle: angle(
         "Ridge Angle",
         "Minimum angle between the two faces of an edge for it to be marked as a ridge",
         Range(np.radians(20.0), min=0.0, max=np.pi),
-        subtype="ANGLE",
         section=FINISH_OPTIONS,
         active=lambda settings: bool(settings.marks),
         otherwise="it is the angle that separates the edges inside facets from the ridges of this shape",

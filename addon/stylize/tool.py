@@ -15,7 +15,7 @@ from ..blender.refusals import RefusedError
 from ..framework import faceting
 from ..framework.job import Task
 from ..framework.preflight import uneven_scale
-from ..framework.run import Part, Run, counted, meshes_phrase
+from ..framework.run import Part, Run, counted, meshes_phrase, most, total
 from ..framework.surface import group_weights, painted_ridges, welded
 from . import finish, recorded, reduction
 from .finish import Source
@@ -143,13 +143,9 @@ class Stylization(Run):
 
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """How many facets there are, how far the shape moved, and how long it took."""
-        seconds = sum(entry["seconds"] for entry in done)
-        facets = sum(entry["facets"] for entry in done)
-        moved = max((entry["moved"] for entry in done), default=0.0)
-        return (
-            f"Stylized {meshes_phrase(done)} in {seconds:.1f} s: {counted(facets, 'facet')}, "
-            f"moved at most {100.0 * moved:.2g} % of the size"
-        )
+        what = f"Stylized {meshes_phrase(done)} in {total(done, 'seconds'):.1f} s"
+        facets = counted(total(done, "facets"), "facet")
+        return f"{what}: {facets}, moved at most {100.0 * most(done, 'moved'):.2g} % of the size"
 
 
 def stylize_objects(

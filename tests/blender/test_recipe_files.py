@@ -1,6 +1,7 @@
 """Recipes do what the commands do one after the other; errors name file, line, tool, and key."""
 
 import math
+import textwrap
 from types import SimpleNamespace
 
 import addon_kit as kit
@@ -18,18 +19,9 @@ from optional_kit import every_optional_number
 COMMANDS = {tool.command: tool for tool in registry.TOOLS}
 every_tool = pytest.mark.parametrize("tool", registry.TOOLS, ids=list(COMMANDS))
 
-RECIPE = """# A comment.
-[[step]]
-tool = "fill-holes"
-max-edges = 40
-
-[[step]]
-tool = "stylize"
-steps = 2
-strength = 0.4
-mark = ["sharp", "crease"]
-mark-angle = 25
-"""
+EXAMPLE = textwrap.dedent(recipe.__doc__.split("\n\n", 1)[1].rsplit("\n\n", 1)[0])
+"""The recipe that the module shows."""
+RECIPE = f"# A comment.\n{EXAMPLE}\nsteps = 2\nmark-angle = 25\n"
 
 
 def test_a_recipe_does_what_the_commands_do_one_after_the_other(tmp_path, capfd):
@@ -42,7 +34,7 @@ def test_a_recipe_does_what_the_commands_do_one_after_the_other(tmp_path, capfd)
     outs = [tmp_path / f"{name}.blend" for name in ("filled", "flat", "both")]
     code, _ = batch_kit.run(capfd, "fill-holes", source, "-o", outs[0], "--max-edges", 40)
     assert code == 0
-    options = ("--steps", 2, "--strength", 0.4, "--mark", "sharp", "--mark", "crease", "--mark-angle", 25)
+    options = ("--steps", 2, "--strength", 0.6, "--mark", "sharp", "--mark", "bevel", "--mark-angle", 25)
     code, _ = batch_kit.run(capfd, "stylize", outs[0], "-o", outs[1], *options)
     assert code == 0
     code, records = batch_kit.run(capfd, "run", text, source, "-o", outs[2])

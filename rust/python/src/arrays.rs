@@ -119,25 +119,28 @@ pub(crate) fn integers(name: &'static str, object: &Bound<'_, PyAny>) -> PyResul
     }
 }
 
-/// Read a set of `length` things: a boolean mask of shape (length,), or an array of indices below `length`.
+/// Read a set of `length` things, where one is given: a boolean mask of shape (length,), or an array of indices
+/// below `length`.
 ///
 /// # Errors
 /// `ArgumentError` for another shape or an index out of range; `what` names the things.
 pub(crate) fn mask(
     name: &'static str,
-    object: &Bound<'_, PyAny>,
+    given: Option<&Bound<'_, PyAny>>,
     length: usize,
     what: &str,
-) -> PyResult<Vec<bool>> {
+) -> PyResult<Option<Vec<bool>>> {
+    let Some(object) = given else { return Ok(None) };
     if numeric_array(name, object)?.dtype().kind() == b'b' {
         let numbers: Numbers<f64> = floats(name, object)?;
-        return Ok(numbers.exactly(object.py(), name, length, what)?.iter().map(|&x| x != 0.0).collect());
+        let marks = numbers.exactly(object.py(), name, length, what)?;
+        return Ok(Some(marks.iter().map(|&x| x != 0.0).collect()));
     }
     let mut set = vec![false; length];
     for i in indices(name, object, length, what)? {
         set[i] = true;
     }
-    Ok(set)
+    Ok(Some(set))
 }
 
 /// Read indices of `length` things, shape (k,), in the order given.

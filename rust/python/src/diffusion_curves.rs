@@ -11,7 +11,7 @@ use crate::columns::{self, Values};
 use crate::doorway;
 use crate::errors::{self, argument};
 use crate::mesh::Mesh;
-use crate::numbers::at_least;
+use crate::numbers::{at_least, at_least_if};
 use crate::progress::{handle, Progress};
 
 /// What `diffusion_curves` returns: curves with a color on each side, and the colors that they rebuild.
@@ -140,7 +140,7 @@ pub(crate) fn diffusion_curves(
     let labels = labels.map(|given| read_labels(given, mesh.n_faces())).transpose()?;
     let groups = face_groups.map(|given| read_groups(given, mesh.n_faces())).transpose()?;
     let regions = tools::SegmentOptions {
-        n_segments: n_regions.map(|count| at_least(py, "n_regions", count, 1)).transpose()?,
+        n_segments: at_least_if(py, "n_regions", n_regions, 1)?,
         length_weight,
         min_faces: Some(at_least(py, "min_faces", min_faces, 0)?),
         ..tools::SegmentOptions::default()

@@ -5,9 +5,9 @@ use pyo3::prelude::*;
 use ridgeform_core::tools::{self, FacetMerges, FacetOptions};
 
 use crate::mesh::Mesh;
-use crate::numbers::at_least;
+use crate::numbers::at_least_if;
 use crate::progress::{handle, Progress};
-use crate::{arrays, doorway};
+use crate::{arrays, doorway, options};
 
 /// What `facet` returns: a mesh of flat polygons, and what of the other mesh each is.
 #[pyclass(frozen, module = "ridgeform")]
@@ -83,7 +83,7 @@ impl Faceted {
         error: Option<f64>,
         progress: Option<&Bound<'_, Progress>>,
     ) -> PyResult<Self> {
-        let facets = facets.map(|count| at_least(py, "facets", count, 1)).transpose()?;
+        let facets = at_least_if(py, "facets", facets, 1)?;
         let options = FacetOptions { facets, error, ..self.options.clone() };
         run(py, self.mesh.clone_ref(py), Some(&self.merges), options, progress)
     }
@@ -181,15 +181,12 @@ pub(crate) fn facet(
     progress: Option<&Bound<'_, Progress>>,
 ) -> PyResult<Faceted> {
     let m = mesh.get().n_faces();
-    let rows = |given: &Bound<'_, PyAny>| {
-        arrays::finite_floats("edge_weights", given)?.rows::<3>(py, "edge_weights")
-    };
     let options = FacetOptions {
-        facets: facets.map(|count| at_least(py, "facets", count, 1)).transpose()?,
+        facets: at_least_if(py, "facets", facets, 1)?,
         error,
-        edge_weights: edge_weights.map(rows).transpose()?,
-        faces: faces.map(|given| arrays::mask("faces", given, m, "face")).transpose()?,
-        threads: threads.map(|count| at_least(py, "threads", count, 1)).transpose()?,
+        edge_weights: options::edge_weights(py, edge_weights)?,
+        faces: arrays::mask("faces", faces, m, "face")?,
+        threads: at_least_if(py, "threads", threads, 1)?,
     };
     run(py, mesh.clone().unbind(), None, options, progress)
 }

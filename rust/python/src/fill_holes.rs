@@ -7,7 +7,7 @@ use ridgeform_core::tools::{self, HoleStatus, LoopChoice, PatchShape, Sharpness}
 
 use crate::errors::argument;
 use crate::mesh::Mesh;
-use crate::numbers::at_least;
+use crate::numbers::{at_least, at_least_if};
 use crate::{arrays, doorway, options};
 
 /// What `fill_holes` returns: the patches, the mesh with its patches, and how each hole went.
@@ -196,7 +196,7 @@ solver_function! {
     ) -> PyResult<Filled> {
         let options = tools::FillHolesOptions {
             loops: loops.map(|given| read_loops(given, mesh.get().n_vertices())).transpose()?,
-            max_edges: max_edges.map(|count| at_least(py, "max_edges", count, 3)).transpose()?,
+            max_edges: at_least_if(py, "max_edges", max_edges, 3)?,
             outer,
             edge_length,
             iterations: at_least(py, "iterations", iterations, 0)?,

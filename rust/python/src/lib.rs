@@ -20,6 +20,7 @@ mod matrix;
 mod memory;
 mod mesh;
 mod modes;
+mod nested;
 mod numbers;
 mod operators;
 mod options;

@@ -6,7 +6,7 @@ use ridgeform_core::tools;
 
 use crate::errors::argument;
 use crate::mesh::Mesh;
-use crate::numbers::at_least;
+use crate::numbers::{at_least, at_least_if};
 use crate::options;
 
 /// Bytes that this process may still take: what the machine has free, and on Linux what is left under the
@@ -53,7 +53,7 @@ pub(crate) fn memory_estimate(
     };
     let n_columns = at_least(py, "columns", columns, 1)?;
     let solver = options::solver(py, solver)?;
-    let longest = longest.map(|count| at_least(py, "longest", count, 1)).transpose()?;
+    let longest = at_least_if(py, "longest", longest, 1)?;
     let demand = match mesh.cast::<Mesh>() {
         Ok(mesh) if tool == Tool::FillHoles => tools::filling_demand(mesh.get().inner(), longest),
         _ => Demand::new(tool, n_vertices, n_faces),

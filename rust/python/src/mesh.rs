@@ -9,7 +9,7 @@ use ridgeform_core::memory::{Demand, Tool};
 use ridgeform_core::{mesh as core, Error};
 
 use crate::arrays::{self, float_rows, floats, index_array, index_rows, integers, plain_rows};
-use crate::numbers::at_least;
+use crate::numbers::at_least_if;
 use crate::{doorway, errors};
 
 /// An immutable triangle mesh from vertices (n,3), any length unit, and faces (m,3),
@@ -73,7 +73,7 @@ impl Mesh {
         lengths: &Bound<'_, PyAny>,
         n_vertices: Option<i64>,
     ) -> PyResult<Self> {
-        let n_vertices = n_vertices.map(|n| at_least(py, "n_vertices", n, 0)).transpose()?;
+        let n_vertices = at_least_if(py, "n_vertices", n_vertices, 0)?;
         if let Some(n) = n_vertices.filter(|&n| n > i32::MAX as usize) {
             return Err(errors::argument(
                 py,

@@ -12,3 +12,16 @@ pub(crate) fn at_least(py: Python<'_>, name: &'static str, given: i64, least: us
     let refuse = || argument(py, name, format!("got {given}; pass a whole number of at least {least}"));
     usize::try_from(given).ok().filter(|&count| count >= least).ok_or_else(refuse)
 }
+
+/// The same where a number is given.
+///
+/// # Errors
+/// As [`at_least`].
+pub(crate) fn at_least_if(
+    py: Python<'_>,
+    name: &'static str,
+    given: Option<i64>,
+    least: usize,
+) -> PyResult<Option<usize>> {
+    given.map(|number| at_least(py, name, number, least)).transpose()
+}

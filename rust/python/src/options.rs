@@ -8,7 +8,7 @@ use ridgeform_core::tools::{EnergyOptions, Scale, SolveOptions};
 use crate::arrays::finite_floats;
 use crate::errors::argument;
 use crate::mesh::Mesh;
-use crate::numbers::at_least;
+use crate::numbers::at_least_if;
 
 /// The value that goes with the word `given`.
 ///
@@ -101,9 +101,9 @@ pub(crate) fn solve(
     Ok(SolveOptions {
         solver: self::solver(py, solver)?,
         tolerance,
-        max_iterations: max_iterations.map(|count| at_least(py, "max_iterations", count, 1)).transpose()?,
-        memory_limit: memory_limit.map(|bytes| at_least(py, "memory_limit", bytes, 1)).transpose()?,
-        threads: threads.map(|count| at_least(py, "threads", count, 1)).transpose()?,
+        max_iterations: at_least_if(py, "max_iterations", max_iterations, 1)?,
+        memory_limit: at_least_if(py, "memory_limit", memory_limit, 1)?,
+        threads: at_least_if(py, "threads", threads, 1)?,
     })
 }
 
@@ -118,6 +118,18 @@ pub(crate) fn weights(
     what: &str,
 ) -> PyResult<Option<Vec<f64>>> {
     given.map(|object| finite_floats(name, object)?.exactly(object.py(), name, length, what)).transpose()
+}
+
+/// `edge_weights=`: three finite numbers for each face, or None; the core judges how many.
+///
+/// # Errors
+/// `ArgumentError` for another shape and for numbers that are not finite.
+pub(crate) fn edge_weights(
+    py: Python<'_>,
+    given: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Option<Vec<[f64; 3]>>> {
+    let name = "edge_weights";
+    given.map(|object| finite_floats(name, object)?.rows::<3>(py, name)).transpose()
 }
 
 /// The keywords that say which energy, as they came from Python.

@@ -5,9 +5,9 @@ use pyo3::prelude::*;
 use ridgeform_core::tools::{self, Hierarchy};
 
 use crate::mesh::Mesh;
-use crate::numbers::at_least;
+use crate::numbers::at_least_if;
 use crate::progress::{handle, Progress};
-use crate::{arrays, doorway, errors, options};
+use crate::{arrays, doorway, nested, options};
 
 /// What `parts` returns: a label for every face, and finer and coarser divisions nested with it.
 #[pyclass(frozen, module = "ridgeform")]
@@ -45,9 +45,7 @@ impl Parts {
     /// ------
     /// ArgumentError
     fn labels_at<'py>(&self, py: Python<'py>, n_parts: i64) -> PyResult<Bound<'py, PyArray1<i32>>> {
-        let n = at_least(py, "n_parts", n_parts, 1)?;
-        let labels = self.hierarchy.labels_at(n).map_err(|error| errors::exception(py, &error))?;
-        Ok(labels.into_pyarray(py))
+        nested::labels_at(py, &self.hierarchy, "n_parts", n_parts)
     }
 
     /// Fewest and most parts that `labels_at` has.
@@ -67,8 +65,7 @@ impl Parts {
     }
 
     fn __repr__(&self) -> String {
-        let (fewest, most) = self.range();
-        format!("<ridgeform.Parts: {} parts of {fewest} to {most}, {}>", self.n_parts, self.status)
+        nested::text("Parts", self.n_parts, "parts", &self.hierarchy, self.status)
     }
 }
 
@@ -124,16 +121,13 @@ pub(crate) fn parts(
     progress: Option<&Bound<'_, Progress>>,
 ) -> PyResult<Parts> {
     let m = mesh.n_faces();
-    let rows = |given: &Bound<'_, PyAny>| {
-        arrays::finite_floats("edge_weights", given)?.rows::<3>(py, "edge_weights")
-    };
     let options = tools::PartsOptions {
-        n_parts: n_parts.map(|count| at_least(py, "n_parts", count, 1)).transpose()?,
+        n_parts: at_least_if(py, "n_parts", n_parts, 1)?,
         coarseness,
         face_weights: options::weights("face_weights", face_weights, m, "face")?,
-        edge_weights: edge_weights.map(rows).transpose()?,
-        faces: faces.map(|given| arrays::mask("faces", given, m, "face")).transpose()?,
-        threads: threads.map(|count| at_least(py, "threads", count, 1)).transpose()?,
+        edge_weights: options::edge_weights(py, edge_weights)?,
+        faces: arrays::mask("faces", faces, m, "face")?,
+        threads: at_least_if(py, "threads", threads, 1)?,
     };
     let progress = handle(progress);
     let found = doorway::call(py, &progress, || tools::parts(mesh.inner(), &options, &progress))?;

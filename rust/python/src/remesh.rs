@@ -78,7 +78,7 @@ pub(crate) fn remesh(
     let options = core::RemeshOptions {
         edge_length,
         iterations: at_least(py, "iterations", iterations, 0)?,
-        fixed: fixed.map(|given| arrays::mask("fixed", given, mesh.n_vertices(), "vertex")).transpose()?,
+        fixed: arrays::mask("fixed", fixed, mesh.n_vertices(), "vertex")?,
         feature_angle: feature_angle.map(f64::to_radians),
     };
     let progress = handle(progress);

@@ -134,8 +134,8 @@ solver_function! {
             noise,
             regularize,
             free,
-            fixed: fixed.map(|given| arrays::mask("fixed", given, n, "vertex")).transpose()?,
-            faces: faces.map(|given| arrays::mask("faces", given, m, "face")).transpose()?,
+            fixed: arrays::mask("fixed", fixed, n, "vertex")?,
+            faces: arrays::mask("faces", faces, m, "face")?,
             solve: solve()?,
         };
         let found = doorway::call(py, &progress, || tools::restore(mesh.inner(), &options, &progress))?;

@@ -6,8 +6,8 @@ use ridgeform_core::tools::{self, Hierarchy, SegmentMethod};
 
 use crate::columns::{self, Values};
 use crate::mesh::Mesh;
-use crate::numbers::at_least;
-use crate::{arrays, doorway, errors, options};
+use crate::numbers::at_least_if;
+use crate::{arrays, doorway, nested, options};
 
 /// What `segment` returns: a label for every face, and finer and coarser segmentations nested with it.
 #[pyclass(frozen, module = "ridgeform")]
@@ -64,9 +64,7 @@ impl Segmentation {
     /// ------
     /// ArgumentError
     fn labels_at<'py>(&self, py: Python<'py>, n_segments: i64) -> PyResult<Bound<'py, PyArray1<i32>>> {
-        let n = at_least(py, "n_segments", n_segments, 1)?;
-        let labels = self.hierarchy.labels_at(n).map_err(|error| errors::exception(py, &error))?;
-        Ok(labels.into_pyarray(py))
+        nested::labels_at(py, &self.hierarchy, "n_segments", n_segments)
     }
 
     /// Fewest and most segments that `labels_at` has.
@@ -84,11 +82,7 @@ impl Segmentation {
     }
 
     fn __repr__(&self) -> String {
-        let (fewest, most) = self.range();
-        format!(
-            "<ridgeform.Segmentation: {} segments of {fewest} to {most}, {}>",
-            self.n_segments, self.status
-        )
+        nested::text("Segmentation", self.n_segments, "segments", &self.hierarchy, self.status)
     }
 }
 
@@ -161,8 +155,6 @@ solver_function! {
         let (n, m) = (mesh.n_vertices(), mesh.n_faces());
         let signal = values.map(|given| columns::read("values", given, n, "vertex")).transpose()?;
         let methods = [("fitted", SegmentMethod::Fitted), ("paper", SegmentMethod::Paper)];
-        let name = "edge_weights";
-        let rows = |given: &Bound<'_, PyAny>| arrays::finite_floats(name, given)?.rows::<3>(py, name);
         let options = tools::SegmentOptions {
             method: options::choice(py, "method", method, &methods)?,
             length_weight,
@@ -171,12 +163,12 @@ solver_function! {
             epsilon_end,
             inner_tolerance,
             cut_threshold,
-            min_faces: min_faces.map(|count| at_least(py, "min_faces", count, 0)).transpose()?,
-            n_segments: n_segments.map(|count| at_least(py, "n_segments", count, 1)).transpose()?,
+            min_faces: at_least_if(py, "min_faces", min_faces, 0)?,
+            n_segments: at_least_if(py, "n_segments", n_segments, 1)?,
             scale: options::scale(py, scale)?,
             face_weights: options::weights("face_weights", face_weights, m, "face")?,
-            edge_weights: edge_weights.map(rows).transpose()?,
-            faces: faces.map(|given| arrays::mask("faces", given, m, "face")).transpose()?,
+            edge_weights: options::edge_weights(py, edge_weights)?,
+            faces: arrays::mask("faces", faces, m, "face")?,
             solve: solve()?,
         };
         let given = signal.as_ref().map(|signal| &signal.columns);

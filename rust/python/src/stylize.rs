@@ -128,7 +128,7 @@ solver_function! {
             sharpness,
             coupling: options::coupling(py, coupling)?,
             scale: options::scale(py, scale)?,
-            fixed: fixed.map(|given| arrays::mask("fixed", given, n, "vertex")).transpose()?,
+            fixed: arrays::mask("fixed", fixed, n, "vertex")?,
             strength: options::weights("strength", strength, n, "vertex")?,
             ridge_weights: options::weights("ridge_weights", ridge_weights, m, "face")?,
             delaunay,

@@ -60,10 +60,7 @@ pub(crate) fn trace_curves<'py>(
         return Err(argument(py, "starts", problem));
     }
     let n = starts.len() - 1;
-    let closed = match closed {
-        None => vec![false; n],
-        Some(given) => arrays::mask("closed", given, n, "line")?,
-    };
+    let closed = arrays::mask("closed", closed, n, "line")?.unwrap_or_else(|| vec![false; n]);
     let lines: Vec<_> =
         starts.windows(2).zip(closed).map(|(s, closed)| (points[s[0]..s[1]].to_vec(), closed)).collect();
     let traced = doorway::call_briefly(py, || tools::trace_curves(mesh.inner(), &lines))?;

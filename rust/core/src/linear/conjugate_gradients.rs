@@ -16,18 +16,22 @@ pub trait Quadratic<const K: usize> {
     /// What ends the run.
     fn precondition(&mut self, residual: &mut [[f64; K]]) -> Result<Vec<[f64; K]>>;
 
-    /// Goes `far` along `direction`, whose product with `A` is given, and brings the residual up to date;
-    /// `false` if that leads up, and is taken back.
+    /// Makes a step and brings the residual up to date; `false` if it leads up, and is taken back.
     ///
     /// # Errors
     /// What ends the run.
-    fn go(
-        &mut self,
-        far: f64,
-        direction: &[[f64; K]],
-        product: &[[f64; K]],
-        residual: &mut [[f64; K]],
-    ) -> Result<bool>;
+    fn go(&mut self, step: &Step<'_, K>, residual: &mut [[f64; K]]) -> Result<bool>;
+}
+
+/// A step of a run.
+#[derive(Debug)]
+pub struct Step<'a, const K: usize> {
+    /// How many times the direction it goes.
+    pub far: f64,
+    /// Where to.
+    pub direction: &'a [[f64; K]],
+    /// `A` times the direction.
+    pub product: &'a [[f64; K]],
 }
 
 /// How a run ended.
@@ -67,7 +71,7 @@ pub fn descend<const K: usize>(
             break;
         }
         run.iterations += 1;
-        if !quadratic.go(far, &direction, &product, &mut residual)? {
+        if !quadratic.go(&Step { far, direction: &direction, product: &product }, &mut residual)? {
             break;
         }
         let step = quadratic.precondition(&mut residual)?;
@@ -127,15 +131,9 @@ where
         Ok(step)
     }
 
-    fn go(
-        &mut self,
-        far: f64,
-        direction: &[[f64; K]],
-        product: &[[f64; K]],
-        residual: &mut [[f64; K]],
-    ) -> Result<bool> {
-        add(far, direction, &mut self.solution);
-        add(-far, product, residual);
+    fn go(&mut self, step: &Step<'_, K>, residual: &mut [[f64; K]]) -> Result<bool> {
+        add(step.far, step.direction, &mut self.solution);
+        add(-step.far, step.product, residual);
         Ok(true)
     }
 }

@@ -8,7 +8,7 @@
 use crate::block_rows::BlockRows;
 use crate::error::SolveError;
 use crate::linear::cholesky::Cholesky;
-use crate::linear::conjugate_gradients::{descend, Quadratic};
+use crate::linear::conjugate_gradients::{descend, Quadratic, Step};
 use crate::progress::Progress;
 use crate::solve::constraints::LinearConstraints;
 use crate::solve::free_operator::FreeOperator;
@@ -254,17 +254,11 @@ impl Quadratic<1> for Descending<'_, '_> {
 
     /// The residual is computed anew: that is iterative refinement. A step up is rounding,
     /// which has the last word.
-    fn go(
-        &mut self,
-        far: f64,
-        direction: &[[f64; 1]],
-        _: &[[f64; 1]],
-        residual: &mut [[f64; 1]],
-    ) -> Result<bool> {
+    fn go(&mut self, step: &Step<'_, 1>, residual: &mut [[f64; 1]]) -> Result<bool> {
         let free = &self.newton.free.free;
         let before = self.newton.objective(self.u, self.target);
         let old: Vec<f64> = memory::gathered(free.iter().map(|&i| self.u[i as usize]))?;
-        direction.iter().zip(free).for_each(|(d, &i)| self.u[i as usize] += far * d[0]);
+        step.direction.iter().zip(free).for_each(|(d, &i)| self.u[i as usize] += step.far * d[0]);
         if self.newton.objective(self.u, self.target) > before {
             old.iter().zip(free).for_each(|(x, &i)| self.u[i as usize] = *x);
             return Ok(false);

@@ -6,7 +6,8 @@ use crate::memory;
 use crate::mesh::Mesh;
 use crate::progress::Progress;
 use crate::solve::Solution;
-use crate::{Error, Result};
+use crate::tools::options::{check_fixed, check_positive};
+use crate::Result;
 
 /// How to denoise.
 #[derive(Debug, Clone)]
@@ -39,18 +40,11 @@ pub fn denoise(
     options: &DenoiseOptions,
     progress: &Progress,
 ) -> Result<Solution> {
-    if !(options.fidelity > 0.0 && options.fidelity.is_finite()) {
-        return Err(Error::argument("fidelity", format!("is {}; it must be positive", options.fidelity)));
-    }
+    check_positive("fidelity", options.fidelity, "it must be positive")?;
     let n = mesh.connectivity().n_vertices();
     values.check("values", n)?;
+    check_fixed(options.fixed.as_deref(), n)?;
     let fixed = options.fixed.clone().unwrap_or_else(|| vec![false; n]);
-    if fixed.len() != n {
-        return Err(Error::argument(
-            "fixed",
-            format!("has {} entries, expected one per vertex: {n}", fixed.len()),
-        ));
-    }
     let data = memory::copied("values", &values.data)?;
     let target = Columns { n_rows: values.n_rows, n_columns: values.n_columns, data };
     let problem = ScalarProblem { mesh, options: &options.scalar, fidelity: options.fidelity, target, fixed };

@@ -37,14 +37,7 @@ impl SolveOptions {
     /// # Errors
     /// [`Error::Argument`] for a tolerance that is not positive, or no iterations or threads at all.
     pub fn settings(&self) -> Result<Settings> {
-        if let Some(tolerance) = self.tolerance {
-            if !(tolerance > 0.0 && tolerance.is_finite()) {
-                return Err(Error::argument(
-                    "tolerance",
-                    format!("is {tolerance}; it must be positive, say 1e-3"),
-                ));
-            }
-        }
+        check_positive("tolerance", self.tolerance, "it must be positive, say 1e-3")?;
         if self.max_iterations == Some(0) {
             return Err(Error::argument("max_iterations", "is 0; allow at least one iteration"));
         }
@@ -64,6 +57,27 @@ impl SolveOptions {
             None => work(),
             Some(n) => threads::on(n, work),
         }
+    }
+}
+
+/// Refuses a number, where one is given, that is not positive and finite; `cure` says what to give instead.
+pub(super) fn check_positive(name: &'static str, value: impl Into<Option<f64>>, cure: &str) -> Result<()> {
+    match value.into() {
+        Some(value) if !(value > 0.0 && value.is_finite()) => {
+            Err(Error::argument(name, format!("is {value}; {cure}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Refuses a choice of vertices that does not fit a mesh of `n` vertices.
+pub(super) fn check_fixed(fixed: Option<&[bool]>, n: usize) -> Result<()> {
+    match fixed {
+        Some(fixed) if fixed.len() != n => Err(Error::argument(
+            "fixed",
+            format!("has {} entries, expected one per vertex: {n}", fixed.len()),
+        )),
+        _ => Ok(()),
     }
 }
 

@@ -1,7 +1,7 @@
 //! How to make facets.
 
 use crate::mesh::Mesh;
-use crate::tools::options::{check_edge_weights, check_faces, SolveOptions};
+use crate::tools::options::{check_edge_weights, check_faces, check_positive, SolveOptions};
 use crate::{Error, Result};
 
 /// How to make facets.
@@ -28,9 +28,7 @@ impl FacetOptions {
         if self.facets == Some(0) {
             return Err(Error::argument("facets", "is 0; ask for at least one facet"));
         }
-        if let Some(error) = self.error.filter(|error| !(*error > 0.0 && error.is_finite())) {
-            return Err(Error::argument("error", format!("is {error}; it must be positive, a distance")));
-        }
+        check_positive("error", self.error, "it must be positive, a distance")?;
         self.solve().settings()?;
         check_edge_weights(self.edge_weights.as_deref(), m)?;
         check_faces(self.faces.as_deref(), m)

@@ -2,9 +2,9 @@
 
 use crate::operators::Dual;
 use crate::solve::Coupling;
-use crate::tools::options::check_range;
+use crate::tools::options::{check_positive, check_range};
 use crate::tools::{Scale, SolveOptions};
-use crate::{Error, Result};
+use crate::Result;
 
 /// A boundary loop to fill.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -104,15 +104,8 @@ impl Default for FillHolesOptions {
 impl FillHolesOptions {
     /// Refuses what is out of range.
     pub(super) fn check(&self) -> Result<()> {
-        if !(self.fidelity > 0.0 && self.fidelity.is_finite()) {
-            return Err(Error::argument("fidelity", format!("is {}; it must be positive", self.fidelity)));
-        }
-        if let Some(length) = self.edge_length.filter(|l| !(*l > 0.0 && l.is_finite())) {
-            return Err(Error::argument(
-                "edge_length",
-                format!("is {length}; it must be positive, or None for the rim's"),
-            ));
-        }
+        check_positive("fidelity", self.fidelity, "it must be positive")?;
+        check_positive("edge_length", self.edge_length, "it must be positive, or None for the rim's")?;
         match self.sharpness {
             Sharpness::Auto => Ok(()),
             Sharpness::Value(sharpness) => check_range("sharpness", sharpness, 0.0, 1.0),

@@ -2,7 +2,7 @@
 
 use super::constants::COST;
 use crate::mesh::Mesh;
-use crate::tools::options::{check_edge_weights, check_faces, check_weights, SolveOptions};
+use crate::tools::options::{check_edge_weights, check_faces, check_positive, check_weights, SolveOptions};
 use crate::{Error, Result};
 
 /// How to find parts.
@@ -41,12 +41,7 @@ impl Default for PartsOptions {
 impl PartsOptions {
     pub(super) fn check(&self, mesh: &Mesh) -> Result<()> {
         let m = mesh.connectivity().n_faces();
-        if !(self.coarseness > 0.0 && self.coarseness.is_finite()) {
-            return Err(Error::argument(
-                "coarseness",
-                format!("is {}; it must be positive", self.coarseness),
-            ));
-        }
+        check_positive("coarseness", self.coarseness, "it must be positive")?;
         if self.n_parts == Some(0) {
             return Err(Error::argument("n_parts", "is 0; ask for at least one part"));
         }

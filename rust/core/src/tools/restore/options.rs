@@ -2,9 +2,9 @@
 
 use crate::mesh::Mesh;
 use crate::surfaces::Surface;
-use crate::tools::options::{check_faces, check_range};
+use crate::tools::options::{check_faces, check_fixed, check_positive, check_range};
 use crate::tools::SolveOptions;
-use crate::{Error, Result};
+use crate::Result;
 
 /// How to restore.
 #[derive(Debug, Clone)]
@@ -105,25 +105,14 @@ impl RestoreOptions {
     pub(super) fn check(&self, mesh: &Mesh) -> Result<()> {
         let (n, m) = (mesh.connectivity().n_vertices(), mesh.connectivity().n_faces());
         for (name, value) in [("max_move", self.max_move), ("noise", self.noise)] {
-            if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
-                return Err(Error::argument(
-                    name,
-                    format!("is {value}; it must be a positive length, or None"),
-                ));
-            }
+            check_positive(name, value, "it must be a positive length, or None")?;
         }
         if let Some(degrees) = self.regularize {
             check_range("regularize", degrees, 0.0, 30.0)?;
         }
         check_faces(self.faces.as_deref(), m)?;
         self.solve.settings()?;
-        match &self.fixed {
-            Some(fixed) if fixed.len() != n => Err(Error::argument(
-                "fixed",
-                format!("has {} entries, expected one per vertex: {n}", fixed.len()),
-            )),
-            _ => Ok(()),
-        }
+        check_fixed(self.fixed.as_deref(), n)
     }
 
     /// Segments stop on residuals, which is enough for them.

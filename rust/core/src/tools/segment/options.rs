@@ -5,7 +5,7 @@ use super::constants::DEFAULT_SCALE;
 use crate::linear::Columns;
 use crate::mesh::Mesh;
 use crate::solve::MAX_JOINT_COLUMNS;
-use crate::tools::options::{check_edge_weights, check_faces, check_range, check_weights};
+use crate::tools::options::{check_edge_weights, check_faces, check_positive, check_range, check_weights};
 use crate::tools::{Scale, SolveOptions};
 use crate::{Error, Result};
 
@@ -89,9 +89,7 @@ impl SegmentOptions {
             ("inner_tolerance", Some(self.inner_tolerance)),
         ];
         for (name, value) in positive {
-            if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
-                return Err(Error::argument(name, format!("is {value}; it must be positive")));
-            }
+            check_positive(name, value, "it must be positive")?;
         }
         if self.epsilon_end > self.epsilon_start {
             let problem = format!("is {}, more than epsilon_start, {}", self.epsilon_end, self.epsilon_start);

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::operators::Dual;
 use crate::solve::Coupling;
-use crate::tools::options::{check_range, check_weights};
+use crate::tools::options::{check_fixed, check_positive, check_range, check_weights};
 use crate::tools::{Scale, SolveOptions};
 
 /// How to stylize.
@@ -168,9 +168,7 @@ pub struct Stylized {
 /// Refuses options that do not fit the mesh.
 pub(super) fn check(mesh: &Mesh, options: &StylizeOptions) -> Result<()> {
     let (n, m) = (mesh.connectivity().n_vertices(), mesh.connectivity().n_faces());
-    if !(options.fidelity > 0.0 && options.fidelity.is_finite()) {
-        return Err(Error::argument("fidelity", format!("is {}; it must be positive", options.fidelity)));
-    }
+    check_positive("fidelity", options.fidelity, "it must be positive")?;
     if options.movement.is_some_and(|movement| !(movement > 0.0 && movement.is_finite())) {
         return Err(Error::argument("movement", "is not a positive number; 0.007 is a useful one"));
     }
@@ -188,11 +186,5 @@ pub(super) fn check(mesh: &Mesh, options: &StylizeOptions) -> Result<()> {
             ));
         }
     }
-    match &options.fixed {
-        Some(fixed) if fixed.len() != n => Err(Error::argument(
-            "fixed",
-            format!("has {} entries, expected one per vertex: {n}", fixed.len()),
-        )),
-        _ => Ok(()),
-    }
+    check_fixed(options.fixed.as_deref(), n)
 }
