@@ -33,6 +33,8 @@ CUTS = 10
 LIGHT, DARK = (0.62, 0.62, 0.6), (0.1, 0.17, 0.28)
 BOX_VIEW = (0.9, -0.75, 0.75)
 RING_VIEW = (0.25, -0.8, 0.75)
+OTHER_MATERIAL = (0.45, 0.65, 1.0)
+"""Factor on the color of faces with the second material."""
 BRIGHTNESS = 1.35
 """Factor on painted colors under the lights, which are set for a light clay."""
 
@@ -53,6 +55,67 @@ def box(path: Path) -> None:
     row.append(pictures.render(vertices, faces, color=color, marks=wires, **look))
     captions = ["before", "after", "with its edges"]
     pictures.sheet(path, [row], captions=[captions], text_pixels=15, shades=64)
+
+
+def settings(path: Path) -> None:
+    """What each setting does to a patch: a row for each, the open mesh first."""
+    box = _cut(holed_shapes.irregular(holed_shapes.cube(16), 2), (1.0, 0.1, 1.0), 0.6)
+    corner = _cut(holed_shapes.irregular(holed_shapes.cube(16), 2), (1.0, -1.0, 1.0), 0.7)
+    ball = _cut(holed_shapes.sphere(24), (0.7, -0.6, 0.5), 0.75)
+    pipe = holed_shapes.cylinder(14)
+    is_lid = (pipe.vertices[pipe.faces][..., 2] > 1.0 - 1e-6).all(axis=1)
+    tube = pipe.vertices, pipe.faces[~is_lid]
+    rows = [
+        (box, "Shape", "shape", {"Automatic": "AUTO", "Sharp": "SHARP", "Smooth": "SMOOTH"}),
+        (tube, "Shape", "shape", {"Automatic": "AUTO", "Sharp": "SHARP", "Smooth": "SMOOTH"}),
+        (ball, "Shape", "shape", {"Automatic": "AUTO", "Flat": "FLAT", "Sharp": "SHARP"}),
+        (corner, "Sharp, Sharpness", "sharpness", {"0": 0.0, "0.5": 0.5, "1": 1.0}),
+        (box, "Edge Length", "edge_length", {"off": 0.0, "0.06": 0.06, "0.3": 0.3}),
+        (box, "Material", "material", {"Continue": "CONTINUE", "One": "MAJORITY"}),
+        (box, "Mark Ridges", "marks", {"none": set(), "Sharp": {"SHARP"}}),
+    ]
+    made, captions = [], []
+    for mesh, label, name, values in rows:
+        more = {"shape": "SHARP"} if name == "sharpness" else {}
+        made.append([_drawn(_made(*mesh), name)])
+        made[-1] += [_drawn(_patched(mesh, name, {name: value, **more}), name) for value in values.values()]
+        captions.append(["open", *(f"{label}: {value}" for value in values)])
+    made[-2:], captions[-2:] = [made[-2] + made[-1][2:]], [captions[-2] + captions[-1][2:]]
+    pictures.sheet(path, made, captions=captions, text_pixels=13, shades=64)
+
+
+def _cut(
+    solid: holed_shapes.Solid, place: tuple[float, float, float], radius: float
+) -> tuple[Array, Indices]:
+    holed = holed_shapes.cut(solid, [(place, radius)])
+    return holed.vertices, holed.faces
+
+
+def _patched(mesh: tuple[Array, Indices], name: str, chosen: dict[str, object]) -> bpy.types.Object:
+    obj = _made(*mesh)
+    if name == "material":
+        obj.data.materials.append(None)
+        obj.data.materials.append(None)
+        above = np.array([face.normal.z > face.normal.x for face in obj.data.polygons], np.int32)
+        obj.data.polygons.foreach_set("material_index", above)
+    _fill(obj, **chosen)
+    return obj
+
+
+def _drawn(obj: bpy.types.Object, name: str) -> pictures.Pixels:
+    """The mesh with patches in their color; what the setting of this name is about can be seen."""
+    vertices, faces = _triangles(obj)
+    color = np.tile(pictures.CLAY, (len(faces), 1))
+    if PATCH_NAME in obj.data.attributes:
+        color[_is_patch(obj)] = PATCH
+    index = np.array([face.material_index for face in obj.data.polygons])
+    color[(index == 1)[mesh_io.triangle_faces(obj.data)]] *= OTHER_MATERIAL
+    edges = mesh_io.edges(obj.data)
+    sharp = np.array([edge.use_edge_sharp for edge in obj.data.edges])
+    marks = [Lines(vertices[edges[sharp]], BORDER, 3.0)] if sharp.any() else []
+    if name == "edge_length":
+        marks.append(Lines(vertices[edges], pixels=0.8))
+    return pictures.render(vertices, faces, color=color, marks=marks, view=BOX_VIEW, size=215, frame=vertices)
 
 
 def checker(path: Path) -> None:
@@ -139,15 +202,19 @@ def _cut_triangle(n: int) -> tuple[Array, Indices]:
 
 
 def _object(holed: holed_shapes.Holed) -> bpy.types.Object:
+    return _made(holed.vertices, holed.faces)
+
+
+def _made(vertices: Array, faces: Indices) -> bpy.types.Object:
     mesh = bpy.data.meshes.new("open")
-    mesh.from_pydata(holed.vertices.tolist(), [], holed.faces.tolist())
+    mesh.from_pydata(vertices.tolist(), [], faces.tolist())
     obj = bpy.data.objects.new("open", mesh)
     bpy.context.collection.objects.link(obj)
     return obj
 
 
-def _fill(obj: bpy.types.Object) -> None:
-    run = HoleFilling([obj], defaults_of(HoleSettings))
+def _fill(obj: bpy.types.Object, **chosen: object) -> None:
+    run = HoleFilling([obj], defaults_of(HoleSettings, **chosen))
     run.job.run()
     run.apply()
     print(f"   {run.report()}", flush=True)

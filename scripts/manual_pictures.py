@@ -288,6 +288,7 @@ DRAWN = {
     "restore": restored,
     "holes_box": lambda: holes("box"),
     "holes_checker": lambda: holes("checker"),
+    "holes_settings": lambda: holes("settings"),
 }
 
 
