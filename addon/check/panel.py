@@ -9,6 +9,7 @@ from .kinds import Domain, Finding, Report, Severity
 from .operators import RIDGEFORM_OT_check, RIDGEFORM_OT_cure_faults, RIDGEFORM_OT_select_faults
 
 ICONS = {Severity.STOPS: "ERROR", Severity.LIMITS: "INFO", Severity.HANDLED: "CHECKMARK"}
+CHANGED = "Changed since the check"
 
 
 class RIDGEFORM_PT_check(InTab, bpy.types.Panel):  # noqa: N801
@@ -24,10 +25,9 @@ class RIDGEFORM_PT_check(InTab, bpy.types.Panel):  # noqa: N801
         """Draw what was found last, and the button to look again."""
         obj = context.object
         checked = known.of(obj) if obj is not None and obj.type == "MESH" else None
-        row = self.layout.row()
-        if checked is not None and (checked.has_changed or checked.may_have_changed):
-            row.label(text="Changed since the last check", icon="FILE_REFRESH")
-        row.operator(RIDGEFORM_OT_check.bl_idname, icon="VIEWZOOM")
+        if checked is not None and checked.has_changed:
+            self.layout.label(text=CHANGED, icon="FILE_REFRESH")
+        self.layout.operator(RIDGEFORM_OT_check.bl_idname, icon="VIEWZOOM")
         if checked is None:
             return
         if not checked.report.findings:
@@ -66,7 +66,7 @@ def draw_line(layout: bpy.types.UILayout, obj: bpy.types.Object | None) -> None:
         return
     text, icon = line_of(checked.report)
     if checked.has_changed:
-        text, icon = "Changed since the check", "FILE_REFRESH"
+        text, icon = CHANGED, "FILE_REFRESH"
     row.popover(panel=RIDGEFORM_PT_check.bl_idname, text=text, icon=icon)
     row.operator(RIDGEFORM_OT_check.bl_idname, text="", icon="VIEWZOOM")
 
