@@ -41,7 +41,7 @@ def test_facets_are_near_the_shape(name):
     assert np.allclose(np.ptp(kit.coordinates(obj), axis=0), size, atol=0.1 * size.max())
 
 
-@pytest.mark.parametrize("name", ["uv sphere", "fine uv sphere", "icosphere", "torus"])
+@pytest.mark.parametrize("name", ROUND)
 def test_where_the_flow_rounds_off_facets_are_those_of_the_shape(name):
     obj = made(name)
     reach = np.linalg.norm(kit.coordinates(obj), axis=1).max()
@@ -66,7 +66,7 @@ def test_a_number_of_facets_is_kept_to():
     assert job.last_summary()[0]["facets"] == 60
 
 
-@pytest.mark.parametrize("name", ["uv sphere", "fine uv sphere", "icosphere"])
+@pytest.mark.parametrize("name", ROUND)
 def test_without_them_what_helps_is_said(name):
     made(name)
     bpy.ops.ridgeform.stylize()
