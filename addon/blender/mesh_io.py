@@ -13,11 +13,15 @@ import bmesh
 import bpy
 import numpy as np
 
+from . import reading
+from .reading import once
+
 
 def flush_edit_mode(obj: bpy.types.Object) -> None:
     """Bring the arrays of a mesh in Edit Mode up to date with what is edited; does nothing in Object Mode."""
     if obj.data.is_editmode:
         obj.update_from_editmode()
+        reading.forget()
 
 
 def is_out_of_reach(obj: bpy.types.Object) -> bool:
@@ -52,13 +56,16 @@ def object_mode() -> Iterator[None]:
         mode = None
     if mode is not None:
         bpy.ops.object.mode_set(mode="OBJECT")
+        reading.forget()
     try:
         yield
     finally:
         if mode is not None:
             bpy.ops.object.mode_set(mode=mode)
+            reading.forget()
 
 
+@once
 def triangles(mesh: bpy.types.Mesh) -> np.ndarray:
     """The loop triangles (m, 3) int32: vertices of the triangles that Blender draws for faces of any size."""
     if len(mesh.loops) == 3 * len(mesh.polygons):
@@ -66,6 +73,7 @@ def triangles(mesh: bpy.types.Mesh) -> np.ndarray:
     return corner_vertices(mesh)[triangle_corners(mesh)]
 
 
+@once
 def triangle_corners(mesh: bpy.types.Mesh) -> np.ndarray:
     """The corners (m, 3) int32 of the faces that the loop triangles use."""
     if len(mesh.loops) == 3 * len(mesh.polygons):
@@ -76,6 +84,7 @@ def triangle_corners(mesh: bpy.types.Mesh) -> np.ndarray:
     return corners.reshape(-1, 3)
 
 
+@once
 def triangle_faces(mesh: bpy.types.Mesh) -> np.ndarray:
     """The face (m,) int32 that each loop triangle is a part of."""
     starts = _face_starts(mesh)
@@ -84,6 +93,7 @@ def triangle_faces(mesh: bpy.types.Mesh) -> np.ndarray:
     return np.repeat(np.arange(len(starts), dtype=np.int32), sizes - 2)
 
 
+@once
 def edges(mesh: bpy.types.Mesh) -> np.ndarray:
     """The edges (k, 2) int32."""
     ends = np.empty((len(mesh.edges), 2), np.int32)
@@ -106,16 +116,19 @@ def face_corners(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarr
     return _face_starts(mesh), corner_vertices(mesh), corner_edges(mesh)
 
 
+@once
 def corner_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
     """The vertex (c,) int32 of each corner."""
     return _corner_array(mesh, ".corner_vert", "vertex_index")
 
 
+@once
 def corner_edges(mesh: bpy.types.Mesh) -> np.ndarray:
     """The edge (c,) int32 of each corner, which leads to the next one of the face."""
     return _corner_array(mesh, ".corner_edge", "edge_index")
 
 
+@once
 def _face_starts(mesh: bpy.types.Mesh) -> np.ndarray:
     if len(mesh.loops) == 3 * len(mesh.polygons):
         return np.arange(0, len(mesh.loops), 3, dtype=np.int32)
@@ -189,6 +202,7 @@ def open_coordinates(obj: bpy.types.Object) -> Coordinates:
     return _PositionCoordinates(obj)
 
 
+@once
 def positions(mesh: bpy.types.Mesh) -> np.ndarray:
     """The positions (n, 3) float32 of the vertices, in Edit Mode by a slower way."""
     values = np.empty((len(mesh.vertices), 3), np.float32)

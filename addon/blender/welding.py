@@ -106,6 +106,8 @@ def weld_seams(coordinates: np.ndarray, triangles: np.ndarray) -> Weld:
 
 def mirrored(weld: Weld, coordinates: np.ndarray, mirrors: Sequence[Mirror]) -> Weld:
     """The welded mesh with the images that mirrors make of it, where its border lies on their planes."""
+    if not mirrors:
+        return weld
     places = coordinates[weld.first].astype(np.float64)
     images = images_of(places, weld.triangles, mirrors)
     if images is None:

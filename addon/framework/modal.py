@@ -168,23 +168,29 @@ class ModalRun:
         if action == "keep":
             self._keeping = True
             run.job.finish()
-        if action == "poll":
-            if not (run.job.is_running or run.job.is_canceled):
-                self._close(context)
-                outcome = self.finished(context, run)
-                _running.remove(run)
-                return outcome
-            run.watch()
-            again = self.while_running(run)
-            if again is not run:
-                _running.remove(run)
-                self._start(again)
+        return self._poll(context, run) if action == "poll" else {"RUNNING_MODAL"}
+
+    def _poll(self, context: bpy.types.Context, run: Run) -> set[str]:
+        """Write the result when it is there; until then show how far the job is."""
+        if not (run.job.is_running or run.job.is_canceled):
+            if run.back_up():
+                # By itself: on a large mesh it takes as long as writing does, and Blender draws in between.
                 return {"RUNNING_MODAL"}
-            if self._throttle.is_due() and not run.job.is_canceled:
-                begin = self._throttle.now()
-                if run.show():
-                    self._throttle.began(begin)
-            self._show(context)
+            self._close(context)
+            outcome = self.finished(context, run)
+            _running.remove(run)
+            return outcome
+        run.watch()
+        again = self.while_running(run)
+        if again is not run:
+            _running.remove(run)
+            self._start(again)
+            return {"RUNNING_MODAL"}
+        if self._throttle.is_due() and not run.job.is_canceled:
+            begin = self._throttle.now()
+            if run.show():
+                self._throttle.began(begin)
+        self._show(context)
         return {"RUNNING_MODAL"}
 
     def while_running(self, run: Run) -> Run:

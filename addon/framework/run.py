@@ -13,6 +13,7 @@ import ridgeform
 from ..blender import mesh_io
 from ..blender.mesh_backup import MeshBackup
 from ..blender.mesh_state import ChangedError, MeshState
+from ..blender.reading import reading_once
 from ..blender.refusals import RefusedError
 from ..blender.selection import MOVES
 from .job import Job, Task, store_summary
@@ -75,12 +76,14 @@ class Run(ABC):
         self.parts: list[Part] = []
         self._refusal: RefusedError | None = None
         self._in_edit_mode = bpy.context.mode == "EDIT_MESH"
-        with mesh_io.object_mode() if self.in_object_mode else contextlib.nullcontext():
-            self._prepare_all(objects)
-        if not self.parts:
-            raise self._refusal or RefusedError(self.skipped[-1] if self.skipped else "Select a mesh object")
-        for part in self.parts:
-            part.state = MeshState(part.object)
+        with reading_once():
+            with mesh_io.object_mode() if self.in_object_mode else contextlib.nullcontext():
+                self._prepare_all(objects)
+            if not self.parts:
+                reason = self.skipped[-1] if self.skipped else "Select a mesh object"
+                raise self._refusal or RefusedError(reason)
+            for part in self.parts:
+                part.state = MeshState(part.object)
         self.job = Job([part.task for part in self.parts])
         self.summary: list[dict[str, object]] = []
         self.is_writing = False
@@ -244,6 +247,13 @@ class Run(ABC):
             f'"{part.object.name}": {part.task.error}' for part in self.parts if part.task.error is not None
         ]
 
+    def back_up(self) -> bool:
+        """Keep what writing will replace, if it is to be kept and is not yet; whether that was done."""
+        if not self.keeps_original or self._backups:
+            return False
+        self._backups = [MeshBackup(part.object, self.replaces_faces(part)) for part in self.parts]
+        return True
+
     def apply(self) -> None:
         """Write the results; parts that failed or were never begun stay as they were.
 
@@ -258,8 +268,7 @@ class Run(ABC):
         for part in self.parts:
             self.check(part)
         self.is_writing = True
-        if self.keeps_original:
-            self._backups = [MeshBackup(part.object, self.replaces_faces(part)) for part in self.parts]
+        self.back_up()
         self.write(self.done)
         if self.keeps_original:
             self._take_states()

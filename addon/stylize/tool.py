@@ -214,7 +214,7 @@ def _prepare_finish(obj: bpy.types.Object, settings: object, source: Source) -> 
             return
         starts, corners, _ = mesh_io.face_corners(obj.data)
         taking = np.logical_and.reduceat(source.free[corners], starts)
-        half, _ = welded(obj, source.coordinates.original)
+        half = source.weld if source.weld.images is None else welded(obj, source.coordinates.original)[0]
         source.facetable = faceting.read(obj, half, taking)
 
 
