@@ -63,14 +63,31 @@ def joined(*parts):
     return ridgeform.Mesh(unique, index.ravel()[faces])
 
 
-def test_holes_that_touch_at_corners_are_filled_one_by_one():
-    cells = {(x, y) for x in range(2, 7) for y in range(2, 7) if (x + y) % 2}
-    mesh = ridgeform.Mesh(*grid(9, without=cells))
+TOUCHING = {
+    "a checkerboard": {(x, y) for x in range(2, 7) for y in range(2, 7) if (x + y) % 2},
+    "two": {(3, 3), (4, 4)},
+    "a diagonal of four": {(k, k) for k in range(2, 6)},
+    "the other diagonal": {(k, 8 - k) for k in range(2, 7)},
+    "two pairs": {(1, 1), (2, 2), (6, 5), (7, 4)},
+    "one at three corners": {(4, 4), (3, 3), (5, 5), (3, 5)},
+}
+
+
+@pytest.mark.parametrize("bent", [0.0, 0.03])
+@pytest.mark.parametrize("cells", TOUCHING.values(), ids=TOUCHING)
+def test_holes_that_touch_at_corners_are_filled_one_by_one(cells, bent):
+    vertices, faces = grid(9, without=cells)
+    vertices[:, 2] = bent * ((vertices[:, 0] - 4) ** 2 + (vertices[:, 1] - 5) ** 2)
+    mesh = ridgeform.Mesh(vertices, faces)
     holes = [hole for hole in ridgeform.find_holes(mesh) if not hole.is_outer_border]
     assert [len(hole.vertices) for hole in holes] == [4] * len(cells)
     filled = ridgeform.fill_holes(mesh)
     assert ridgeform.Mesh(filled.vertices, filled.faces).report.n_boundary_loops == 1
     assert len(ridgeform.Mesh(filled.vertices, filled.faces).report.nonmanifold_edges) == 0
+    corners = filled.vertices[filled.new_faces]
+    areas = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2]
+    assert areas.min() > 0
+    assert areas.sum() == pytest.approx(len(cells))
 
 
 @pytest.mark.parametrize("width", [3, 5])
@@ -92,23 +109,45 @@ def test_a_ring_pinched_at_a_vertex_is_one_hole(width):
     assert areas.sum() == pytest.approx(len(ring))
 
 
-def test_a_hole_that_runs_up_to_an_inner_wall_is_named():
-    for removed in [{(4, 2), (4, 3)}, {(3, 2), (4, 2)}]:
-        mesh = joined(grid(8, without=removed), vertical(8, 4))
-        refused = [hole.refusal for hole in ridgeform.find_holes(mesh) if hole.refusal]
-        assert any("non-manifold" in reason for reason in refused)
-        assert len(ridgeform.fill_holes(mesh).new_faces) == 0
+UP_TO_A_WALL = [
+    {(4, 2), (4, 3)},
+    {(3, 2), (4, 2)},
+    {(3, 5)},
+    {(4, 4), (5, 4), (4, 5), (5, 5)},
+    {(2, 3), (3, 3), (4, 3), (5, 3)},
+    {(3, 1), (4, 6)},
+]
+"""Cells that were removed beside or across a wall at 4."""
 
 
-def test_sides_that_meet_in_t_junctions_are_no_hole():
-    for n, m in [(1, 2), (6, 7), (3, 5)]:
-        left, right = grid(n), grid(m)
-        left = left[0] / n, left[1]
-        right = right[0] / m + [1, 0, 0], right[1]
-        holes = ridgeform.find_holes(joined(left, right))
-        assert sorted(hole.is_outer_border for hole in holes) == [False, True]
-        (slit,) = [hole for hole in holes if not hole.is_outer_border]
-        assert "T-junctions" in slit.refusal
+@pytest.mark.parametrize("removed", UP_TO_A_WALL)
+def test_a_hole_that_runs_up_to_an_inner_wall_is_named(removed):
+    mesh = joined(grid(8, without=removed), vertical(8, 4))
+    refused = [hole.refusal for hole in ridgeform.find_holes(mesh) if hole.refusal]
+    assert any("non-manifold" in reason for reason in refused)
+    assert len(ridgeform.fill_holes(mesh).new_faces) == 0
+
+
+@pytest.mark.parametrize("removed", UP_TO_A_WALL)
+def test_holes_away_from_the_wall_are_filled_all_the_same(removed):
+    mesh = joined(grid(8, without=removed | {(1, 6), (6, 1)}), vertical(8, 4))
+    made = ridgeform.fill_holes(mesh)
+    middle = made.vertices[made.new_faces].mean(axis=1)
+    assert sorted({(int(x), int(y)) for x, y, _ in middle}) == [(1, 6), (6, 1)]
+
+
+@pytest.mark.parametrize(("n", "m"), [(1, 2), (6, 7), (3, 5), (2, 4), (8, 1), (5, 4)])
+def test_sides_that_meet_in_t_junctions_are_no_hole(n, m):
+    left, right = grid(n), grid(m)
+    left = left[0] / n, left[1]
+    right = right[0] / m + [1, 0, 0], right[1]
+    mesh = joined(left, right)
+    # Where some vertices are shared, there is a slit between each two.
+    slits = [hole for hole in ridgeform.find_holes(mesh) if not hole.is_outer_border]
+    assert len(slits) == np.gcd(n, m)
+    assert all("T-junctions" in slit.refusal for slit in slits)
+    assert len(ridgeform.fill_holes(mesh).new_faces) == 0
+    assert len(mesh.report.t_junctions) > 0
 
 
 def test_the_outer_border_is_told_by_the_faces_along_it():
