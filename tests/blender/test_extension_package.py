@@ -91,7 +91,8 @@ def test_only_sources_license_manifest_manual_and_wheels(package):
         name
         for name in names
         if not re.search(
-            r"\.(py|whl)$|^LICENSE$|^blender_manifest\.toml$|^THIRD-PARTY-NOTICES\.txt$|^help/\w+\.html$",
+            r"\.(py|whl)$|^LICENSE$|^(blender_manifest|check/kinds)\.toml$|^THIRD-PARTY-NOTICES\.txt$|"
+            r"^help/\w+\.html$",
             name,
         )
     ]
