@@ -31,11 +31,14 @@ HARDLY_FLAT = (
 AS_IT_WAS = (
     "its faces are as large as facets or very regular, so that facets were made of the shape as it was"
 )
-FEW_FLAT = 0.3
-"""With less than this part of its area in flat faces a shape has hardly any facets to be seen: what is flat
-are single faces or two. Spheres end at 0.05, a head of 500 vertices at 0.07, a hand of 800 at 0.16, and a
-torus, whose 900 facets are quads, at 0.24; all else that was tried is at 0.39 and above, with 26 to 57 faces
-in a facet."""
+FEW_FLAT = 0.2
+"""With less than this part of its area in flat faces a shape is as round as it was: spheres end at 0.05, a
+head of 500 vertices at 0.07, a hand of 800 at 0.16; a torus, which gets bands, at 0.24, and all else that was
+tried at 0.39 and above."""
+
+MANY_FLAT = 0.3
+"""From this part of its area on, what a flow has made flat are facets of many faces each, 26 to 57 on all
+that was tried. Below it they are single faces or two, hardly to be seen: a torus has 0.24 and 900 quads."""
 
 NEAR = 0.3
 """How far facets whose number neither flow nor modeler says may be from the mesh, root mean square: in
@@ -153,7 +156,7 @@ def _make_facets(
         if settings.use_fidelity
         else {"error": NEAR * movement_of(settings.strength) * _width(places, weld)}
     )
-    count = wanted or (int(made.flow.n_facets) if made.flow.flat_share[-1] >= FEW_FLAT else None)
+    count = wanted or (int(made.flow.n_facets) if made.flow.flat_share[-1] >= MANY_FLAT else None)
     make = partial(
         faceting.facets_of,
         source.facetable,
@@ -259,5 +262,5 @@ def _note(result: ridgeform.Stylized, settings: object, source: Source) -> str |
     if not settings.use_fidelity:
         notes["finished"] = f"all {steps} steps were done before its facets had settled: raise Steps"
     # Other finishes make facets of anything.
-    few = result.flat_share[-1] < FEW_FLAT and source.before is None
+    few = result.flat_share[-1] < MANY_FLAT and source.before is None
     return notes.get(result.status, HARDLY_FLAT if few else None)
