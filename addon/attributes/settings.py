@@ -12,26 +12,24 @@ from ..framework.settings import (
     data_name,
     factor,
     integer,
+    items,
     number,
     vertex_group,
 )
 
-ENERGIES = (
-    ("l1_hessian", "Sharp (L1 Hessian)", "Flat slopes that meet in sharp creases (Rowe et al. 2024)"),
-    ("l2_hessian", "Smooth (L2 Hessian)", "Smooth, also along borders (Stein et al. 2018)"),
-    (
-        "l2_curved_hessian",
+ENERGIES = items(
+    l1_hessian=("Sharp (L1 Hessian)", "Flat slopes that meet in sharp creases (Rowe et al. 2024)"),
+    l2_hessian=("Smooth (L2 Hessian)", "Smooth, also along borders (Stein et al. 2018)"),
+    l2_curved_hessian=(
         "Smooth, Curved (L2 Hessian)",
         "Smooth, also along borders, and true to the curvature of the surface (Stein et al. 2020)",
     ),
-    ("l2_laplacian", "Smooth, Flat Borders (L2 Laplacian)", "Smooth, but level toward borders"),
-    (
-        "l1_hessian_stein2018",
+    l2_laplacian=("Smooth, Flat Borders (L2 Laplacian)", "Smooth, but level toward borders"),
+    l1_hessian_stein2018=(
         "Sharp along Axes (L1 Hessian in Space)",
         "Sharp creases that depend on how the object is turned (Stein et al. 2018)",
     ),
-    (
-        "l1_edge_laplacian",
+    l1_edge_laplacian=(
         "Sharp along Edges (L1 Edge Laplacian)",
         "Sharp creases along the edges of the mesh (He and Schaefer 2013)",
     ),
@@ -89,9 +87,9 @@ class EnergyChoice(Settings):
     energy: choice("Energy", "How the result should vary across the surface", ENERGIES, default=OURS)
 
 
-PLACES = (
-    ("NEW", "New Attribute", "Leave the values as they are and put the result into a new attribute"),
-    ("IN_PLACE", "In Place", "Overwrite the values"),
+PLACES = items(
+    NEW=("New Attribute", "Leave the values as they are and put the result into a new attribute"),
+    IN_PLACE="Overwrite the values",
 )
 
 
@@ -116,18 +114,13 @@ class ResultSettings(EnergyChoice):
     )
 
 
-DISPLAYS = (
-    ("NONE", "Nothing", "Leave the view and the materials as they are"),
-    (
-        "VIEWPORT",
+DISPLAYS = items(
+    NONE=("Nothing", "Leave the view and the materials as they are"),
+    VIEWPORT=(
         "Viewport Colors",
         'Show the values as colors in Solid shading, stored in the attribute "ridgeform_shown"',
     ),
-    (
-        "MATERIAL",
-        "Material",
-        "Give the mesh a material that turns the values into colors, also for rendering",
-    ),
+    MATERIAL="Give the mesh a material that turns the values into colors, also for rendering",
 )
 
 
@@ -216,10 +209,10 @@ class DenoiseSettings(
     """The settings of denoising."""
 
 
-KNOWN = (
-    ("SELECTED", "Selected Vertices", "Spread the values of the selected vertices over the mesh"),
-    ("UNSELECTED", "Fill the Selection", "Compute the selected vertices from the others"),
-    ("GROUP", "Vertex Group", "Spread the values of the vertices in a group over the mesh"),
+KNOWN = items(
+    SELECTED=("Selected Vertices", "Spread the values of the selected vertices over the mesh"),
+    UNSELECTED=("Fill the Selection", "Compute the selected vertices from the others"),
+    GROUP=("Vertex Group", "Spread the values of the vertices in a group over the mesh"),
 )
 
 

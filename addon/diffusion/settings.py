@@ -3,7 +3,7 @@
 
 from ..blender.attribute_names import search_colors, search_face_numbers
 from ..framework import shared_settings as shared
-from ..framework.settings import Range, Settings, boolean, choice, data_name, integer, number
+from ..framework.settings import Range, Settings, boolean, choice, data_name, integer, items, number
 
 
 def _finds_regions(settings: object) -> bool:
@@ -15,18 +15,17 @@ SHOW = boolean(
 )
 
 
-SOURCES = (
-    ("ATTRIBUTE", "Color Attribute", "A color attribute of the mesh"),
-    (
-        "IMAGE",
+SOURCES = items(
+    ATTRIBUTE=("Color Attribute", "A color attribute of the mesh"),
+    IMAGE=(
         "Image Texture",
         "The image of the active material, sampled at the vertices with the active UV map",
     ),
 )
-REGIONS = (
-    ("COLORS", "From Colors", "Find the regions by their colors"),
-    ("MATERIALS", "Material Slots", "Faces with the same material slot are a region"),
-    ("ATTRIBUTE", "Face Attribute", "Faces with the same integer in an attribute are a region"),
+REGIONS = items(
+    COLORS=("From Colors", "Find the regions by their colors"),
+    MATERIALS=("Material Slots", "Faces with the same material slot are a region"),
+    ATTRIBUTE=("Face Attribute", "Faces with the same integer in an attribute are a region"),
 )
 
 

@@ -2,7 +2,7 @@
 """The settings of facets: how many, what they are made of, and where."""
 
 from ..framework import shared_settings as shared
-from ..framework.settings import Range, Settings, boolean, choice, integer, number, vertex_group
+from ..framework.settings import Range, Settings, boolean, choice, integer, items, number, vertex_group
 
 WHERE = "Where"
 
@@ -17,14 +17,14 @@ def by_error(settings: object) -> bool:
     return settings.mode == "ERROR"
 
 
-MODES = (
-    ("AUTO", "Auto", "As many as the shape gives evidence for"),
-    ("COUNT", "Count", "As many as you choose"),
-    ("ERROR", "Error", "As many as it takes to stay that close to the mesh"),
+MODES = items(
+    AUTO="As many as the shape gives evidence for",
+    COUNT="As many as you choose",
+    ERROR="As many as it takes to stay that close to the mesh",
 )
-TOPOLOGIES = (
-    ("POLYGONS", "Polygons", "One flat n-gon for each facet; several where it has a hole"),
-    ("TRIANGLES", "Triangles", "Triangles in the plane of each facet"),
+TOPOLOGIES = items(
+    POLYGONS="One flat n-gon for each facet; several where it has a hole",
+    TRIANGLES="Triangles in the plane of each facet",
 )
 
 

@@ -133,6 +133,18 @@ def factor(name: str, description: str, *, default: float, **more: object) -> Se
     return _setting(bpy.props.FloatProperty, name, description, given)
 
 
+def items(**meanings: str | tuple[str, str]) -> tuple[Item, ...]:
+    """The items of a choice by their identifiers: what each means.
+
+    With a label before it where that is not the identifier in words.
+    """
+    rows = []
+    for identifier, meaning in meanings.items():
+        given = (identifier.replace("_", " ").title(), meaning) if isinstance(meaning, str) else meaning
+        rows.append((identifier, *given))
+    return tuple(rows)
+
+
 def choice(name: str, description: str, items: Sequence[Item], *, default: str, **more: object) -> Setting:
     """One of some items."""
     given = {"items": tuple(items), "default": default, **more}

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from .settings import Range, Setting, boolean, choice, choices, factor, integer, number, vertex_group
+from .settings import Range, Setting, boolean, choice, choices, factor, integer, items, number, vertex_group
 
 EXPERT = "Expert"
 """The subpanel of the paper's numbers and the solver's."""
@@ -37,10 +37,10 @@ AVOID_RIDGES = boolean(
     "Keep ridges away from the painted vertices instead of drawing them there",
     active=lambda settings: bool(settings.ridge_group),
 )
-MARK_KINDS = (
-    ("SHARP", "Sharp", "Mark ridges as sharp edges"),
-    ("CREASE", "Crease", "Give ridges a full subdivision crease"),
-    ("BEVEL", "Bevel", "Give ridges a full bevel weight"),
+MARK_KINDS = items(
+    SHARP="Mark ridges as sharp edges",
+    CREASE="Give ridges a full subdivision crease",
+    BEVEL="Give ridges a full bevel weight",
 )
 MARKS = choices(
     "Mark Ridges",
@@ -49,9 +49,9 @@ MARKS = choices(
     expand=True,
     flag="--mark",
 )
-COUPLINGS = (
-    ("joint", "Joint", "One norm over all components, so that the result does not depend on the axes"),
-    ("separate", "Separate", "Each component by itself, as in the paper"),
+COUPLINGS = items(
+    joint="One norm over all components, so that the result does not depend on the axes",
+    separate="Each component by itself, as in the paper",
 )
 COUPLING = choice(
     "Coupling",
@@ -60,9 +60,9 @@ COUPLING = choice(
     default="joint",
     section=EXPERT,
 )
-DUALS = (
-    ("barycentric", "Barycentric", "Between centers of mass: works on every mesh"),
-    ("circumcentric", "Circumcentric", "Between circumcenters: for well-shaped triangles"),
+DUALS = items(
+    barycentric="Between centers of mass: works on every mesh",
+    circumcentric="Between circumcenters: for well-shaped triangles",
 )
 DUAL = choice("Dual", "The dual edges of the Hessian", DUALS, default="barycentric", section=EXPERT)
 DELAUNAY = boolean(
@@ -70,10 +70,10 @@ DELAUNAY = boolean(
     "Compute on the intrinsic Delaunay triangulation. Helps with long, thin triangles",
     section=EXPERT,
 )
-SOLVERS = (
-    ("auto", "Automatic", "Chosen to suit the problem"),
-    ("fast", "Fast", "The specialized first-order solver"),
-    ("clarabel", "Clarabel", "A general interior-point solver: slow and accurate"),
+SOLVERS = items(
+    auto=("Automatic", "Chosen to suit the problem"),
+    fast="The specialized first-order solver",
+    clarabel="A general interior-point solver: slow and accurate",
 )
 SOLVER = choice("Solver", "Algorithm that solves the problem", SOLVERS, default="auto", section=EXPERT)
 MAX_ITERATIONS = integer(

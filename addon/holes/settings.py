@@ -4,28 +4,25 @@
 import numpy as np
 
 from ..framework import shared_settings as shared
-from ..framework.settings import Range, Settings, boolean, choice, chosen, distance, factor, integer
+from ..framework.settings import Range, Settings, boolean, choice, chosen, distance, factor, integer, items
 
-SHAPES = (
-    (
-        "AUTO",
+SHAPES = items(
+    AUTO=(
         "Automatic",
         "Flat where the mesh stands steeply around a planar rim, as at a missing side of a box or at "
         "the cut end of a tube, ridges where some end at the hole, and smooth everywhere else",
     ),
-    ("SHARP", "Sharp", "Flat planes that meet in ridges"),
-    ("SMOOTH", "Smooth", "No ridges"),
+    SHARP="Flat planes that meet in ridges",
+    SMOOTH="No ridges",
     # Last: files store the place of a choice among the others.
-    ("FLAT", "Flat", "In the plane of the rim"),
+    FLAT="In the plane of the rim",
 )
-MATERIALS = (
-    (
-        "CONTINUE",
-        "Continue",
+MATERIALS = items(
+    CONTINUE=(
         "Continue the materials around the hole. Where two of them meet, the border runs along a "
-        "ridge of the patch if possible",
+        "ridge of the patch if possible"
     ),
-    ("MAJORITY", "One", "Use the material that most of the border of the hole has"),
+    MAJORITY=("One", "Use the most common material around the hole"),
 )
 
 

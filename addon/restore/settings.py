@@ -3,20 +3,16 @@
 
 import numpy as np
 
-from ..framework.settings import Range, Settings, angle, boolean, choices, chosen, number, vertex_group
+from ..framework.settings import Range, Settings, angle, boolean, choices, chosen, items, number, vertex_group
 
-OUTPUTS = (
-    (
-        "ATTRIBUTES",
-        "Attributes",
+OUTPUTS = items(
+    ATTRIBUTES=(
         'Store the surface of each face in the face attributes "ridgeform_surface" (its number) and '
-        '"ridgeform_surface_kind" (0 free, 1 plane, 2 sphere, 3 cylinder, 4 cone, 5 torus)',
+        '"ridgeform_surface_kind" (0 free, 1 plane, 2 sphere, 3 cylinder, 4 cone, 5 torus)'
     ),
-    (
-        "EMPTIES",
-        "Empties",
+    EMPTIES=(
         "Add an empty for each surface, with its Z axis along the normal or the axis. Those of an earlier "
-        "run are replaced",
+        "run are replaced"
     ),
 )
 
@@ -26,8 +22,8 @@ class RestoreSettings(Settings):
 
     regularize: angle(
         "Regularize",
-        "Make surfaces exactly parallel or orthogonal that are so within this angle, and radii equal that "
-        "differ by as little",
+        "Make surfaces exactly parallel or orthogonal if they are so within this angle, and radii equal if "
+        "they differ as little",
         Range(np.radians(3.0), min=0.0, max=np.radians(30.0)),
         otherwise="surfaces stay as they were fitted",
     )

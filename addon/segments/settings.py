@@ -20,6 +20,7 @@ from ..framework.settings import (
     distance,
     factor,
     integer,
+    items,
     number,
 )
 
@@ -68,76 +69,60 @@ def _width(name: str, description: str, *, default: float) -> Setting:
     return number(name, description, values, **EXPERT_OF_FACES)
 
 
-KINDS = (
-    (
-        "FACES",
-        "Faces",
-        "What creases and steps enclose: sides, walls, and roofs. For buildings, machine parts, and "
-        "furniture",
+KINDS = items(
+    FACES=(
+        "What creases and steps enclose: sides, walls, and roofs. For buildings, machine parts, and furniture"
     ),
-    (
-        "PARTS",
-        "Parts",
-        "Limbs, heads, and handles, cut through hollows where it is short. For characters, animals, "
-        "and everything that has limbs",
+    PARTS=(
+        "Limbs, heads, and handles, cut along short lines through hollows. For characters, animals, and "
+        "everything that has limbs"
     ),
 )
-SOURCES = (
-    ("SHAPE", "Shape", "Parts that are nearly flat or evenly curved, with borders along the ridges"),
-    ("ATTRIBUTE", "Attribute", "Parts on which an attribute, color, or vertex group is even or rises evenly"),
+SOURCES = items(
+    SHAPE="Parts that are nearly flat or evenly curved, with borders along the ridges",
+    ATTRIBUTE="Parts on which an attribute, color, or vertex group is even or rises evenly",
 )
-MODES = (
-    ("AUTO", "Automatic", "As many as there are, given an angle, a weight, or a coarseness"),
-    ("COUNT", "Count", "As many as you choose"),
+MODES = items(
+    AUTO=("Automatic", "As many as there are, given an angle, a weight, or a coarseness"),
+    COUNT="As many as you choose",
 )
-OUTPUTS = (
-    (
-        "MATERIALS",
+OUTPUTS = items(
+    MATERIALS=(
         "Material Slots",
         "A slot with a color of its own for each segment. Existing slots and materials stay, those "
         "of an earlier run are used again",
     ),
-    ("SEAMS", "Seams", "Mark the borders as seams for unwrapping. Existing seams are kept"),
-    ("SHARP", "Sharp Edges", "Mark the borders as sharp edges. Existing marks are kept"),
-    ("FACE_SETS", "Face Sets", "Make each segment a face set of Sculpt Mode"),
-    (
-        "VERTEX_GROUPS",
-        "Vertex Groups",
-        "Make a vertex group of each segment, replacing those of an earlier run",
+    SEAMS="Mark the borders as seams for unwrapping. Existing seams are kept",
+    SHARP=("Sharp Edges", "Mark the borders as sharp edges. Existing marks are kept"),
+    FACE_SETS="Make each segment a face set of Sculpt Mode",
+    VERTEX_GROUPS="Make a vertex group of each segment, replacing those of an earlier run",
+    INDICATOR=(
+        'Store where the borders are, 0 on them and 1 inside segments, in the attribute "ridgeform_indicator"'
     ),
-    (
-        "INDICATOR",
-        "Indicator",
-        "Store where the borders are, 0 on them and 1 inside segments, in the attribute "
-        '"ridgeform_indicator"',
-    ),
-    (
-        "SHARPENED",
+    SHARPENED=(
         "Sharpened Surface",
         "Keep what the borders were found on, flattened between them: a shape as a new shape key, an "
         "attribute as a new one",
     ),
-    ("OBJECTS", "Separate Objects", "Make each segment an object of its own. Only in Object Mode"),
+    OBJECTS=("Separate Objects", "Make each segment an object of its own. Only in Object Mode"),
 )
-BORDERS = (
-    ("SHARP", "Sharp", "Edges marked as sharp"),
-    ("SEAMS", "Seams", "Seams"),
-    ("MATERIALS", "Materials", "Edges between faces of different materials"),
+BORDERS = items(
+    SHARP="Edges marked as sharp",
+    SEAMS="Seams",
+    MATERIALS="Edges between faces of different materials",
 )
-METHODS = (
-    (
-        "fitted",
-        "Fitted",
+METHODS = items(
+    fitted=(
         "Flooded between the borders, merged where little bends, faces at a border given to the side "
-        "that they fit best",
+        "that they fit best"
     ),
-    ("paper", "Paper", "Cut where the indicator is below the threshold (Rowe et al. 2024)"),
+    paper="Cut where the indicator is below the threshold (Rowe et al. 2024)",
 )
-UNITS = (
-    ("extent", "Extent", "The size of the shape, however it is turned: for a cube its side"),
-    ("bounding_box", "Bounding Box", "The longest side of the bounding box"),
-    ("area", "Area", "The square root of the surface area"),
-    ("max_edge", "Longest Edge", "The longest edge"),
+UNITS = items(
+    extent="The size of the shape, however it is turned: for a cube its side",
+    bounding_box="The longest side of the bounding box",
+    area="The square root of the surface area",
+    max_edge=("Longest Edge", "The longest edge"),
 )
 
 
@@ -179,8 +164,8 @@ class SegmentSettings(Settings):
     )
     coarseness: number(
         "Coarseness",
-        "How much a cut must be worth: short against what it cuts off, and through hollows. Larger values "
-        "give fewer parts. Cuts of about the same worth, as of two arms, are made all or none",
+        "How good a cut must be: short against what it cuts off, and through hollows. Larger values give "
+        "fewer parts. Cuts that are equally good, such as those of two arms, are made all or none",
         Range(1.0, min=0.01, max=100.0, soft_min=0.5, soft_max=4.0, precision=2),
         shown=lambda settings: of_parts(settings) and not by_count(settings),
     )

@@ -17,6 +17,7 @@ from ..framework.settings import (
     defaults_of,
     factor,
     integer,
+    items,
     number,
     vertex_group,
 )
@@ -52,43 +53,32 @@ def first_fidelity_of(strength: float) -> float:
     return 10.0 ** (8.55 - 4.0 * strength)
 
 
-FINISHES = (
-    ("KEEP", "Keep Mesh", "Keep vertices and faces, and move the vertices only"),
-    (
-        "FACETS",
-        "Facets",
+FINISHES = items(
+    KEEP=("Keep Mesh", "Keep vertices and faces, and move the vertices only"),
+    FACETS=(
         "Make one flat polygon of each facet, with straight ridges between them. For meshes without "
-        "shape keys, in Object Mode",
+        "shape keys, in Object Mode"
     ),
-    (
-        "LOW_POLY",
-        "Low Poly",
+    LOW_POLY=(
         "Simplify the result: flat facets need few triangles. Quads and n-gons become triangles. "
-        "For meshes without shape keys, in Object Mode",
+        "For meshes without shape keys, in Object Mode"
     ),
 )
-PLACES = (
-    ("POSITIONS", "Mesh", "Move the vertices, or the active shape key if there is one"),
-    ("SHAPE_KEY", "New Shape Key", "Leave the mesh as it is and put the result into a new shape key"),
-    (
-        "ATTRIBUTE",
+PLACES = items(
+    POSITIONS=("Mesh", "Move the vertices, or the active shape key if there is one"),
+    SHAPE_KEY=("New Shape Key", "Leave the mesh as it is and put the result into a new shape key"),
+    ATTRIBUTE=(
         "Attribute and Modifier",
         "Leave the mesh as it is, put the result into an attribute, and add a modifier that blends "
         "the mesh with it by a factor or a mask",
     ),
 )
-UNITS = (
-    ("max_edge", "Longest Edge", "The unit of the paper"),
-    (
-        "bounding_box",
-        "Bounding Box",
-        "The longest side of the bounding box: independent of the density of the mesh",
-    ),
-    (
-        "area",
-        "Area",
+UNITS = items(
+    max_edge=("Longest Edge", "The unit of the paper"),
+    bounding_box="The longest side of the bounding box: independent of the density of the mesh",
+    area=(
         "The square root of the surface area: independent of the density of the mesh and of how the "
-        "object is turned",
+        "object is turned"
     ),
 )
 

@@ -2,7 +2,6 @@
 
 import importlib
 import importlib.metadata
-import subprocess
 import sys
 from pathlib import Path
 
@@ -14,6 +13,7 @@ import ridgeform
 from bl_ext.user_default.ridgeform.framework import job
 from blender_profile import EXTENSION
 from known_shapes import shapes
+from own_blender import run_in_blender
 
 
 def test_enabled_from_the_profile(profile):
@@ -77,16 +77,7 @@ assert not hasattr(bpy.types, "RIDGEFORM_OT_stylize"), "still registered"
 
 def test_install_over_itself_and_remove(extension_zip, tmp_path):
     """In a Blender of its own, because a module that is loaded stays loaded."""
-    environment = {"BLENDER_USER_RESOURCES": str(tmp_path), "PATH": "", "HOME": str(tmp_path)}
-    done = subprocess.run(
-        [sys.executable, "-c", LIFE, str(extension_zip)],
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
+    run_in_blender(LIFE, tmp_path, extension_zip)
     assert not list(tmp_path.rglob("_native*")), "the wheel was left behind"
 
 

@@ -119,8 +119,8 @@ pub(crate) fn integers(name: &'static str, object: &Bound<'_, PyAny>) -> PyResul
     }
 }
 
-/// Read a set of `length` things, where one is given: a boolean mask of shape (length,), or an array of indices
-/// below `length`.
+/// Read a set of `length` things, where one is given: a boolean mask of shape (length,), or an array of
+/// indices below `length`.
 ///
 /// # Errors
 /// `ArgumentError` for another shape or an index out of range; `what` names the things.

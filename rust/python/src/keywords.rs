@@ -67,17 +67,19 @@ macro_rules! scalar_function {
     ) => {
         solver_function! {
             $(#[doc = $before])*
-            /// energy : "l1_hessian" (sharp ridges), "l2_hessian", "l2_curved_hessian" or "l2_laplacian" (smooth),
-            ///     "l1_hessian_stein2018", "l1_edge_laplacian"; see `energy`
-            /// face_weights : (m,) array w ≥ 0, 1 where None; energies on vertices and edges take the mean of the
-            ///     faces around them
+            /// energy : "l1_hessian" (sharp ridges), "l2_hessian", "l2_curved_hessian" or "l2_laplacian"
+            ///     (smooth), "l1_hessian_stein2018", "l1_edge_laplacian"; see `energy`
+            /// face_weights : (m,) array w ≥ 0, 1 where None; energies on vertices and edges take the mean of
+            ///     the faces around them
             /// linear_constraints : (A, b) with A (p,n): SparseMatrix, SciPy sparse matrix or array,
             ///     and b (p,) or (p,k)
-            /// coupling : "joint" (one norm for all columns) or "separate" (each column is a problem of its own)
+            /// coupling : "joint" (one norm for all columns) or "separate" (each column is a problem of its
+            ///     own)
             /// dual : "barycentric", "circumcentric" (MeshError where a dual edge has no length) or
             ///     "circumcentric_or_barycentric" (barycenters for such edges); for "l1_hessian" only
-            /// delaunay : flip edges to the intrinsic Delaunay triangulation first; values stay at the vertices, face
-            ///     weights are averaged over the two faces of each flip; not for energies in space
+            /// delaunay : flip edges to the intrinsic Delaunay triangulation first; values stay at the
+            ///     vertices, face weights are averaged over the two faces of each flip; not for energies in
+            ///     space
             /// sharpness : 0 (the convex problem) to 1, reweighted rounds that concentrate curvature;
             ///     for "l1_hessian" only
             solver keywords
@@ -96,8 +98,8 @@ macro_rules! scalar_function {
             ) -> $result {
                 let $scalar = |mesh: &$crate::mesh::Mesh, n_columns: usize| {
                     let energy = $crate::options::EnergyWords { energy, face_weights, dual, delaunay };
-                    let words = $crate::scalar::ScalarWords { energy, linear_constraints, coupling, sharpness };
-                    words.read($py, mesh, n_columns, solve)
+                    $crate::scalar::ScalarWords { energy, linear_constraints, coupling, sharpness }
+                        .read($py, mesh, n_columns, solve)
                 };
                 $body
             }
