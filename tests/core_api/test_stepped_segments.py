@@ -6,6 +6,9 @@ import ridgeform
 from known_shapes import segment_shapes, shapes, stepped_shapes
 from known_shapes.segment_shapes import Part
 
+DENSEST = 10_000
+"""Vertices: above that a segmentation takes seconds."""
+
 
 def check(part, least=0.99, extra=0):
     found = ridgeform.segment(ridgeform.Mesh(part.vertices, part.faces))
@@ -58,3 +61,20 @@ def test_borders_between_regions_fall_to_a_larger_length_weight_and_to_fewer_seg
 @pytest.mark.parametrize("name", ["cylinder with caps", "fan part", "gabled house"])
 def test_curved_sides_and_blunt_ridges_are_as_they_were(name):
     check(segment_shapes.SHAPES[name](0).noisy(0.03, 2).turned(1))
+
+
+@pytest.mark.parametrize("name", ["gabled house", "fan part", "cylinder with caps", "L-shape", "staircase"])
+def test_a_shape_has_the_same_faces_at_every_density(name):
+    shares = []
+    for level in (0, 1, 2):
+        part = segment_shapes.SHAPES[name](level)
+        if len(part.vertices) > DENSEST:
+            break
+        corners = part.vertices[part.faces]
+        areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+        labels = ridgeform.segment(ridgeform.Mesh(part.vertices, part.faces)).labels
+        shares.append(np.sort(np.bincount(labels, weights=areas / areas.sum())))
+        assert len(shares[-1]) == part.n_parts
+    assert len(shares) > 1
+    for other in shares[1:]:
+        np.testing.assert_allclose(other, shares[0], atol=0.003)
