@@ -34,11 +34,11 @@ fn row(data: &[f64], i: usize) -> &[f64] {
 fn a_cut_gives_each_sector_a_copy() {
     let shape = shapes::grid(4, 4);
     let mesh = shape.mesh().unwrap();
-    let table = EdgeTable::new(mesh.connectivity());
+    let table = EdgeTable::new(mesh.connectivity()).unwrap();
     let cut = |edges: &[[u32; 2]]| {
         let mut flags = vec![false; mesh.connectivity().n_halfedges()];
         edges.iter().flat_map(|&[a, b]| table.between(a, b)).for_each(|h| flags[h] = true);
-        CutMesh::new(mesh.connectivity(), &table, &flags)
+        CutMesh::new(mesh.connectivity(), &table, &flags).unwrap()
     };
     let whole = cut(&[]);
     assert_eq!(whole.n_copies(), 25);
@@ -61,7 +61,8 @@ fn a_cut_gives_each_sector_a_copy() {
         faces,
     )
     .unwrap();
-    let cut = CutMesh::new(bow.connectivity(), &EdgeTable::new(bow.connectivity()), &[false; 9]);
+    let cut =
+        CutMesh::new(bow.connectivity(), &EdgeTable::new(bow.connectivity()).unwrap(), &[false; 9]).unwrap();
     assert_eq!(cut.n_copies(), 5);
 }
 

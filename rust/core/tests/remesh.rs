@@ -232,7 +232,7 @@ fn the_tree_finds_the_closest_point() {
     let shape = shapes::torus(12, 9, 2.0, 0.7);
     let triangles: Vec<[Point; 3]> =
         shape.faces.iter().map(|f| f.map(|v| shape.vertices[v as usize])).collect();
-    let tree = ClosestPoint::new(triangles.clone());
+    let tree = ClosestPoint::new(triangles.clone()).unwrap();
     let mut random = Random::new(3);
     for _ in 0..200 {
         let p = [0; 3].map(|_| 3.0 * random.symmetric());
@@ -245,7 +245,7 @@ fn the_tree_finds_the_closest_point() {
         }
         assert!(tree.closest(p, None, |t| t == 5).is_some_and(|found| found.triangle == 5));
     }
-    assert_eq!(ClosestPoint::new(Vec::new()).closest([0.0; 3], None, |_| true), None);
+    assert_eq!(ClosestPoint::new(Vec::new()).unwrap().closest([0.0; 3], None, |_| true), None);
 }
 
 #[test]

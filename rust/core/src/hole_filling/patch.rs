@@ -5,6 +5,7 @@ use super::options::FillOptions;
 use super::polygon::Polygon;
 use super::refinement::refine;
 use super::rims::Rims;
+use crate::memory;
 use crate::mesh::vector::{distance, norm, Point};
 use crate::remesh::curves::Keep;
 use crate::remesh::isotropic::run;
@@ -32,17 +33,17 @@ pub(super) fn refined(
     progress: &Progress,
 ) -> Result<(Vec<Point>, Vec<[u32; 3]>)> {
     let n = polygon.len();
-    let points: Vec<Point> = polygon.points.iter().chain(&flat.extra).copied().collect();
-    let mut mesh = EditableMesh::new(points, flat.faces.clone())?;
+    let points = memory::sifted(polygon.points.iter().chain(&flat.extra).copied())?;
+    let mut mesh = EditableMesh::new(points, memory::twin(&flat.faces)?)?;
     for [a, b] in rims.chords(&polygon.vertices) {
         mesh.forbid_edge(a, b);
     }
     for (i, &normal) in polygon.outside.iter().enumerate() {
         mesh.set_beyond(i as u32, ((i + 1) % n) as u32, normal);
     }
-    let surface = Reference::of(&mesh);
-    let rim_edges: Vec<f64> =
-        (0..n).map(|i| distance(polygon.points[i], polygon.points[(i + 1) % n])).collect();
+    let surface = Reference::of(&mesh)?;
+    let rim_edges =
+        memory::gathered((0..n).map(|i| distance(polygon.points[i], polygon.points[(i + 1) % n])))?;
     let rim_length: f64 = rim_edges.iter().sum();
     let rim_size = |i: usize| 0.5 * (rim_edges[i] + rim_edges[(i + n - 1) % n]);
     let typical = options.edge_length.unwrap_or(rim_length / n as f64);
@@ -51,10 +52,8 @@ pub(super) fn refined(
         budget::check_length(mesh.faces().map(|(_, face)| mesh.corners(face)), length)?;
     }
     let growth = growth(area, rim_length, typical, options.max_faces);
-    let mut sizes: Vec<f64> = (0..n)
-        .map(|i| options.edge_length.map_or(rim_size(i), |length| length.max(rim_size(i))))
-        .chain(flat.extra.iter().map(|_| typical))
-        .collect();
+    let size_at = |i: usize| options.edge_length.map_or(rim_size(i), |length| length.max(rim_size(i)));
+    let mut sizes = memory::sifted((0..n).map(size_at).chain(flat.extra.iter().map(|_| typical)))?;
     // Sizes that grow by as much for every unit of distance, from the nearest corner as from any other: means
     // of them would be those of the middle of the hole a third of the way from there to the rim, and leave
     // needles all around.
@@ -68,16 +67,16 @@ pub(super) fn refined(
     };
     let most = budget::patch_faces(options.max_faces, n);
     refine(&mut mesh, &mut sizes, size_between, most, progress)?;
-    let refined = (mesh.clone(), guard::worst_bend(&mesh));
-    let fixed: Vec<bool> = (0..mesh.n_vertices()).map(|v| v < n).collect();
+    let refined = (mesh.twin()?, guard::worst_bend(&mesh));
+    let fixed = memory::gathered((0..mesh.n_vertices()).map(|v| v < n))?;
     let keep = Keep { fixed: &fixed, fixed_faces: false, feature_cosine: -2.0, features: None };
     let mut remesher = Remesher::new(mesh, &surface, &keep, |mesh, curves| match options.edge_length {
         Some(length) => Sizing::uniform(length, growth, mesh, curves),
-        None => Sizing::graded(sizes.clone(), growth, mesh, curves),
-    });
+        None => Sizing::graded(memory::twin(&sizes)?, growth, mesh, curves),
+    })?;
     run(&mut remesher, options.remesh_iterations, most, progress)?;
     let bend = guard::worst_bend(&remesher.mesh);
     let mesh = if bend < FOLD_COSINE && bend < refined.1 { refined.0 } else { remesher.mesh };
-    let (points, faces, _) = mesh.into_parts(|v| (v as usize) < n);
-    Ok((points[n..].to_vec(), faces))
+    let (points, faces, _) = mesh.into_parts(|v| (v as usize) < n)?;
+    Ok((memory::twin(&points[n..])?, faces))
 }

@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
+use crate::memory;
 use crate::mesh::vector::{centroid, distance, dot, norm, quality};
 use crate::mesh::{edge_lengths, triangle};
 use crate::remesh::guard;
@@ -42,7 +43,7 @@ pub(super) fn refine(
     most: usize,
     progress: &Progress,
 ) -> Result<()> {
-    flip_to_delaunay(mesh);
+    flip_to_delaunay(mesh)?;
     let wanted = |(_, face): (u32, [u32; 3])| {
         (mesh.corners(face), face.map(|v| sizes[v as usize]).iter().sum::<f64>() / 3.0)
     };
@@ -57,23 +58,23 @@ pub(super) fn refine(
             let far = corners.map(|corner| distance(corner, center));
             let size = size_between(face.map(|v| sizes[v as usize]), far);
             let is_far = |i: usize| DENSITY * far[i] > size && DENSITY * far[i] > sizes[face[i] as usize];
-            if mesh.n_faces() < limit && (0..3).all(is_far) && mesh.split_face(f, center).is_some() {
-                sizes.push(size);
+            if mesh.n_faces() < limit && (0..3).all(is_far) && mesh.split_face(f, center)?.is_some() {
+                memory::push(sizes, size)?;
                 split_any = true;
             }
         }
         if !split_any {
             return Ok(());
         }
-        flip_to_delaunay(mesh);
+        flip_to_delaunay(mesh)?;
     }
     Ok(())
 }
 
 /// Flips edges whose opposite angles sum to more than π,
 /// unless that folds the surface or makes its faces worse.
-fn flip_to_delaunay(mesh: &mut EditableMesh) {
-    let mut stack = mesh.edges();
+fn flip_to_delaunay(mesh: &mut EditableMesh) -> Result<()> {
+    let mut stack = mesh.edges()?;
     let mut left = FLIPS_PER_EDGE * stack.len();
     while let Some([a, b]) = stack.pop() {
         let Some(wings) = mesh.wings(a, b) else { continue };
@@ -84,9 +85,11 @@ fn flip_to_delaunay(mesh: &mut EditableMesh) {
         {
             left -= 1;
             mesh.flip(a, b);
+            memory::extend(&mut stack, 4)?;
             stack.extend([a, b].into_iter().flat_map(|v| wings.tips.map(|tip| [v, tip])));
         }
     }
+    Ok(())
 }
 
 /// By how much the angles opposite the edge exceed π.

@@ -18,6 +18,11 @@ pub use model::Tool;
 pub use threads::processors;
 pub(crate) use threads::room_for_threads;
 
+use std::collections::{BinaryHeap, HashMap, HashSet};
+use std::hash::Hash;
+
+use rayon::prelude::*;
+
 use crate::error::SolveError;
 use crate::{Error, Result};
 
@@ -141,6 +146,95 @@ pub(crate) fn gathered<T>(
     Ok(array)
 }
 
+/// The values of an iterator that does not know how many they are; the array grows as it must, as [`room`].
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn sifted<T>(values: impl IntoIterator<Item = T>) -> std::result::Result<Vec<T>, SolveError> {
+    let mut array = Vec::new();
+    values.into_iter().try_for_each(|value| push(&mut array, value))?;
+    Ok(array)
+}
+
+/// The values of a parallel iterator, as [`room`].
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn joined<T: Send>(
+    values: impl IndexedParallelIterator<Item = T>,
+) -> std::result::Result<Vec<T>, SolveError> {
+    let mut array = room(values.len())?;
+    values.collect_into_vec(&mut array);
+    Ok(array)
+}
+
+/// The values of results, or the first error, as [`room`].
+///
+/// # Errors
+/// The first error; [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn all<T>(results: Vec<Result<T>>) -> Result<Vec<T>> {
+    let mut values = room(results.len())?;
+    for result in results {
+        values.push(result?);
+    }
+    Ok(values)
+}
+
+/// Puts a value at the end of an array, which grows by halves at least.
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn push<T>(array: &mut Vec<T>, value: T) -> std::result::Result<(), SolveError> {
+    extend(array, 1)?;
+    array.push(value);
+    Ok(())
+}
+
+/// Makes an array have room for so many further entries; it grows by halves at least.
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn extend<T>(array: &mut Vec<T>, n_further: usize) -> std::result::Result<(), SolveError> {
+    let needed = array.len().saturating_add(n_further).saturating_mul(size_of::<T>());
+    array.try_reserve(n_further).map_err(|_| SolveError::Memory { needed, limit: None })
+}
+
+/// Makes a map have room for so many further entries.
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn extend_map<K: Eq + Hash, V>(
+    map: &mut HashMap<K, V>,
+    n_further: usize,
+) -> std::result::Result<(), SolveError> {
+    let needed = map.len().saturating_add(n_further).saturating_mul(size_of::<(K, V)>());
+    map.try_reserve(n_further).map_err(|_| SolveError::Memory { needed, limit: None })
+}
+
+/// Makes a heap have room for so many further entries.
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn extend_heap<T: Ord>(
+    heap: &mut BinaryHeap<T>,
+    n_further: usize,
+) -> std::result::Result<(), SolveError> {
+    let needed = heap.len().saturating_add(n_further).saturating_mul(size_of::<T>());
+    heap.try_reserve(n_further).map_err(|_| SolveError::Memory { needed, limit: None })
+}
+
+/// Makes a set have room for so many further entries.
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn extend_set<K: Eq + Hash>(
+    set: &mut HashSet<K>,
+    n_further: usize,
+) -> std::result::Result<(), SolveError> {
+    let needed = set.len().saturating_add(n_further).saturating_mul(size_of::<K>());
+    set.try_reserve(n_further).map_err(|_| SolveError::Memory { needed, limit: None })
+}
+
 /// Makes an array have room for `n` entries, as many as it has included.
 ///
 /// # Errors
@@ -156,8 +250,7 @@ pub(crate) fn make_room<T>(array: &mut Vec<T>, n: usize) -> std::result::Result<
 /// [`SolveError::Memory`] when the system does not give that much.
 pub(crate) fn grow<T: Clone>(array: &mut Vec<T>, n: usize, value: T) -> std::result::Result<(), SolveError> {
     if array.len() < n {
-        let refused = |_| SolveError::Memory { needed: n.saturating_mul(size_of::<T>()), limit: None };
-        array.try_reserve(n - array.len()).map_err(refused)?;
+        extend(array, n - array.len())?;
         array.resize(n, value);
     }
     Ok(())

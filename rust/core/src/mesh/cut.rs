@@ -3,6 +3,7 @@
 use crate::mesh::connectivity::{next, previous};
 use crate::mesh::partition::Partition;
 use crate::mesh::{Connectivity, EdgeTable};
+use crate::{memory, Result};
 
 /// A mesh cut open along edges: a vertex has one copy for every sector of faces between the cut edges around
 /// it.
@@ -20,16 +21,18 @@ pub struct CutMesh {
 impl CutMesh {
     /// Cuts along the edges of the halfedges for which `cut` holds, an entry a halfedge;
     /// one of an edge is enough.
-    #[must_use]
-    pub fn new(connectivity: &Connectivity, table: &EdgeTable, cut: &[bool]) -> Self {
-        let mut corners = Partition::new(connectivity.n_halfedges());
+    ///
+    /// # Errors
+    /// [`crate::error::SolveError::Memory`].
+    pub fn new(connectivity: &Connectivity, table: &EdgeTable, cut: &[bool]) -> Result<Self> {
+        let mut corners = Partition::try_new(connectivity.n_halfedges())?;
         // The corner where a halfedge starts is the index of the next halfedge,
         // that where it ends of the previous.
         let corner_at = |h: usize, vertex: u32| {
             let at = if connectivity.tail(h) == vertex { next(h) } else { previous(h) };
             at as u32
         };
-        let mut touched = vec![false; connectivity.n_vertices()];
+        let mut touched = memory::repeated(false, connectivity.n_vertices())?;
         for mut edge in table.edges() {
             if edge.clone().any(|h| cut[h]) {
                 for h in edge {
@@ -46,8 +49,8 @@ impl CutMesh {
         Self::from_corners(connectivity, corners, &touched)
     }
 
-    fn from_corners(connectivity: &Connectivity, mut corners: Partition, touched: &[bool]) -> Self {
-        let mut first = vec![None; connectivity.n_vertices()];
+    fn from_corners(connectivity: &Connectivity, mut corners: Partition, touched: &[bool]) -> Result<Self> {
+        let mut first = memory::repeated(None, connectivity.n_vertices())?;
         for (f, face) in connectivity.faces().iter().enumerate() {
             let repeated = face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
             for (i, &v) in face.iter().enumerate() {
@@ -60,17 +63,17 @@ impl CutMesh {
                 }
             }
         }
-        let mut copies = vec![0; connectivity.n_halfedges()];
-        let mut vertices = Vec::with_capacity(connectivity.n_vertices());
+        let mut copies = memory::repeated(0, connectivity.n_halfedges())?;
+        let mut vertices = memory::room(connectivity.n_vertices())?;
         for corner in 0..connectivity.n_halfedges() {
             let root = corners.root(corner as u32) as usize;
             if root == corner {
                 copies[corner] = vertices.len() as u32;
-                vertices.push(connectivity.opposite(corner));
+                memory::push(&mut vertices, connectivity.opposite(corner))?;
             }
             copies[corner] = copies[root];
         }
-        Self { faces: copies.as_chunks().0.to_vec(), vertices }
+        Ok(Self { faces: memory::twin(copies.as_chunks().0)?, vertices })
     }
 
     /// How many copies there are.

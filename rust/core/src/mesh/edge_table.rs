@@ -1,6 +1,7 @@
 //! The halfedges of every edge, found by the edge's vertices.
 
 use crate::mesh::{Connectivity, EdgeKind};
+use crate::{memory, Result};
 
 /// The halfedges of every edge, however many faces it has;
 /// edges of faces that name a vertex twice are left out.
@@ -12,17 +13,18 @@ pub struct EdgeTable {
 
 impl EdgeTable {
     /// The table of `connectivity`.
-    #[must_use]
-    pub fn new(connectivity: &Connectivity) -> Self {
+    ///
+    /// # Errors
+    /// [`crate::error::SolveError::Memory`].
+    pub fn new(connectivity: &Connectivity) -> Result<Self> {
         let sound = (0..connectivity.n_halfedges()).filter(|&h| connectivity.kind(h) != EdgeKind::Degenerate);
-        let mut entries: Vec<[u32; 3]> = sound
-            .map(|h| {
-                let (tail, head) = (connectivity.tail(h), connectivity.head(h));
-                [tail.min(head), tail.max(head), h as u32]
-            })
-            .collect();
+        let mut entries = memory::room(connectivity.n_halfedges())?;
+        entries.extend(sound.map(|h| {
+            let (tail, head) = (connectivity.tail(h), connectivity.head(h));
+            [tail.min(head), tail.max(head), h as u32]
+        }));
         entries.sort_unstable();
-        Self { entries }
+        Ok(Self { entries })
     }
 
     /// The halfedges of every edge, ascending, edges in the order of their vertices.

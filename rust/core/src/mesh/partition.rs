@@ -1,5 +1,8 @@
 //! Sets that can be united.
 
+use crate::error::SolveError;
+use crate::memory;
+
 /// A partition of `0..n` into sets; the root of a set is its least element, unless [`Partition::attach`]
 /// chose another (Tarjan 1975, with path halving).
 #[derive(Debug, Clone)]
@@ -9,6 +12,14 @@ impl Partition {
     /// `n` sets of one element each.
     pub(crate) fn new(n: usize) -> Self {
         Self((0..n as u32).collect())
+    }
+
+    /// The same, refused where the system does not give that much.
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub(crate) fn try_new(n: usize) -> Result<Self, SolveError> {
+        memory::sifted(0..n as u32).map(Self)
     }
 
     /// The least element of the set of `x`.

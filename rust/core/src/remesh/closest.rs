@@ -1,6 +1,8 @@
 //! The closest point of a surface, by a tree of boxes.
 
+use crate::memory;
 use crate::mesh::vector::{add, area_vector, between, centroid, cross, dot, norm, scale, sub, Point};
+use crate::Result;
 
 /// Triangles a leaf holds: fewer make a deeper tree, more make more distances; 4 was fastest by a little.
 const LEAF: usize = 4;
@@ -39,17 +41,20 @@ struct Node {
 
 impl ClosestPoint {
     /// The tree of `triangles`.
-    #[must_use]
-    pub fn new(triangles: Vec<[Point; 3]>) -> Self {
-        let centers: Vec<Point> = triangles.iter().map(|&t| centroid(t)).collect();
-        let mut tree = Self { order: (0..triangles.len() as u32).collect(), triangles, nodes: Vec::new() };
+    ///
+    /// # Errors
+    /// [`crate::error::SolveError::Memory`].
+    pub fn new(triangles: Vec<[Point; 3]>) -> Result<Self> {
+        let centers = memory::gathered(triangles.iter().map(|&t| centroid(t)))?;
+        let order = memory::sifted(0..triangles.len() as u32)?;
+        let mut tree = Self { order, triangles, nodes: Vec::new() };
         if !tree.triangles.is_empty() {
-            tree.build(0, tree.triangles.len(), &centers);
+            tree.build(0, tree.triangles.len(), &centers)?;
         }
-        tree
+        Ok(tree)
     }
 
-    fn build(&mut self, start: usize, end: usize, centers: &[Point]) {
+    fn build(&mut self, start: usize, end: usize, centers: &[Point]) -> Result<()> {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for corner in self.order[start..end].iter().flat_map(|&t| self.triangles[t as usize]) {
             for k in 0..3 {
@@ -58,9 +63,10 @@ impl ClosestPoint {
             }
         }
         let node = self.nodes.len();
-        self.nodes.push(Node { low, high, start: start as u32, count: (end - start) as u32 });
+        let count = (end - start) as u32;
+        memory::push(&mut self.nodes, Node { low, high, start: start as u32, count })?;
         if end - start <= LEAF {
-            return;
+            return Ok(());
         }
         let extent = sub(high, low);
         let axis = if extent[0] >= extent[1] && extent[0] >= extent[2] {
@@ -72,10 +78,10 @@ impl ClosestPoint {
         self.order[start..end].select_nth_unstable_by(middle, |&a, &b| {
             centers[a as usize][axis].total_cmp(&centers[b as usize][axis]).then(a.cmp(&b))
         });
-        self.build(start, start + middle, centers);
+        self.build(start, start + middle, centers)?;
         let second = self.nodes.len() as u32;
         (self.nodes[node].start, self.nodes[node].count) = (second, 0);
-        self.build(start + middle, end, centers);
+        self.build(start + middle, end, centers)
     }
 
     /// The point closest to `p` among the triangles that `accept` takes; `guess` is one that may be close. Of

@@ -2,9 +2,11 @@
 
 use std::collections::{HashMap, HashSet};
 
+use crate::memory;
 use crate::mesh::vector::{dot, norm, sub, Point};
 use crate::remesh::closest::ClosestPoint;
 use crate::remesh::{key, Edge, EditableMesh};
+use crate::Result;
 
 /// A vertex where a border or feature line turns by more than this (45 degrees) is a corner, and stays.
 pub(crate) const CORNER_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -52,16 +54,17 @@ impl Curves {
     /// Border and feature edges are curves; those between two fixed vertices, non-manifold edges, and the
     /// edges of faces that stay are locked. A vertex is on a curve where exactly two curve edges meet without
     /// a corner; other vertices of curve or locked edges are fixed.
-    pub(crate) fn new(mesh: &EditableMesh, keep: &Keep) -> (Self, Vec<Role>) {
-        let (mut lines, mut locked, mut ends) =
-            (Vec::new(), HashSet::new(), vec![Vec::new(); mesh.n_vertices()]);
-        let mut roles: Vec<Role> =
-            keep.fixed.iter().map(|&f| if f { Role::Fixed } else { Role::Free }).collect();
+    pub(crate) fn new(mesh: &EditableMesh, keep: &Keep) -> Result<(Self, Vec<Role>)> {
+        let (mut lines, mut locked) = (Vec::new(), HashSet::new());
+        let mut ends = memory::repeated(Vec::new(), mesh.n_vertices())?;
+        let mut roles =
+            memory::gathered(keep.fixed.iter().map(|&f| if f { Role::Fixed } else { Role::Free }))?;
         let is_fixed = |v: u32| keep.fixed[v as usize];
-        for [a, b] in mesh.edges() {
+        for [a, b] in mesh.edges()? {
             let is_line = match mesh.edge(a, b) {
                 Edge::None => false,
                 Edge::NonManifold => {
+                    memory::extend_set(&mut locked, 1)?;
                     locked.insert([a, b]);
                     [a, b].iter().for_each(|&v| roles[v as usize] = Role::Pinched);
                     false
@@ -74,15 +77,17 @@ impl Curves {
                 }
             };
             if is_line && is_fixed(a) && is_fixed(b) {
+                memory::extend_set(&mut locked, 1)?;
                 locked.insert([a, b]);
             } else if is_line {
-                lines.push([a, b]);
+                memory::push(&mut lines, [a, b])?;
                 ends[a as usize].push(b);
                 ends[b as usize].push(a);
             }
         }
         if keep.fixed_faces {
             for (_, [a, b, c]) in mesh.faces().filter(|(_, face)| face.iter().all(|&v| is_fixed(v))) {
+                memory::extend_set(&mut locked, 3)?;
                 locked.extend([key(a, b), key(b, c), key(c, a)]);
             }
         }
@@ -93,16 +98,20 @@ impl Curves {
                 roles[v as usize] = Role::Fixed;
             }
         }
-        let (edges, count) = number_curves(&lines, &ends, &mut roles);
+        let (edges, count) = number_curves(&lines, &ends, &mut roles)?;
         // A tree for each: in one tree for all, the closest of one curve is searched for among those of all
         // others.
-        let mut segments: Vec<Vec<[Point; 3]>> = vec![Vec::new(); count as usize];
+        let mut segments: Vec<Vec<[Point; 3]>> = memory::repeated(Vec::new(), count as usize)?;
         for line @ &[a, b] in &lines {
             if let Some(&curve) = edges.get(line) {
-                segments[curve as usize].push(mesh.corners([a, b, b]));
+                memory::push(&mut segments[curve as usize], mesh.corners([a, b, b]))?;
             }
         }
-        (Self { edges, locked, segments: segments.into_iter().map(ClosestPoint::new).collect() }, roles)
+        let mut trees = memory::room(segments.len())?;
+        for of_curve in segments {
+            trees.push(ClosestPoint::new(of_curve)?);
+        }
+        Ok((Self { edges, locked, segments: trees }, roles))
     }
 
     /// The curve that the edge is on.
@@ -116,10 +125,10 @@ impl Curves {
     }
 
     /// The edges that must stay, ascending.
-    pub(crate) fn locked_edges(&self) -> Vec<[u32; 2]> {
-        let mut edges: Vec<_> = self.locked.iter().copied().collect();
+    pub(crate) fn locked_edges(&self) -> Result<Vec<[u32; 2]>> {
+        let mut edges = memory::gathered(self.locked.iter().copied())?;
         edges.sort_unstable();
-        edges
+        Ok(edges)
     }
 
     /// The point of `curve` closest to `p`.
@@ -128,9 +137,11 @@ impl Curves {
     }
 
     /// Puts edges onto a curve in place of an old one.
-    pub(crate) fn replace(&mut self, old: [u32; 2], new: &[[u32; 2]], curve: u32) {
+    pub(crate) fn replace(&mut self, old: [u32; 2], new: &[[u32; 2]], curve: u32) -> Result<()> {
+        memory::extend_map(&mut self.edges, new.len())?;
         self.edges.remove(&key(old[0], old[1]));
         self.edges.extend(new.iter().map(|&[a, b]| (key(a, b), curve)));
+        Ok(())
     }
 }
 
@@ -149,8 +160,13 @@ fn is_smooth(mesh: &EditableMesh, v: u32, ends: &[u32]) -> bool {
 
 /// Numbers the curves: lines that meet at a vertex that is free to move along them are one. Gives those
 /// vertices their role. Returns the curve of every line, and how many there are.
-fn number_curves(lines: &[[u32; 2]], ends: &[Vec<u32>], roles: &mut [Role]) -> (HashMap<[u32; 2], u32>, u32) {
-    let mut number: HashMap<[u32; 2], u32> = HashMap::with_capacity(lines.len());
+fn number_curves(
+    lines: &[[u32; 2]],
+    ends: &[Vec<u32>],
+    roles: &mut [Role],
+) -> Result<(HashMap<[u32; 2], u32>, u32)> {
+    let mut number: HashMap<[u32; 2], u32> = HashMap::new();
+    memory::extend_map(&mut number, lines.len())?;
     let mut count = 0;
     for &line in lines {
         if number.contains_key(&line) {
@@ -167,7 +183,7 @@ fn number_curves(lines: &[[u32; 2]], ends: &[Vec<u32>], roles: &mut [Role]) -> (
         }
         count += 1;
     }
-    (number, count)
+    Ok((number, count))
 }
 
 #[cfg(test)]
@@ -181,7 +197,7 @@ mod tests {
         let positions = [triangle(0.0), triangle(0.1)].concat();
         let mesh = EditableMesh::new(positions, vec![[0, 1, 2], [3, 4, 5]]).unwrap();
         let keep = Keep { fixed: &[false; 6], fixed_faces: false, feature_cosine: -2.0, features: None };
-        let (curves, roles) = Curves::new(&mesh, &keep);
+        let (curves, roles) = Curves::new(&mesh, &keep).unwrap();
         assert_eq!(roles, [Role::Fixed; 6], "every corner is one");
         for (edge, z) in [([0, 1], 0.0), ([3, 4], 0.1)] {
             let curve = curves.curve(edge[0], edge[1]).unwrap();

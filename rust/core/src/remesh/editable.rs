@@ -3,8 +3,10 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::error::MeshError;
+use crate::memory;
 use crate::mesh::vector::{area_vector, Point};
 pub use crate::remesh::edge::{key, Edge, Wings};
+use crate::Result;
 
 /// The corners of a face that was removed.
 pub(super) const GONE: [u32; 3] = [u32::MAX; 3];
@@ -13,6 +15,9 @@ pub(super) const GONE: [u32; 3] = [u32::MAX; 3];
 /// that collapses into it takes a thousandth of the time that it took when the vertex moved, and meshes
 /// without such vertices keep their bits.
 const HUB: usize = 256;
+
+/// Positions, faces, and for every vertex its number before ([`EditableMesh::into_parts`]).
+pub type Parts = (Vec<Point>, Vec<[u32; 3]>, Vec<u32>);
 
 /// A triangle mesh under edit: positions, faces, and the faces of every vertex.
 ///
@@ -23,7 +28,7 @@ const HUB: usize = 256;
 /// The operations look after the connectivity alone: none ever makes an edge with three faces, a face that
 /// names a vertex twice, or two faces on the same three vertices, and each does nothing where it would.
 /// Whether the surface folds over is the business of [`super::guard`].
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct EditableMesh {
     pub(super) positions: Vec<Point>,
     pub(super) faces: Vec<[u32; 3]>,
@@ -37,10 +42,10 @@ impl EditableMesh {
     /// a face that names a vertex twice becomes empty.
     ///
     /// # Errors
-    /// [`MeshError::VertexOutOfRange`].
-    pub fn new(positions: Vec<Point>, faces: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+    /// [`MeshError::VertexOutOfRange`]; [`crate::error::SolveError::Memory`].
+    pub fn new(positions: Vec<Point>, faces: Vec<[u32; 3]>) -> Result<Self> {
         let mut mesh = Self {
-            faces_of: vec![Vec::new(); positions.len()],
+            faces_of: memory::repeated(Vec::new(), positions.len())?,
             positions,
             faces,
             forbidden: HashSet::new(),
@@ -49,7 +54,8 @@ impl EditableMesh {
         for (f, corners) in mesh.faces.iter_mut().enumerate() {
             let n_vertices = mesh.positions.len();
             if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= n_vertices) {
-                return Err(MeshError::VertexOutOfRange { face: f, vertex: i64::from(vertex), n_vertices });
+                let vertex = i64::from(vertex);
+                return Err(MeshError::VertexOutOfRange { face: f, vertex, n_vertices }.into());
             }
             let [a, b, c] = *corners;
             if a == b || b == c || c == a {
@@ -59,6 +65,22 @@ impl EditableMesh {
             }
         }
         Ok(mesh)
+    }
+
+    /// A copy.
+    ///
+    /// # Errors
+    /// [`crate::error::SolveError::Memory`].
+    pub fn twin(&self) -> Result<Self> {
+        let mut faces_of = memory::room(self.faces_of.len())?;
+        faces_of.extend(self.faces_of.iter().cloned());
+        Ok(Self {
+            positions: memory::twin(&self.positions)?,
+            faces: memory::twin(&self.faces)?,
+            faces_of,
+            forbidden: self.forbidden.clone(),
+            beyond: self.beyond.clone(),
+        })
     }
 
     /// Forbids an edge: no operation will make it. For edges that exist in a larger mesh of which this is a
@@ -161,18 +183,21 @@ impl EditableMesh {
     }
 
     /// All edges, smaller vertex first, ascending.
-    #[must_use]
-    pub fn edges(&self) -> Vec<[u32; 2]> {
-        let mut edges = Vec::with_capacity(self.faces.len() * 3 / 2);
+    ///
+    /// # Errors
+    /// [`crate::error::SolveError::Memory`].
+    pub fn edges(&self) -> Result<Vec<[u32; 2]>> {
+        let mut edges = memory::room(self.faces.len() * 3 / 2)?;
         let mut larger = Vec::new();
         for v in 0..self.positions.len() as u32 {
             larger.clear();
             larger.extend(self.faces_of(v).iter().flat_map(|&f| self.faces[f as usize]).filter(|&w| w > v));
             larger.sort_unstable();
             larger.dedup();
+            memory::extend(&mut edges, larger.len())?;
             edges.extend(larger.iter().map(|&w| [v, w]));
         }
-        edges
+        Ok(edges)
     }
 
     /// What lies at the vertices `a` and `b`.
@@ -274,13 +299,15 @@ impl EditableMesh {
 
     /// The positions and faces without gaps, and for every vertex kept its number before. `keep(v)` says
     /// which vertices without faces to keep; order is kept.
-    #[must_use]
-    pub fn into_parts(self, keep: impl Fn(u32) -> bool) -> (Vec<Point>, Vec<[u32; 3]>, Vec<u32>) {
-        let kept: Vec<u32> =
-            (0..self.positions.len() as u32).filter(|&v| !self.faces_of(v).is_empty() || keep(v)).collect();
-        let mut number = vec![u32::MAX; self.positions.len()];
+    ///
+    /// # Errors
+    /// [`crate::error::SolveError::Memory`].
+    pub fn into_parts(self, keep: impl Fn(u32) -> bool) -> Result<Parts> {
+        let is_kept = |&v: &u32| !self.faces_of(v).is_empty() || keep(v);
+        let kept = memory::sifted((0..self.positions.len() as u32).filter(is_kept))?;
+        let mut number = memory::repeated(u32::MAX, self.positions.len())?;
         kept.iter().zip(0..).for_each(|(&v, new)| number[v as usize] = new);
-        let faces = self.faces().map(|(_, face)| face.map(|v| number[v as usize])).collect();
-        (kept.iter().map(|&v| self.position(v)).collect(), faces, kept)
+        let faces = memory::sifted(self.faces().map(|(_, face)| face.map(|v| number[v as usize])))?;
+        Ok((memory::gathered(kept.iter().map(|&v| self.position(v)))?, faces, kept))
     }
 }

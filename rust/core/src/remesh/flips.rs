@@ -2,6 +2,7 @@
 
 use std::f64::consts::FRAC_PI_3;
 
+use crate::memory;
 use crate::mesh::edge_lengths;
 use crate::mesh::triangle;
 use crate::mesh::vector::{dot, norm, quality};
@@ -9,7 +10,7 @@ use crate::remesh::curves::Role;
 use crate::remesh::remesher::Remesher;
 use crate::remesh::{guard, EditableMesh};
 use crate::shape_guard::SLIVER;
-use crate::Progress;
+use crate::{Progress, Result};
 
 /// Edges whose faces turn by more than this (40 degrees) carry shape and are not flipped for better valences.
 const CARRIES_SHAPE: f64 = 0.766;
@@ -21,12 +22,12 @@ const WORTH: f64 = 1.1;
 /// Flips edges where that brings the valences of the four vertices closer to regular: 6 inside, on a border
 /// one more than the number of 60-degree triangles that fit there (4 on a straight one). Of two equal choices
 /// the better triangles.
-pub(crate) fn equalize_valences(remesher: &mut Remesher, progress: &Progress) {
-    let borders = borders(remesher);
-    let targets = target_valences(remesher, &borders);
-    for [a, b] in remesher.mesh.edges() {
+pub(crate) fn equalize_valences(remesher: &mut Remesher, progress: &Progress) -> Result<()> {
+    let borders = borders(remesher)?;
+    let targets = target_valences(remesher, &borders)?;
+    for [a, b] in remesher.mesh.edges()? {
         if progress.is_stopping() {
-            return;
+            return Ok(());
         }
         if !remesher.is_free(a, b) {
             continue;
@@ -44,6 +45,7 @@ pub(crate) fn equalize_valences(remesher: &mut Remesher, progress: &Progress) {
             remesher.mesh.flip(a, b);
         }
     }
+    Ok(())
 }
 
 /// The worse quality of the two faces after a flip over that before; 0 if the edge cannot be flipped.
@@ -66,15 +68,15 @@ fn keeps_shape(mesh: &EditableMesh, a: u32, b: u32) -> bool {
 
 /// Whether each vertex is on the border, where it has an edge more than faces.
 /// Flips change nothing about that.
-fn borders(remesher: &Remesher) -> Vec<bool> {
+fn borders(remesher: &Remesher) -> Result<Vec<bool>> {
     let is_border = |v: u32| remesher.roles[v as usize] != Role::Free && remesher.mesh.is_border(v);
-    (0..remesher.mesh.n_vertices() as u32).map(is_border).collect()
+    Ok(memory::sifted((0..remesher.mesh.n_vertices() as u32).map(is_border))?)
 }
 
 /// The regular valence of every vertex.
-fn target_valences(remesher: &Remesher, borders: &[bool]) -> Vec<i32> {
+fn target_valences(remesher: &Remesher, borders: &[bool]) -> Result<Vec<i32>> {
     let mesh = &remesher.mesh;
-    let mut targets = vec![6; mesh.n_vertices()];
+    let mut targets = memory::repeated(6, mesh.n_vertices())?;
     for v in (0..mesh.n_vertices() as u32).filter(|&v| borders[v as usize]) {
         let angle: f64 = mesh
             .faces_of(v)
@@ -89,5 +91,5 @@ fn target_valences(remesher: &Remesher, borders: &[bool]) -> Vec<i32> {
         let fitting = (angle / FRAC_PI_3).round().max(1.0) as i32;
         targets[v as usize] = fitting + 1;
     }
-    targets
+    Ok(targets)
 }

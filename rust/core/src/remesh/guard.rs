@@ -208,7 +208,7 @@ mod tests {
         assert!(mesh.is_hub(0) && !mesh.is_hub(1) && !hub(200).is_hub(0));
         let mut count = 0;
         for from in 1..=300 {
-            let mut after = mesh.clone();
+            let mut after = mesh.twin().unwrap();
             if !after.collapse(from, 0, mesh.position(0)) {
                 continue;
             }

@@ -1,7 +1,7 @@
 //! Isotropic remeshing [Botsch and Kobbelt 2004].
 
 use crate::error::{Error, MeshError};
-use crate::memory::{Demand, Tool};
+use crate::memory::{self, Demand, Tool};
 use crate::mesh::vector::{norm, Point};
 use crate::mesh::Mesh;
 use crate::progress::Report;
@@ -77,11 +77,7 @@ pub fn remesh(mesh: &Mesh, options: &RemeshOptions, progress: &Progress) -> Resu
     let original = mesh.positions().ok_or(MeshError::NoPositions)?;
     let unit = mesh.unit();
     let edge_length = options.edge_length.map(|length| unit.measure(length));
-    let mut found = in_its_unit(
-        mesh.measured(unit)?.as_ref(),
-        &RemeshOptions { edge_length, ..options.clone() },
-        progress,
-    )?;
+    let mut found = in_its_unit(mesh.measured(unit)?.as_ref(), edge_length, options, progress)?;
     for (vertex, origin) in found.vertices.iter_mut().zip(&found.origin) {
         *vertex = origin.map_or_else(|| vertex.map(|x| unit.restore(x)), |v| original[v as usize]);
     }
@@ -89,22 +85,34 @@ pub fn remesh(mesh: &Mesh, options: &RemeshOptions, progress: &Progress) -> Resu
     Ok(found)
 }
 
-/// [`remesh`] of a mesh whose size is sane.
-fn in_its_unit(mesh: &Mesh, options: &RemeshOptions, progress: &Progress) -> Result<Remeshed> {
+/// [`remesh`] of a mesh whose size is sane, with a target in its unit.
+fn in_its_unit(
+    mesh: &Mesh,
+    edge_length: Option<f64>,
+    options: &RemeshOptions,
+    progress: &Progress,
+) -> Result<Remeshed> {
     let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
-    let fixed = options.fixed.clone().unwrap_or_else(|| vec![false; positions.len()]);
-    if fixed.len() != positions.len() {
-        let problem =
-            format!("expected one entry for each of {} vertices, got {}", positions.len(), fixed.len());
+    let n_given = options.fixed.as_ref().map_or(positions.len(), Vec::len);
+    if n_given != positions.len() {
+        let problem = format!("expected one entry for each of {} vertices, got {n_given}", positions.len());
         return Err(Error::argument("fixed", problem));
     }
     mesh.demand(Tool::Remesh).admit(None)?;
-    let editable = EditableMesh::new(positions.to_vec(), mesh.connectivity().faces().to_vec())?;
+    let fixed = match &options.fixed {
+        Some(fixed) => memory::twin(fixed)?,
+        None => memory::repeated(false, positions.len())?,
+    };
+    let faces = memory::twin(mesh.connectivity().faces())?;
+    let editable = EditableMesh::new(memory::twin(positions)?, faces)?;
     let area: f64 = editable.faces().map(|(f, _)| norm(editable.area_vector(f))).sum();
     if area <= 0.0 {
         return Err(MeshError::NoFaces.into());
     }
-    let edge_length = options.edge_length.unwrap_or_else(|| mean_edge_length(&editable));
+    let edge_length = match edge_length {
+        Some(length) => length,
+        None => mean_edge_length(&editable)?,
+    };
     budget::check_length(editable.faces().map(|(_, face)| editable.corners(face)), edge_length)?;
     admit(mesh, area, edge_length)?;
     let feature_cosine = match options.feature_angle {
@@ -115,16 +123,16 @@ fn in_its_unit(mesh: &Mesh, options: &RemeshOptions, progress: &Progress) -> Res
         }
     };
     let keep = Keep { fixed: &fixed, fixed_faces: true, feature_cosine, features: None };
-    let surface = Reference::of(&editable);
+    let surface = Reference::of(&editable)?;
     let mut remesher = Remesher::new(editable, &surface, &keep, |mesh, curves| {
         Sizing::uniform(edge_length, 0.0, mesh, curves)
-    });
+    })?;
     let iterations = run(&mut remesher, options.iterations, usize::MAX, progress)?;
     let moved = |v: u32| remesher.is_movable(v);
-    let movable: Vec<bool> = (0..remesher.mesh.n_vertices() as u32).map(moved).collect();
+    let movable = memory::sifted((0..remesher.mesh.n_vertices() as u32).map(moved))?;
     let (vertices, faces, kept) =
-        remesher.mesh.into_parts(|v| fixed.get(v as usize).copied().unwrap_or(false));
-    let origin = kept.into_iter().map(|v| (!movable[v as usize]).then_some(v)).collect();
+        remesher.mesh.into_parts(|v| fixed.get(v as usize).copied().unwrap_or(false))?;
+    let origin = memory::gathered(kept.into_iter().map(|v| (!movable[v as usize]).then_some(v)))?;
     Ok(Remeshed { vertices, faces, origin, iterations, edge_length })
 }
 
@@ -155,30 +163,30 @@ pub(crate) fn run(
         }
         let fraction = iteration as f64 / iterations as f64;
         progress.report(Report { fraction, stage: "remesh".into(), iteration, ..Report::default() });
-        remesher.sizing.update(&remesher.mesh);
+        remesher.sizing.update(&remesher.mesh)?;
         let wanted = |(_, face): (u32, [u32; 3])| {
             (remesher.mesh.corners(face), face.iter().map(|&v| remesher.sizing.at(v)).sum::<f64>() / 3.0)
         };
         let to_add = budget::faces_to_add(remesher.mesh.faces().map(wanted), most);
-        split_long_edges(remesher, to_add, progress);
-        collapse_short_edges(remesher, progress);
-        equalize_valences(remesher, progress);
-        relax_and_project(remesher, progress);
+        split_long_edges(remesher, to_add, progress)?;
+        collapse_short_edges(remesher, progress)?;
+        equalize_valences(remesher, progress)?;
+        relax_and_project(remesher, progress)?;
         progress.check()?;
         if progress.is_finishing() {
             return Ok(iteration);
         }
     }
     if iterations > 0 {
-        remove_slivers(remesher, progress);
+        remove_slivers(remesher, progress)?;
     }
     progress.check()?;
     Ok(iterations)
 }
 
-fn mean_edge_length(mesh: &EditableMesh) -> f64 {
-    let edges = mesh.edges();
+fn mean_edge_length(mesh: &EditableMesh) -> Result<f64> {
+    let edges = mesh.edges()?;
     let sum: f64 =
         edges.iter().map(|&[a, b]| crate::mesh::vector::distance(mesh.position(a), mesh.position(b))).sum();
-    sum / edges.len().max(1) as f64
+    Ok(sum / edges.len().max(1) as f64)
 }

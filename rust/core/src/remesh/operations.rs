@@ -1,8 +1,10 @@
 //! What changes the connectivity of an [`EditableMesh`]: flips, splits and collapses.
 
+use crate::memory;
 use crate::mesh::vector::Point;
 use crate::remesh::edge::{Edge, Wings};
 use crate::remesh::editable::{EditableMesh, GONE};
+use crate::Result;
 
 impl EditableMesh {
     /// The two faces that [`EditableMesh::flip`] would make, in the place of `wings.faces`;
@@ -33,12 +35,16 @@ impl EditableMesh {
     ///
     /// The old face numbers stay at `a`; the new faces at `b` are the last ones,
     /// that of `wings.faces[0]` first.
-    pub fn split(&mut self, a: u32, b: u32, position: Point) -> Option<u32> {
+    ///
+    /// # Errors
+    /// [`crate::error::SolveError::Memory`]; the mesh is as it was.
+    pub fn split(&mut self, a: u32, b: u32, position: Point) -> Result<Option<u32>> {
         let faces: &[u32] = match &self.edge(a, b) {
             Edge::Border(f, _) => &[*f],
             Edge::Interior(wings) => &wings.faces.clone(),
-            Edge::None | Edge::NonManifold => return None,
+            Edge::None | Edge::NonManifold => return Ok(None),
         };
+        self.make_room()?;
         let new = self.add_vertex(position);
         for &f in faces {
             let old = self.faces[f as usize];
@@ -47,22 +53,26 @@ impl EditableMesh {
             self.faces[f as usize] = old.map(|v| if v == b { new } else { v });
             self.add_face(old.map(|v| if v == a { new } else { v }));
         }
-        Some(new)
+        Ok(Some(new))
     }
 
     /// Splits face `f` into three at a new vertex at `position`, and returns that vertex;
     /// nothing if `f` was removed.
     ///
     /// The part at the face's first edge keeps the number, the two others are the last faces.
-    pub fn split_face(&mut self, f: u32, position: Point) -> Option<u32> {
-        let [a, b, c] = self.face(f)?;
+    ///
+    /// # Errors
+    /// [`crate::error::SolveError::Memory`]; the mesh is as it was.
+    pub fn split_face(&mut self, f: u32, position: Point) -> Result<Option<u32>> {
+        let Some([a, b, c]) = self.face(f) else { return Ok(None) };
+        self.make_room()?;
         let new = self.add_vertex(position);
         self.detach(c, f);
         self.faces_of[new as usize].push(f);
         self.faces[f as usize] = [a, b, new];
         self.add_face([b, c, new]);
         self.add_face([c, a, new]);
-        Some(new)
+        Ok(Some(new))
     }
 
     /// Whether [`EditableMesh::collapse`] keeps the surface as it is but for its size: the link condition
@@ -105,6 +115,13 @@ impl EditableMesh {
         }
         self.set_position(to, position);
         true
+    }
+
+    /// Room for one more vertex and the two more faces that come with it at most.
+    fn make_room(&mut self) -> Result<()> {
+        memory::extend(&mut self.positions, 1)?;
+        memory::extend(&mut self.faces_of, 1)?;
+        Ok(memory::extend(&mut self.faces, 2)?)
     }
 
     fn add_vertex(&mut self, position: Point) -> u32 {

@@ -2,34 +2,29 @@
 
 use rayon::prelude::*;
 
+use crate::memory;
 use crate::mesh::vector::{add, between, dot, norm, scale, sub, unit, Point};
 use crate::remesh::curves::Role;
 use crate::remesh::guard;
 use crate::remesh::remesher::Remesher;
 use crate::shape_guard::farthest;
-use crate::Progress;
+use crate::{Progress, Result};
 
 /// Moves every free vertex in its tangent plane to the center of its neighbors, weighted by the area around
 /// them over that wanted (Botsch and Kobbelt 2004, with their weights for a graded mesh), then to the closest
 /// point of the surface; a vertex on a curve to the middle between its neighbors on it, and to the closest
 /// point of the curve.
-pub(crate) fn relax_and_project(remesher: &mut Remesher, progress: &Progress) {
+pub(crate) fn relax_and_project(remesher: &mut Remesher, progress: &Progress) -> Result<()> {
     let n = remesher.mesh.n_vertices() as u32;
-    let weights: Vec<f64> = (0..n)
-        .into_par_iter()
-        .map(|v| {
-            let area: f64 =
-                remesher.mesh.faces_of(v).iter().map(|&f| norm(remesher.mesh.area_vector(f))).sum();
-            area / remesher.sizing.at(v).powi(2)
-        })
-        .collect();
-    let targets: Vec<Option<(Point, u32)>> = (0..n)
-        .into_par_iter()
-        .map(|v| if progress.is_stopping() { None } else { target(remesher, &weights, v) })
-        .collect();
+    let weights = memory::joined((0..n).into_par_iter().map(|v| {
+        let area: f64 = remesher.mesh.faces_of(v).iter().map(|&f| norm(remesher.mesh.area_vector(f))).sum();
+        area / remesher.sizing.at(v).powi(2)
+    }))?;
+    let target_of = |v| if progress.is_stopping() { None } else { target(remesher, &weights, v) };
+    let targets = memory::joined((0..n).into_par_iter().map(target_of))?;
     for (v, target) in (0..n).zip(targets) {
         if progress.is_stopping() {
-            return;
+            break;
         }
         let Some((target, near)) = target else { continue };
         let start = remesher.mesh.position(v);
@@ -38,6 +33,7 @@ pub(crate) fn relax_and_project(remesher: &mut Remesher, progress: &Progress) {
             remesher.near[v as usize] = near;
         }
     }
+    Ok(())
 }
 
 /// Where `v` should go, and the triangle of the surface there.

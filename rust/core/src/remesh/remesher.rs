@@ -2,11 +2,13 @@
 
 use rayon::prelude::*;
 
+use crate::memory;
 use crate::mesh::vector::{area_vector, between, distance, dot, unit, Point};
 use crate::remesh::closest::ClosestPoint;
 use crate::remesh::curves::{Curves, Keep, Role};
 use crate::remesh::sizing::Sizing;
 use crate::remesh::{guard, EditableMesh};
+use crate::Result;
 
 /// A surface to stay on: triangles, their normals, and a tree to find the closest.
 #[derive(Debug)]
@@ -17,10 +19,10 @@ pub(crate) struct Reference {
 
 impl Reference {
     /// The surface that `mesh` is now.
-    pub(crate) fn of(mesh: &EditableMesh) -> Self {
-        let triangles: Vec<[Point; 3]> = mesh.faces().map(|(_, face)| mesh.corners(face)).collect();
-        let normals = triangles.par_iter().map(|&t| unit(area_vector(t))).collect();
-        Self { tree: ClosestPoint::new(triangles), normals }
+    pub(crate) fn of(mesh: &EditableMesh) -> Result<Self> {
+        let triangles = memory::sifted(mesh.faces().map(|(_, face)| mesh.corners(face)))?;
+        let normals = memory::joined(triangles.par_iter().map(|&t| unit(area_vector(t))))?;
+        Ok(Self { tree: ClosestPoint::new(triangles)?, normals })
     }
 
     /// The closest point and its triangle; on the side that looks along `normal` if there is one, so that the
@@ -53,12 +55,12 @@ impl<'a> Remesher<'a> {
         mesh: EditableMesh,
         surface: &'a Reference,
         keep: &Keep,
-        make_sizing: impl Fn(&EditableMesh, &Curves) -> Sizing,
-    ) -> Self {
-        let (curves, roles) = Curves::new(&mesh, keep);
-        let near = vec![0; mesh.n_vertices()];
-        let sizing = make_sizing(&mesh, &curves);
-        Self { mesh, surface, curves, roles, near, sizing }
+        make_sizing: impl Fn(&EditableMesh, &Curves) -> Result<Sizing>,
+    ) -> Result<Self> {
+        let (curves, roles) = Curves::new(&mesh, keep)?;
+        let near = memory::repeated(0, mesh.n_vertices())?;
+        let sizing = make_sizing(&mesh, &curves)?;
+        Ok(Self { mesh, surface, curves, roles, near, sizing })
     }
 
     /// Whether the vertex may move.
@@ -78,18 +80,20 @@ impl<'a> Remesher<'a> {
     }
 
     /// Splits the edge in the middle, on its curve if it is on one.
-    pub(crate) fn split(&mut self, a: u32, b: u32) {
+    pub(crate) fn split(&mut self, a: u32, b: u32) -> Result<()> {
         let middle = between(self.mesh.position(a), self.mesh.position(b), 0.5);
         if middle == self.mesh.position(a) || middle == self.mesh.position(b) {
             // Coordinates have no room for a point between.
-            return;
+            return Ok(());
         }
         let curve = if self.is_free(a, b) { None } else { self.curves.curve(a, b) };
-        let Some(new) = self.mesh.split(a, b, middle) else { return };
-        self.near.push(self.near[a as usize]);
-        self.sizing.push_between(a, b);
+        let Some(new) = self.mesh.split(a, b, middle)? else { return Ok(()) };
+        let near = self.near[a as usize];
+        memory::push(&mut self.near, near)?;
+        memory::extend(&mut self.roles, 1)?;
+        self.sizing.push_between(a, b)?;
         if let Some(curve) = curve {
-            self.curves.replace([a, b], &[[a, new], [new, b]], curve);
+            self.curves.replace([a, b], &[[a, new], [new, b]], curve)?;
             self.roles.push(Role::Curve(curve));
             let on_curve = self.curves.project(curve, middle);
             if guard::may_move(&self.mesh, new, on_curve) {
@@ -98,6 +102,7 @@ impl<'a> Remesher<'a> {
         } else {
             self.roles.push(Role::Free);
         }
+        Ok(())
     }
 
     /// Which way the edge may collapse: from, to, and where the vertex that is left goes.
@@ -123,15 +128,15 @@ impl<'a> Remesher<'a> {
 
     /// Collapses the edge if nothing speaks against it: the roles of its ends, the guard, or an edge longer
     /// than `longest` times its target length. Returns whether it did.
-    pub(crate) fn collapse(&mut self, a: u32, b: u32, longest: f64) -> bool {
-        let Some((from, to, position)) = self.collapse_plan(a, b) else { return false };
+    pub(crate) fn collapse(&mut self, a: u32, b: u32, longest: f64) -> Result<bool> {
+        let Some((from, to, position)) = self.collapse_plan(a, b) else { return Ok(false) };
         let around = self.mesh.neighbors(from);
         let too_long =
             |w: u32| distance(position, self.mesh.position(w)) > longest * self.sizing.target(to, w);
         // The edges of a hub stay as long as they are.
         let around_to = if self.mesh.is_hub(to) { Vec::new() } else { self.mesh.neighbors(to) };
         if around.iter().chain(&around_to).any(|&w| w != from && w != to && too_long(w)) {
-            return false;
+            return Ok(false);
         }
         let carried: Vec<(u32, u32)> = if self.roles[from as usize] == Role::Free {
             Vec::new()
@@ -143,14 +148,14 @@ impl<'a> Remesher<'a> {
                 .collect()
         };
         if carried.iter().any(|&(w, _)| self.curves.curve(to, w).is_some() || self.curves.is_locked(to, w)) {
-            return false;
+            return Ok(false);
         }
         if !guard::may_collapse(&self.mesh, from, to, position) || !self.mesh.collapse(from, to, position) {
-            return false;
+            return Ok(false);
         }
         for (w, curve) in carried {
-            self.curves.replace([from, w], &[[to, w]], curve);
+            self.curves.replace([from, w], &[[to, w]], curve)?;
         }
-        true
+        Ok(true)
     }
 }

@@ -1,6 +1,8 @@
 //! Faces within rings of a vertex, without sorting or allocating for each one.
 
+use crate::memory;
 use crate::remesh::EditableMesh;
+use crate::Result;
 
 /// Memory for many searches on one mesh, which must not change between them.
 #[derive(Debug)]
@@ -17,10 +19,14 @@ pub struct Rings<'a> {
 
 impl<'a> Rings<'a> {
     /// For searches on `mesh`.
-    #[must_use]
-    pub fn new(mesh: &'a EditableMesh) -> Self {
-        let (face_met, vertex_met) = (vec![0; mesh.n_faces()], vec![0; mesh.n_vertices()]);
-        Self { mesh, face_met, vertex_met, search: 0, front: Vec::new(), next: Vec::new(), faces: Vec::new() }
+    ///
+    /// # Errors
+    /// [`crate::error::SolveError::Memory`].
+    pub fn new(mesh: &'a EditableMesh) -> Result<Self> {
+        let face_met = memory::repeated(0, mesh.n_faces())?;
+        let vertex_met = memory::repeated(0, mesh.n_vertices())?;
+        let [front, next, faces] = [(); 3].map(|()| Vec::new());
+        Ok(Self { mesh, face_met, vertex_met, search: 0, front, next, faces })
     }
 
     /// The faces with a vertex at most `rings - 1` edges away from `v`, ascending.

@@ -3,10 +3,12 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use crate::memory;
 use crate::mesh::vector::distance;
 use crate::ordered::Ordered;
 use crate::remesh::curves::Curves;
 use crate::remesh::EditableMesh;
+use crate::Result;
 
 /// Sweeps that spread the sizes of the rim over the patch, in every update: they start from the last ones.
 const SWEEPS: usize = 20;
@@ -46,40 +48,47 @@ pub(crate) struct Sizing {
 impl Sizing {
     /// The same length everywhere, but where a locked edge is longer: next to it, edges shorter than half of
     /// it could only make slivers. `growth` is added for every unit of distance from the locked edges.
-    pub(crate) fn uniform(length: f64, growth: f64, mesh: &EditableMesh, curves: &Curves) -> Self {
-        let mut anchors = vec![None; mesh.n_vertices()];
-        for [a, b] in curves.locked_edges() {
+    pub(crate) fn uniform(length: f64, growth: f64, mesh: &EditableMesh, curves: &Curves) -> Result<Self> {
+        let mut anchors = memory::repeated(None, mesh.n_vertices())?;
+        for [a, b] in curves.locked_edges()? {
             let locked = distance(mesh.position(a), mesh.position(b));
             for v in [a, b] {
                 let anchor: &mut Option<f64> = &mut anchors[v as usize];
                 *anchor = Some(anchor.unwrap_or(length).max(locked));
             }
         }
-        let sizes = anchors.iter().map(|anchor| anchor.unwrap_or(length)).collect();
-        Self { sizes, anchors, uniform: Some(length), growth }
+        let sizes = memory::gathered(anchors.iter().map(|anchor| anchor.unwrap_or(length)))?;
+        Ok(Self { sizes, anchors, uniform: Some(length), growth })
     }
 
     /// The lengths of the locked edges, their mean at each vertex, spread smoothly, and `growth` for every
     /// unit of distance from them. `sizes` are the first targets; those at locked edges are not used.
-    pub(crate) fn graded(sizes: Vec<f64>, growth: f64, mesh: &EditableMesh, curves: &Curves) -> Self {
-        let mut sums = vec![(0.0, 0.0); mesh.n_vertices()];
-        for [a, b] in curves.locked_edges() {
+    pub(crate) fn graded(
+        mut sizes: Vec<f64>,
+        growth: f64,
+        mesh: &EditableMesh,
+        curves: &Curves,
+    ) -> Result<Self> {
+        let mut sums = memory::repeated((0.0, 0.0), mesh.n_vertices())?;
+        for [a, b] in curves.locked_edges()? {
             for v in [a, b] {
                 sums[v as usize].0 += distance(mesh.position(a), mesh.position(b));
                 sums[v as usize].1 += 1.0;
             }
         }
-        let anchors: Vec<_> = sums.iter().map(|&(sum, count)| (count > 0.0).then(|| sum / count)).collect();
-        let sizes = sizes.into_iter().zip(&anchors).map(|(size, anchor)| anchor.unwrap_or(size)).collect();
-        Self { sizes, anchors, uniform: None, growth }
+        let mean = |&(sum, count): &(f64, f64)| (count > 0.0).then(|| sum / count);
+        let anchors = memory::gathered(sums.iter().map(mean))?;
+        sizes.iter_mut().zip(&anchors).for_each(|(size, anchor)| *size = anchor.unwrap_or(*size));
+        Ok(Self { sizes, anchors, uniform: None, growth })
     }
 
     /// [`Sizing::graded`] with first targets that grow from `length` at the locked edges.
-    pub(crate) fn grown(length: f64, growth: f64, mesh: &EditableMesh, curves: &Curves) -> Self {
-        let mut sizing = Self::graded(vec![length; mesh.n_vertices()], growth, mesh, curves);
-        let far = sizing.distances(mesh, &neighbors(mesh));
+    pub(crate) fn grown(length: f64, growth: f64, mesh: &EditableMesh, curves: &Curves) -> Result<Self> {
+        let sizes = memory::repeated(length, mesh.n_vertices())?;
+        let mut sizing = Self::graded(sizes, growth, mesh, curves)?;
+        let far = sizing.distances(mesh, &neighbors(mesh)?)?;
         sizing.sizes.iter_mut().zip(far).for_each(|(size, far)| *size += growth * far);
-        sizing
+        Ok(sizing)
     }
 
     /// The target at the edge.
@@ -93,21 +102,22 @@ impl Sizing {
     }
 
     /// A new vertex between two.
-    pub(crate) fn push_between(&mut self, a: u32, b: u32) {
-        self.sizes.push(self.target(a, b));
-        self.anchors.push(None);
+    pub(crate) fn push_between(&mut self, a: u32, b: u32) -> Result<()> {
+        let target = self.target(a, b);
+        memory::push(&mut self.sizes, target)?;
+        Ok(memory::push(&mut self.anchors, None)?)
     }
 
     /// Spreads the sizes over the mesh as it is now.
-    pub(crate) fn update(&mut self, mesh: &EditableMesh) {
-        let neighbors: Vec<Vec<u32>> = if self.uniform.is_none() || self.growth > 0.0 {
-            neighbors(mesh)
+    pub(crate) fn update(&mut self, mesh: &EditableMesh) -> Result<()> {
+        let neighbors = if self.uniform.is_none() || self.growth > 0.0 {
+            neighbors(mesh)?
         } else {
-            vec![Vec::new(); mesh.n_vertices()]
+            memory::repeated(Vec::new(), mesh.n_vertices())?
         };
-        let far = self.distances(mesh, &neighbors);
-        let mut base: Vec<f64> = match self.uniform {
-            Some(length) => vec![length; far.len()],
+        let far = self.distances(mesh, &neighbors)?;
+        let mut base = match self.uniform {
+            Some(length) => memory::repeated(length, far.len())?,
             None => {
                 // Without their growth sizes are means of the anchors';
                 // distances along edges can be too long for that.
@@ -120,7 +130,7 @@ impl Sizing {
                         base
                     }
                 };
-                self.sizes.iter().zip(&far).map(base).collect()
+                memory::gathered(self.sizes.iter().zip(&far).map(base))?
             }
         };
         for (size, anchor) in base.iter_mut().zip(&self.anchors) {
@@ -129,7 +139,8 @@ impl Sizing {
         if self.uniform.is_none() {
             self.spread(&mut base, &neighbors);
         }
-        self.sizes = base.iter().zip(&far).map(|(size, d)| size + self.growth * d).collect();
+        self.sizes = memory::gathered(base.iter().zip(&far).map(|(size, d)| size + self.growth * d))?;
+        Ok(())
     }
 
     /// The least and the largest length at anchors; the other way round if there are none.
@@ -149,12 +160,12 @@ impl Sizing {
     }
 
     /// The distance along edges from the nearest anchor (Dijkstra 1959); 0 everywhere if nothing grows.
-    fn distances(&self, mesh: &EditableMesh, neighbors: &[Vec<u32>]) -> Vec<f64> {
-        let mut far = vec![0.0; neighbors.len()];
+    fn distances(&self, mesh: &EditableMesh, neighbors: &[Vec<u32>]) -> Result<Vec<f64>> {
+        let mut far = memory::repeated(0.0, neighbors.len())?;
         if self.growth == 0.0 {
-            return far;
+            return Ok(far);
         }
-        let mut heap = BinaryHeap::new();
+        let mut heap = BinaryHeap::from(memory::room(neighbors.len())?);
         for v in 0..far.len() {
             if self.anchors[v].is_some() {
                 heap.push(Reverse((Ordered(0.0), v as u32)));
@@ -170,16 +181,19 @@ impl Sizing {
                 let through = d + distance(mesh.position(v), mesh.position(w));
                 if through < far[w as usize] {
                     far[w as usize] = through;
+                    memory::extend_heap(&mut heap, 1)?;
                     heap.push(Reverse((Ordered(through), w)));
                 }
             }
         }
         far.iter_mut().filter(|d| !d.is_finite()).for_each(|d| *d = 0.0);
-        far
+        Ok(far)
     }
 }
 
 /// The neighbors of every vertex.
-fn neighbors(mesh: &EditableMesh) -> Vec<Vec<u32>> {
-    (0..mesh.n_vertices() as u32).map(|v| mesh.neighbors(v)).collect()
+fn neighbors(mesh: &EditableMesh) -> Result<Vec<Vec<u32>>> {
+    let mut all = memory::room(mesh.n_vertices())?;
+    all.extend((0..mesh.n_vertices() as u32).map(|v| mesh.neighbors(v)));
+    Ok(all)
 }

@@ -1,7 +1,8 @@
 //! Splitting long edges.
 
+use crate::memory;
 use crate::remesh::remesher::Remesher;
-use crate::Progress;
+use crate::{Progress, Result};
 
 /// Edges longer than this times their target are split: each half is then as far below the target as the
 /// whole was above it (Botsch and Kobbelt 2004).
@@ -14,27 +15,24 @@ const ROUNDS: usize = 10;
 ///
 /// At most `most` faces are added, the longest edges first: what then is still long was asked to be shorter
 /// than the surface has room for.
-pub(crate) fn split_long_edges(remesher: &mut Remesher, most: usize, progress: &Progress) {
+pub(crate) fn split_long_edges(remesher: &mut Remesher, most: usize, progress: &Progress) -> Result<()> {
     let limit = remesher.mesh.n_faces().saturating_add(most);
     for _ in 0..ROUNDS {
-        let mut long: Vec<(f64, [u32; 2])> = remesher
-            .mesh
-            .edges()
-            .into_iter()
-            .map(|[a, b]| (remesher.length(a, b), [a, b]))
-            .filter(|&(length, [a, b])| {
-                length > LONG * remesher.sizing.target(a, b) && !remesher.curves.is_locked(a, b)
-            })
-            .collect();
+        let edges = remesher.mesh.edges()?.into_iter();
+        let is_long = |&(length, [a, b]): &(f64, [u32; 2])| {
+            length > LONG * remesher.sizing.target(a, b) && !remesher.curves.is_locked(a, b)
+        };
+        let mut long = memory::sifted(edges.map(|[a, b]| (remesher.length(a, b), [a, b])).filter(is_long))?;
         if long.is_empty() {
-            return;
+            return Ok(());
         }
         long.sort_unstable_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
         for (_, [a, b]) in long {
             if remesher.mesh.n_faces() >= limit || progress.is_stopping() {
-                return;
+                return Ok(());
             }
-            remesher.split(a, b);
+            remesher.split(a, b)?;
         }
     }
+    Ok(())
 }

@@ -1,6 +1,7 @@
 //! The edges between regions, chained into curves.
 
 use crate::mesh::{Connectivity, EdgeKind, EdgeTable};
+use crate::{memory, Result};
 
 /// An edge of a curve with the regions on its sides: nothing beyond the rim of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,7 +34,7 @@ pub(super) fn border_edges(
     table: &EdgeTable,
     labels: &[i32],
     rims: bool,
-) -> Vec<CurveEdge> {
+) -> Result<Vec<CurveEdge>> {
     let mut edges = Vec::new();
     for edge in table.edges() {
         let label = |h: usize| labels[h / 3];
@@ -41,30 +42,33 @@ pub(super) fn border_edges(
         let Some(other) = edge.clone().find(|&h| label(h) != label(first)) else {
             if rims && connectivity.kind(first) == EdgeKind::Boundary {
                 let ends = [connectivity.tail(first), connectivity.head(first)];
-                edges.push(CurveEdge { ends, regions: [Some(label(first)), None] });
+                memory::push(&mut edges, CurveEdge { ends, regions: [Some(label(first)), None] })?;
             }
             continue;
         };
         let (tail, head) = (connectivity.tail(first), connectivity.head(first));
         let ends = if label(first) < label(other) { [tail, head] } else { [head, tail] };
         let regions = [Some(label(first).min(label(other))), Some(label(first).max(label(other)))];
-        edges.push(CurveEdge { ends, regions });
+        memory::push(&mut edges, CurveEdge { ends, regions })?;
     }
-    edges
+    Ok(edges)
 }
 
 /// The edges in the order of their curves, and where each curve starts in them, with their number last.
 ///
 /// A curve runs between two regions, the same on each side all along, and ends where another curve meets it
 /// or at the rim of the mesh. Closed curves come last.
-pub(super) fn chain(connectivity: &Connectivity, edges: &[CurveEdge]) -> (Vec<CurveEdge>, Vec<usize>) {
-    let stops = stops(connectivity, edges);
-    let mut leaving = vec![None; connectivity.n_vertices()];
+pub(super) fn chain(
+    connectivity: &Connectivity,
+    edges: &[CurveEdge],
+) -> Result<(Vec<CurveEdge>, Vec<usize>)> {
+    let stops = stops(connectivity, edges)?;
+    let mut leaving = memory::repeated(None, connectivity.n_vertices())?;
     for (e, edge) in edges.iter().enumerate().filter(|(_, edge)| !stops[edge.ends[0] as usize]) {
         leaving[edge.ends[0] as usize] = Some(e);
     }
-    let mut used = vec![false; edges.len()];
-    let (mut chained, mut starts) = (Vec::with_capacity(edges.len()), vec![0]);
+    let mut used = memory::repeated(false, edges.len())?;
+    let (mut chained, mut starts) = (memory::room(edges.len())?, vec![0]);
     let opens = (0..edges.len()).filter(|&e| stops[edges[e].ends[0] as usize]);
     for first in opens.chain(0..edges.len()) {
         let mut at = Some(first);
@@ -74,22 +78,22 @@ pub(super) fn chain(connectivity: &Connectivity, edges: &[CurveEdge]) -> (Vec<Cu
             at = leaving[edges[e].ends[1] as usize];
         }
         if starts.last() != Some(&chained.len()) {
-            starts.push(chained.len());
+            memory::push(&mut starts, chained.len())?;
         }
     }
-    (chained, starts)
+    Ok((chained, starts))
 }
 
 /// The vertices where curves end.
-fn stops(connectivity: &Connectivity, edges: &[CurveEdge]) -> Vec<bool> {
+fn stops(connectivity: &Connectivity, edges: &[CurveEdge]) -> Result<Vec<bool>> {
     let n = connectivity.n_vertices();
-    let mut rim = vec![false; n];
+    let mut rim = memory::repeated(false, n)?;
     for h in (0..connectivity.n_halfedges()).filter(|&h| connectivity.kind(h) == EdgeKind::Boundary) {
         rim[connectivity.tail(h) as usize] = true;
         rim[connectivity.head(h) as usize] = true;
     }
-    let mut passing: Vec<[Option<CurveEdge>; 2]> = vec![[None; 2]; n];
-    let mut stops = vec![false; n];
+    let mut passing: Vec<[Option<CurveEdge>; 2]> = memory::repeated([None; 2], n)?;
+    let mut stops = memory::repeated(false, n)?;
     for edge in edges {
         for (v, slot) in edge.ends.into_iter().zip([1, 0]) {
             let place = &mut passing[v as usize][slot];
@@ -100,5 +104,5 @@ fn stops(connectivity: &Connectivity, edges: &[CurveEdge]) -> Vec<bool> {
     for (stop, passing) in stops.iter_mut().zip(passing) {
         *stop |= passing[0].map(|edge| edge.regions) != passing[1].map(|edge| edge.regions);
     }
-    stops
+    Ok(stops)
 }

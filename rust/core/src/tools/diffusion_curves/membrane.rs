@@ -29,9 +29,9 @@ impl Membrane {
     /// Springborn 2007), weights under [`LEAST_WEIGHT`] raised to it.
     pub(super) fn new(cut: &CutMesh, lengths: &[[f64; 3]]) -> Result<Self> {
         let n = cut.n_copies();
-        let connectivity = Connectivity::new(cut.faces.clone(), n)?;
+        let connectivity = Connectivity::new(memory::twin(&cut.faces)?, n)?;
         let mass = voronoi_mass(&connectivity, lengths)?;
-        let mut lengths = lengths.to_vec();
+        let mut lengths = memory::twin(lengths)?;
         mollify(&connectivity, &mut lengths);
         let (connectivity, lengths, _) = delaunay_flips(&connectivity, &lengths);
         let mut laplacian = cotangent_laplacian(&connectivity, &lengths)?;
@@ -56,7 +56,10 @@ impl Membrane {
 
     /// `L` plus a diagonal on the rows for which `free` holds, factored.
     fn factorize(&self, free: &[u32], index: &[u32], diagonal: impl Fn(usize) -> f64) -> Result<Cholesky> {
-        let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+        let mut starts = memory::room(free.len() + 1)?;
+        starts.push(0);
+        let most = free.len() + self.laplacian.nnz() / 2;
+        let (mut rows, mut values) = (memory::room(most)?, memory::room(most)?);
         for (j, &v) in free.iter().enumerate() {
             rows.push(j);
             let place = values.len();
@@ -84,7 +87,7 @@ impl Membrane {
     /// `argmin uᵀ L u + Σ_i a_i (u_i − t_i)²`, column by column (Rowe et al. 2024, eq. (27)); every piece of
     /// the surface needs a positive weight `a`.
     pub(super) fn screened(&self, weights: &[f64], target: &Columns, progress: &Progress) -> Result<Columns> {
-        let all: Vec<u32> = (0..weights.len() as u32).collect();
+        let all = memory::sifted(0..weights.len() as u32)?;
         let mut cholesky = self.factorize(&all, &all, |v| weights[v])?;
         let mut values = target.clone();
         for c in 0..values.n_columns {
@@ -108,8 +111,8 @@ pub(super) struct Harmonic<'a> {
 impl<'a> Harmonic<'a> {
     /// Factors the Laplacian of the copies that are not `fixed`; every piece needs a fixed copy.
     pub(super) fn new(membrane: &'a Membrane, fixed: &[bool]) -> Result<Self> {
-        let free: Vec<u32> = (0..fixed.len()).filter(|&v| !fixed[v]).map(|v| v as u32).collect();
-        let mut index = vec![FIXED; fixed.len()];
+        let free = memory::sifted((0..fixed.len()).filter(|&v| !fixed[v]).map(|v| v as u32))?;
+        let mut index = memory::repeated(FIXED, fixed.len())?;
         (0..).zip(&free).for_each(|(i, &v)| index[v as usize] = i);
         let cholesky =
             if free.is_empty() { None } else { Some(membrane.factorize(&free, &index, |_| 0.0)?) };

@@ -32,7 +32,7 @@ pub use trace::{trace_curves, TracedCurve};
 use super::options::check_range;
 use crate::error::MeshError;
 use crate::linear::Columns;
-use crate::memory::Tool;
+use crate::memory::{self, Tool};
 use crate::mesh::{triangle, CutMesh, EdgeTable, Mesh};
 use crate::operators::voronoi_mass;
 use crate::progress::{Progress, Report};
@@ -142,11 +142,11 @@ fn in_their_unit(
         progress.check()
     };
     report("borders", 0.0)?;
-    let table = EdgeTable::new(connectivity);
-    let (edges, starts) = chain(connectivity, &border_edges(connectivity, &table, labels, options.rims));
-    let mut flags = vec![false; connectivity.n_halfedges()];
+    let table = EdgeTable::new(connectivity)?;
+    let (edges, starts) = chain(connectivity, &border_edges(connectivity, &table, labels, options.rims)?)?;
+    let mut flags = memory::repeated(false, connectivity.n_halfedges())?;
     edges.iter().flat_map(|edge| table.between(edge.ends[0], edge.ends[1])).for_each(|h| flags[h] = true);
-    let cut = CutMesh::new(connectivity, &table, &flags);
+    let cut = CutMesh::new(connectivity, &table, &flags)?;
     let membrane = Membrane::new(&cut, mesh.edge_lengths())?;
 
     report("fitting colors", 0.1)?;

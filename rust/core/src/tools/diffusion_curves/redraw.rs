@@ -70,8 +70,8 @@ pub fn redraw(
     }
     let mesh = mesh.measured(mesh.unit())?;
     progress.report(Report { stage: "diffusing".into(), ..Report::default() });
-    let table = EdgeTable::new(connectivity);
-    let cut = CutMesh::new(connectivity, &table, &curves.cuts(connectivity, &table)?);
+    let table = EdgeTable::new(connectivity)?;
+    let cut = CutMesh::new(connectivity, &table, &curves.cuts(connectivity, &table)?)?;
     let membrane = Membrane::new(&cut, mesh.edge_lengths())?;
     let conditions = Conditions::new(connectivity, &table, &cut, curves);
     conditions.check(&cut)?;

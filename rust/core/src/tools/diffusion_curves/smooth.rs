@@ -3,7 +3,7 @@
 use super::chains::border_edges;
 use super::constants::{FARTHEST, SMOOTH_STEPS};
 use crate::error::MeshError;
-use crate::memory::Tool;
+use crate::memory::{self, Tool};
 use crate::mesh::vector::{add, distance, scale, sub, Point};
 use crate::mesh::{EdgeTable, Mesh};
 use crate::remesh::closest::ClosestPoint;
@@ -32,17 +32,17 @@ pub fn smooth_curves(mesh: &Mesh, edges: &[[u32; 2]]) -> Result<Vec<[Point; 2]>>
         ));
     }
     mesh.demand(Tool::Curves).admit(None)?;
-    let mut around = vec![Vec::new(); positions.len()];
+    let mut around = memory::repeated(Vec::new(), positions.len())?;
     for &[a, b] in edges.iter().filter(|[a, b]| a != b) {
         around[a as usize].push(b);
         around[b as usize].push(a);
     }
-    let mut fixed = vec![false; positions.len()];
-    let table = EdgeTable::new(connectivity);
-    let rims = border_edges(connectivity, &table, &vec![0; connectivity.n_faces()], true);
+    let mut fixed = memory::repeated(false, positions.len())?;
+    let table = EdgeTable::new(connectivity)?;
+    let rims = border_edges(connectivity, &table, &memory::repeated(0, connectivity.n_faces())?, true)?;
     rims.iter().flat_map(|edge| edge.ends).for_each(|v| fixed[v as usize] = true);
-    let moving: Vec<u32> =
-        (0..positions.len() as u32).filter(|&v| around[v as usize].len() > 1 && !fixed[v as usize]).collect();
+    let is_moving = |&v: &u32| around[v as usize].len() > 1 && !fixed[v as usize];
+    let moving = memory::sifted((0..positions.len() as u32).filter(is_moving))?;
     let mean = |v: u32, value: &dyn Fn(u32) -> Point| {
         let others = &around[v as usize];
         let sum = others.iter().map(|&u| value(u)).fold([0.0; 3], add);
@@ -53,29 +53,26 @@ pub fn smooth_curves(mesh: &Mesh, edges: &[[u32; 2]]) -> Result<Vec<[Point; 2]>>
             around[v as usize].iter().map(|&u| distance(positions[u as usize], positions[v as usize]));
         FARTHEST * lengths.sum::<f64>() / around[v as usize].len() as f64
     };
-    let mut places = positions.to_vec();
+    let mut places = memory::twin(positions)?;
     for _ in 0..SMOOTH_STEPS {
-        let next: Vec<Point> = moving
-            .iter()
-            .map(|&v| {
-                let (here, home) = (places[v as usize], positions[v as usize]);
-                let away = sub(scale(add(here, mean(v, &|u| places[u as usize])), 0.5), home);
-                let (far, most) = (distance(away, [0.0; 3]), reach(v));
-                add(home, scale(away, if far > most { most / far } else { 1.0 }))
-            })
-            .collect();
+        let next = memory::gathered(moving.iter().map(|&v| {
+            let (here, home) = (places[v as usize], positions[v as usize]);
+            let away = sub(scale(add(here, mean(v, &|u| places[u as usize])), 0.5), home);
+            let (far, most) = (distance(away, [0.0; 3]), reach(v));
+            add(home, scale(away, if far > most { most / far } else { 1.0 }))
+        }))?;
         moving.iter().zip(next).for_each(|(&v, place)| places[v as usize] = place);
     }
     if !moving.is_empty() {
         let corners = connectivity.faces().iter().map(|face| face.map(|v| positions[v as usize]));
-        let tree = ClosestPoint::new(corners.collect());
+        let tree = ClosestPoint::new(memory::gathered(corners)?)?;
         for v in moving {
             let place = &mut places[v as usize];
             *place = tree.closest(*place, None, |_| true).map_or(*place, |closest| closest.point);
         }
     }
     unit.restore_points(&mut places, positions, original);
-    Ok(edges.iter().map(|edge| edge.map(|v| places[v as usize])).collect())
+    Ok(memory::gathered(edges.iter().map(|edge| edge.map(|v| places[v as usize])))?)
 }
 
 #[cfg(test)]
@@ -108,9 +105,12 @@ mod tests {
             .iter()
             .map(|face| i32::from(face.iter().map(|&v| shape.vertices[v as usize][2]).sum::<f64>() > 0.3))
             .collect();
-        let table = EdgeTable::new(mesh.connectivity());
-        let edges: Vec<[u32; 2]> =
-            border_edges(mesh.connectivity(), &table, &labels, false).iter().map(|edge| edge.ends).collect();
+        let table = EdgeTable::new(mesh.connectivity()).unwrap();
+        let edges: Vec<[u32; 2]> = border_edges(mesh.connectivity(), &table, &labels, false)
+            .unwrap()
+            .iter()
+            .map(|edge| edge.ends)
+            .collect();
         let places = smooth_curves(&mesh, &edges).unwrap();
         let length = |at: &dyn Fn(usize, usize) -> Point| {
             (0..edges.len()).map(|e| distance(at(e, 0), at(e, 1))).sum::<f64>()

@@ -7,7 +7,7 @@ use super::membrane::Membrane;
 use crate::linear::Columns;
 use crate::mesh::{triangle, CutMesh, EdgeTable, Mesh};
 use crate::progress::Progress;
-use crate::Result;
+use crate::{memory, Result};
 
 /// A painted surface whose regions are looked for.
 #[derive(Clone, Copy)]
@@ -50,11 +50,11 @@ impl Paint<'_> {
     pub(super) fn sort(&self, labels: &[i32]) -> Result<Sorted> {
         let connectivity = self.mesh.connectivity();
         let area: f64 = self.mesh.edge_lengths().iter().map(|&l| triangle::area(l)).sum();
-        let table = EdgeTable::new(connectivity);
-        let mut flags = vec![false; connectivity.n_halfedges()];
-        let edges = border_edges(connectivity, &table, labels, false);
+        let table = EdgeTable::new(connectivity)?;
+        let mut flags = memory::repeated(false, connectivity.n_halfedges())?;
+        let edges = border_edges(connectivity, &table, labels, false)?;
         edges.iter().flat_map(|edge| table.between(edge.ends[0], edge.ends[1])).for_each(|h| flags[h] = true);
-        let cut = CutMesh::new(connectivity, &table, &flags);
+        let cut = CutMesh::new(connectivity, &table, &flags)?;
         let membrane = Membrane::new(&cut, self.mesh.edge_lengths())?;
         let fidelity = self.fidelity.min(BROAD) / area;
         let task = Task { cut: &cut, membrane: &membrane, colors: self.colors, fidelity };

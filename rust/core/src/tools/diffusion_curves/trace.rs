@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 
 use crate::buckets::Buckets;
 use crate::error::MeshError;
-use crate::memory::Tool;
+use crate::memory::{self, Tool};
 use crate::mesh::vector::{add, distance, scale, Point};
 use crate::mesh::{Connectivity, EdgeTable, Mesh};
 use crate::ordered::Ordered;
@@ -48,13 +48,14 @@ pub fn trace_curves(mesh: &Mesh, curves: &[(Vec<Point>, bool)]) -> Result<Vec<Tr
         return trace_curves(mesh.measured(unit)?.as_ref(), &curves.iter().map(measured).collect::<Vec<_>>());
     }
     let faces = connectivity.faces();
-    let tree = ClosestPoint::new(faces.iter().map(|face| face.map(|v| positions[v as usize])).collect());
+    let places = faces.iter().map(|face| face.map(|v| positions[v as usize]));
+    let tree = ClosestPoint::new(memory::gathered(places)?)?;
     let snapped = |p: Point| {
         let face = faces[tree.closest(p, None, |_| true)?.triangle as usize];
         let away = |v: u32| distance(positions[v as usize], p);
         face.into_iter().min_by(|&a, &b| away(a).total_cmp(&away(b)).then(a.cmp(&b)))
     };
-    let mut search = Search::new(connectivity, positions);
+    let mut search = Search::new(connectivity, positions)?;
     let mut row = 0;
     curves
         .iter()
@@ -67,7 +68,7 @@ pub fn trace_curves(mesh: &Mesh, curves: &[(Vec<Point>, bool)]) -> Result<Vec<Tr
                     format!("row {} is not finite; every number must be", first + i),
                 ));
             }
-            let vertices: Vec<u32> = points.iter().filter_map(|&p| snapped(p)).collect();
+            let vertices = memory::sifted(points.iter().filter_map(|&p| snapped(p)))?;
             search.curve(points, &vertices, *closed, first)
         })
         .collect()
@@ -84,20 +85,21 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(connectivity: &Connectivity, positions: &'a [Point]) -> Self {
-        let table = EdgeTable::new(connectivity);
+    fn new(connectivity: &Connectivity, positions: &'a [Point]) -> Result<Self> {
+        let table = EdgeTable::new(connectivity)?;
         let ends = |h: usize| [connectivity.tail(h), connectivity.head(h)];
-        let edges: Vec<[u32; 2]> = table.edges().filter_map(|mut edge| edge.next()).map(ends).collect();
-        let neighbors = Buckets::new(positions.len(), |visit| {
+        let edges = memory::sifted(table.edges().filter_map(|mut edge| edge.next()).map(ends))?;
+        let neighbors = Buckets::try_new(positions.len(), |visit| {
             for &[a, b] in &edges {
                 visit(a as usize, b);
                 visit(b as usize, a);
             }
-        });
+        })?;
         let total: f64 =
             edges.iter().map(|&[a, b]| distance(positions[a as usize], positions[b as usize])).sum();
         let mean_edge = (total / edges.len().max(1) as f64).max(f64::MIN_POSITIVE);
-        Self { positions, neighbors, mean_edge, seen: vec![(0, 0.0, 0); positions.len()], stamp: 0 }
+        let seen = memory::repeated((0, 0.0, 0), positions.len())?;
+        Ok(Self { positions, neighbors, mean_edge, seen, stamp: 0 })
     }
 
     /// The path over `vertices`, which stand for `points`; `first` is the row of the first point.
@@ -110,21 +112,21 @@ impl<'a> Search<'a> {
     ) -> Result<TracedCurve> {
         let mut traced = TracedCurve::default();
         let Some(&start) = vertices.first() else { return Ok(traced) };
-        traced.push(start, 0.0);
+        traced.push(start, 0.0)?;
         let n = vertices.len();
         let spans = if closed && n > 1 { n } else { n - 1 };
         for i in 0..spans {
             let j = (i + 1) % n;
-            let Some(path) = self.path(vertices[i], vertices[j], [points[i], points[j]]) else {
+            let Some(path) = self.path(vertices[i], vertices[j], [points[i], points[j]])? else {
                 let problem = format!("rows {} and {} lie on parts that no edges join", first + i, first + j);
                 return Err(Error::argument("points", problem));
             };
-            let lengths: Vec<f64> = path.windows(2).map(|pair| self.length(pair[0], pair[1])).collect();
+            let lengths = memory::gathered(path.windows(2).map(|pair| self.length(pair[0], pair[1])))?;
             let total = lengths.iter().sum::<f64>().max(f64::MIN_POSITIVE);
             let mut done = 0.0;
             for (&v, length) in path[1..].iter().zip(lengths) {
                 done += length;
-                traced.push(v, i as f64 + (done / total).min(1.0));
+                traced.push(v, i as f64 + (done / total).min(1.0))?;
             }
         }
         if closed {
@@ -138,7 +140,7 @@ impl<'a> Search<'a> {
     }
 
     /// The cheapest path from `from` to `to`, both included; nothing if there is none.
-    fn path(&mut self, from: u32, to: u32, line: [Point; 2]) -> Option<Vec<u32>> {
+    fn path(&mut self, from: u32, to: u32, line: [Point; 2]) -> Result<Option<Vec<u32>>> {
         self.stamp += 1;
         let stamp = self.stamp;
         let mut heap = BinaryHeap::from([Reverse((Ordered(0.0), from))]);
@@ -149,10 +151,10 @@ impl<'a> Search<'a> {
                 let mut v = to;
                 while v != from {
                     v = self.seen[v as usize].2;
-                    path.push(v);
+                    memory::push(&mut path, v)?;
                 }
                 path.reverse();
-                return Some(path);
+                return Ok(Some(path));
             }
             if cost > self.seen[vertex as usize].1 {
                 continue;
@@ -163,11 +165,12 @@ impl<'a> Search<'a> {
                 let held = &mut self.seen[next as usize];
                 if held.0 != stamp || there < held.1 {
                     *held = (stamp, there, vertex);
+                    memory::extend_heap(&mut heap, 1)?;
                     heap.push(Reverse((Ordered(there), next)));
                 }
             }
         }
-        None
+        Ok(None)
     }
 
     fn cost(&self, a: u32, b: u32, line: [Point; 2]) -> f64 {
@@ -179,18 +182,18 @@ impl<'a> Search<'a> {
 
 impl TracedCurve {
     /// Goes on to vertex `v`, or back to it.
-    fn push(&mut self, v: u32, place: f64) {
+    fn push(&mut self, v: u32, place: f64) -> Result<()> {
         let n = self.vertices.len();
         if self.vertices.last() == Some(&v) {
-            return;
+            return Ok(());
         }
         if n >= 2 && self.vertices[n - 2] == v {
             self.vertices.pop();
             self.places.pop();
-            return;
+            return Ok(());
         }
-        self.vertices.push(v);
-        self.places.push(place);
+        memory::push(&mut self.vertices, v)?;
+        Ok(memory::push(&mut self.places, place)?)
     }
 
     /// Takes away what comes twice where a closed path meets its start.
@@ -245,7 +248,7 @@ mod tests {
             .iter()
             .all(|&p| distance(p, closest_on_segment(p, line[0], line[1])) < 0.75 * size));
         let mesh = shapes::grid(8, 8).mesh().unwrap();
-        let table = EdgeTable::new(mesh.connectivity());
+        let table = EdgeTable::new(mesh.connectivity()).unwrap();
         assert!(curve.vertices.windows(2).all(|pair| table.between(pair[0], pair[1]).next().is_some()));
         assert!(curve.places.windows(2).all(|pair| pair[0] < pair[1]));
     }

@@ -2,14 +2,16 @@
 
 use robust::{orient3d, Coord3D};
 
+use crate::memory;
 use crate::mesh::vector::Point;
 use crate::remesh::closest::ClosestPoint;
+use crate::Result;
 
 /// The pairs of triangles, given by corners and places, that cross: an edge of one passes through the inside
 /// of the other. What only touches does not.
-pub(super) fn crossings(triangles: &[[u32; 3]], place: impl Fn(u32) -> Point) -> Vec<[u32; 2]> {
-    let places: Vec<[Point; 3]> = triangles.iter().map(|t| t.map(&place)).collect();
-    let tree = ClosestPoint::new(places.clone());
+pub(super) fn crossings(triangles: &[[u32; 3]], place: impl Fn(u32) -> Point) -> Result<Vec<[u32; 2]>> {
+    let places = memory::gathered(triangles.iter().map(|t| t.map(&place)))?;
+    let tree = ClosestPoint::new(memory::twin(&places)?)?;
     let mut found = Vec::new();
     for (i, triangle) in places.iter().enumerate() {
         let (mut low, mut high) = (triangle[0], triangle[0]);
@@ -26,7 +28,7 @@ pub(super) fn crossings(triangles: &[[u32; 3]], place: impl Fn(u32) -> Point) ->
         });
     }
     found.sort_unstable();
-    found
+    Ok(found)
 }
 
 /// Whether an edge of triangle `i` passes through triangle `j`, from which it starts at no common corner.

@@ -6,8 +6,10 @@ use super::constants::LITTLE;
 use super::faults::Inspection;
 use super::moments::Moments;
 use super::shape::Shape;
+use crate::memory;
 use crate::mesh::vector::{area_vector, centroid, dot, Point};
 use crate::remesh::closest::ClosestPoint;
+use crate::Result;
 
 /// The faces of a mesh, shared out among facets.
 #[derive(Debug)]
@@ -33,19 +35,19 @@ pub(super) struct Distances {
 
 impl Faces {
     /// The faces with these places, each of the facet `labels` names.
-    pub(super) fn new(places: Vec<[Point; 3]>, labels: Vec<u32>, is_held: Vec<bool>) -> Self {
-        let moments: Vec<Moments> = places.iter().map(|&corners| Moments::of(corners)).collect();
+    pub(super) fn new(places: Vec<[Point; 3]>, labels: Vec<u32>, is_held: Vec<bool>) -> Result<Self> {
+        let moments = memory::gathered(places.iter().map(|&corners| Moments::of(corners)))?;
         let area = moments.iter().map(|m| m.area).sum();
-        let tree = ClosestPoint::new(places.clone());
-        Self {
-            centers: places.iter().map(|&corners| centroid(corners)).collect(),
+        let tree = ClosestPoint::new(memory::twin(&places)?)?;
+        Ok(Self {
+            centers: memory::gathered(places.iter().map(|&corners| centroid(corners)))?,
             places,
             moments,
             labels,
             is_held,
             area,
             tree,
-        }
+        })
     }
 
     /// The point of the mesh nearest to another.
@@ -66,32 +68,28 @@ impl Faces {
     }
 
     /// The facet nearest to each face among those that look to the same side, and how far that is.
-    pub(super) fn nearest(&self, shape: &Shape, inspection: &Inspection) -> (Vec<u32>, Distances) {
-        let tree = ClosestPoint::new(inspection.places(shape));
+    pub(super) fn nearest(&self, shape: &Shape, inspection: &Inspection) -> Result<(Vec<u32>, Distances)> {
+        let tree = ClosestPoint::new(inspection.places(shape)?)?;
         let is_like = |k: u32, normal: Point| {
             let facet = &shape.facets[k as usize];
             !facet.is_held && dot(facet.plane.normal, normal) > 0.0
         };
-        let found: Vec<(u32, f64)> = self
-            .places
-            .par_iter()
-            .enumerate()
-            .map(|(f, &corners)| {
-                if self.is_held[f] {
-                    return (self.labels[f], 0.0);
-                }
-                let normal = area_vector(corners);
-                let center = self.centers[f];
-                let accept = |t: u32| is_like(inspection.owners[t as usize], normal);
-                let near = tree.closest(center, None, accept);
-                let label = near.map_or(self.labels[f], |near| inspection.owners[near.triangle as usize]);
-                let guess = near.map(|near| near.triangle);
-                (label, tree.closest(center, guess, |_| true).map_or(0.0, |nearest| nearest.squared))
-            })
-            .collect();
+        let found = memory::joined(self.places.par_iter().enumerate().map(|(f, &corners)| {
+            if self.is_held[f] {
+                return (self.labels[f], 0.0);
+            }
+            let normal = area_vector(corners);
+            let center = self.centers[f];
+            let accept = |t: u32| is_like(inspection.owners[t as usize], normal);
+            let near = tree.closest(center, None, accept);
+            let label = near.map_or(self.labels[f], |near| inspection.owners[near.triangle as usize]);
+            let guess = near.map(|near| near.triangle);
+            (label, tree.closest(center, guess, |_| true).map_or(0.0, |nearest| nearest.squared))
+        }))?;
         let squares: f64 = found.iter().zip(&self.moments).map(|((_, squared), m)| squared * m.area).sum();
         let largest = found.iter().map(|(_, squared)| squared.sqrt()).fold(0.0, f64::max);
         let rms = (squares / self.area.max(f64::MIN_POSITIVE)).sqrt();
-        (found.into_iter().map(|(label, _)| label).collect(), Distances { rms, largest })
+        let labels = memory::gathered(found.into_iter().map(|(label, _)| label))?;
+        Ok((labels, Distances { rms, largest }))
     }
 }

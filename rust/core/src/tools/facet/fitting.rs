@@ -9,7 +9,8 @@ use super::moments::{Moments, Plane};
 use super::repair::{hold, repair};
 use super::shape::{Corner, Facet, Shape};
 use super::solve::flatten;
-use crate::mesh::vector::{area_vector, between, centroid, distance, norm, unit, Point};
+use crate::memory;
+use crate::mesh::vector::{area_vector, between, centroid, distance, norm, unit};
 use crate::progress::Progress;
 use crate::Result;
 
@@ -20,10 +21,10 @@ pub(super) fn settle(shape: &mut Shape, faces: &mut Faces, progress: &Progress) 
         *shape = shape.at_home();
         shape.facets.iter_mut().for_each(|facet| facet.plane = facet.moments.fit().plane);
         // What crosses on the mesh itself is not held against the facets.
-        let before = Inspection::new(shape, true).pairs;
-        let homes: Vec<Point> = shape.corners.iter().map(|corner| corner.home).collect();
+        let before = Inspection::new(shape, true)?.pairs;
+        let homes = memory::gathered(shape.corners.iter().map(|corner| corner.home))?;
         flatten(shape, STAY, &homes)?;
-        let faulty = Inspection::new(shape, false).faults(&before);
+        let faulty = Inspection::new(shape, false)?.faults(&before);
         if faulty.is_empty() || round == REPAIRS || progress.is_finishing() || !repair(shape, faces, &faulty)
         {
             break;
@@ -35,8 +36,8 @@ pub(super) fn settle(shape: &mut Shape, faces: &mut Faces, progress: &Progress) 
 /// Gives every face to the nearest facet and fits the planes anew, in turns,
 /// as long as facets stay sound and come nearer.
 pub(super) fn refine(shape: &mut Shape, faces: &mut Faces, progress: &Progress) -> Result<()> {
-    let mut inspection = Inspection::new(shape, true);
-    let (mut labels, distance) = measured(shape, faces, &inspection);
+    let mut inspection = Inspection::new(shape, true)?;
+    let (mut labels, distance) = measured(shape, faces, &inspection)?;
     let mut best = (distance, shape.clone());
     let mut n_idle = 0;
     while n_idle < IDLE && !progress.is_finishing() {
@@ -44,9 +45,9 @@ pub(super) fn refine(shape: &mut Shape, faces: &mut Faces, progress: &Progress) 
         faces.fit(shape);
         let Some(next) = fitted(shape, faces, &inspection, progress)? else { break };
         *shape = next;
-        inspection = Inspection::new(shape, true);
+        inspection = Inspection::new(shape, true)?;
         let distance;
-        (labels, distance) = measured(shape, faces, &inspection);
+        (labels, distance) = measured(shape, faces, &inspection)?;
         n_idle = if distance < NEARER * best.0 { 0 } else { n_idle + 1 };
         if distance < best.0 {
             best = (distance, shape.clone());
@@ -58,10 +59,10 @@ pub(super) fn refine(shape: &mut Shape, faces: &mut Faces, progress: &Progress) 
 
 /// The facet nearest to each face, and the distance of both surfaces from each other: from the faces to the
 /// facets, and from the facets to the mesh.
-fn measured(shape: &Shape, faces: &Faces, inspection: &Inspection) -> (Vec<u32>, f64) {
-    let (labels, distances) = faces.nearest(shape, inspection);
+fn measured(shape: &Shape, faces: &Faces, inspection: &Inspection) -> Result<(Vec<u32>, f64)> {
+    let (labels, distances) = faces.nearest(shape, inspection)?;
     let (mut squares, mut total) = (0.0, 0.0);
-    for triangle in inspection.places(shape) {
+    for triangle in inspection.places(shape)? {
         let area = norm(area_vector(triangle));
         let middle = centroid(triangle);
         // The rule of three points, exact for squares.
@@ -69,7 +70,7 @@ fn measured(shape: &Shape, faces: &Faces, inspection: &Inspection) -> (Vec<u32>,
         squares += area / 3.0 * points.map(|p| distance(p, faces.on_mesh(p)).powi(2)).iter().sum::<f64>();
         total += area;
     }
-    (labels, (distances.rms.powi(2) + squares / f64::max(total, f64::MIN_POSITIVE)).sqrt())
+    Ok((labels, (distances.rms.powi(2) + squares / f64::max(total, f64::MIN_POSITIVE)).sqrt()))
 }
 
 /// The shape with planes fitted to its faces, if that can be had without facets that cross where none did.
@@ -80,12 +81,12 @@ fn fitted(
     progress: &Progress,
 ) -> Result<Option<Shape>> {
     let aim = |corner: &Corner| between(corner.point, faces.on_mesh(corner.point), PULL);
-    let aims: Vec<Point> = shape.corners.iter().map(aim).collect();
+    let aims = memory::gathered(shape.corners.iter().map(aim))?;
     for _ in 0..TRIES {
         progress.check()?;
         let mut trial = shape.clone();
         let off = flatten(&mut trial, FITTING, &aims)?;
-        let mut faulty = Inspection::new(&trial, false).faults(&before.pairs);
+        let mut faulty = Inspection::new(&trial, false)?.faults(&before.pairs);
         faulty.retain(|k| !before.crossed.contains(k));
         if faulty.is_empty() {
             return Ok((off <= FLAT.max(shape.off_planes())).then_some(trial));
@@ -104,10 +105,10 @@ pub(super) fn fold(shape: &mut Shape, faces: &mut Faces) -> Result<()> {
         if shape.off_planes() <= FLAT {
             break;
         }
-        let here: Vec<Point> = shape.corners.iter().map(|corner| corner.point).collect();
+        let here = memory::gathered(shape.corners.iter().map(|corner| corner.point))?;
         flatten(shape, STAY, &here)?;
     }
-    let inspection = Inspection::new(shape, false);
+    let inspection = Inspection::new(shape, false)?;
     let crossed: HashSet<u32> = inspection.crossed.iter().copied().collect();
     let mut facets = Vec::with_capacity(shape.facets.len());
     let mut place = Vec::with_capacity(shape.facets.len());

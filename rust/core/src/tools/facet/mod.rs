@@ -26,7 +26,7 @@ mod triangulation;
 pub use options::FacetOptions;
 
 use crate::error::MeshError;
-use crate::memory::Tool;
+use crate::memory::{self, Tool};
 use crate::mesh::vector::{add, between, distance, scale, sub, Point};
 use crate::mesh::{Mesh, Working};
 use crate::progress::{Progress, Report};
@@ -138,8 +138,8 @@ struct Settled {
 }
 
 impl Settled {
-    fn n_crossings(&self) -> usize {
-        self.n_more(&Inspection::new(&self.shape, true))
+    fn n_crossings(&self) -> Result<usize> {
+        Ok(self.n_more(&Inspection::new(&self.shape, true)?))
     }
 
     /// How many more pairs pass through each other than on the mesh.
@@ -147,8 +147,8 @@ impl Settled {
         inspection.pairs.len().saturating_sub(self.n_on_mesh)
     }
 
-    fn distances(&self) -> Distances {
-        self.faces.nearest(&self.shape, &Inspection::new(&self.shape, true)).1
+    fn distances(&self) -> Result<Distances> {
+        Ok(self.faces.nearest(&self.shape, &Inspection::new(&self.shape, true)?)?.1)
     }
 }
 
@@ -233,11 +233,11 @@ impl<'a> Job<'a> {
                     let off = wanted.clamp(fewest, most) as f64 - settled.shape.facets.len() as f64;
                     let most = CHANGE[0] + CHANGE[1] * count as f64;
                     let further = if off == 0.0 { 1.0 } else { off.clamp(-most, most).round() };
-                    (off.abs() + settled.n_crossings() as f64, count as f64 + further)
+                    (off.abs() + settled.n_crossings()? as f64, count as f64 + further)
                 }
                 Wanted::Error(error) => {
                     fitting::refine(&mut settled.shape, &mut settled.faces, progress)?;
-                    let over = settled.distances().rms / error;
+                    let over = settled.distances()?.rms / error;
                     ((over - 1.0).max(0.0), (count as f64 * over.max(1.05)).ceil())
                 }
                 Wanted::Found => (0.0, 0.0),
@@ -258,9 +258,9 @@ impl<'a> Job<'a> {
         }
         fitting::fold(&mut settled.shape, &mut settled.faces)?;
         let n_facets = fitting::order(&mut settled.shape, &mut settled.faces);
-        let inspection = Inspection::new(&settled.shape, true);
+        let inspection = Inspection::new(&settled.shape, true)?;
         let n_crossings = settled.n_more(&inspection);
-        let (labels, distances) = settled.faces.nearest(&settled.shape, &inspection);
+        let (labels, distances) = settled.faces.nearest(&settled.shape, &inspection)?;
         Ok(Found { shape: settled.shape, inspection, labels, distances, n_facets, n_crossings })
     }
 
@@ -268,7 +268,7 @@ impl<'a> Job<'a> {
     fn settled(&self, merges: &Merges, count: usize, progress: &Progress) -> Result<Settled> {
         let n = self.parts.len();
         let labels = merges.labels(n, count);
-        let mut faces = Faces::new(self.places(), labels, self.is_held.clone());
+        let mut faces = Faces::new(self.places(), labels, memory::twin(&self.is_held)?)?;
         let (mut moments, mut is_held) = (vec![Moments::default(); count], vec![false; count]);
         for ((&label, own), &held) in faces.labels.iter().zip(&faces.moments).zip(&self.is_held) {
             moments[label as usize] = moments[label as usize].plus(own);
@@ -282,7 +282,7 @@ impl<'a> Job<'a> {
         let tolerance = (squares / area.max(f64::MIN_POSITIVE)).sqrt().max(constants::FLAT);
         let is_fixed = |v: u32| self.is_fixed[v as usize];
         let mut shape = Shape::new(&regions, &moments, &self.positions, &is_held, is_fixed, 2.0 * tolerance);
-        let n_on_mesh = Inspection::new(&shape, true).pairs.len();
+        let n_on_mesh = Inspection::new(&shape, true)?.pairs.len();
         fitting::settle(&mut shape, &mut faces, progress)?;
         Ok(Settled { shape, faces, n_on_mesh })
     }

@@ -6,22 +6,23 @@ use std::collections::BinaryHeap;
 use super::constants::{ASSIGN_SWEEPS, FIXED_WEIGHT, RIM_BORDER_COST};
 use super::parts::{SmoothParts, NONE};
 use super::region::Region;
-
+use crate::memory;
 use crate::mesh::vector::{area_vector, centroid, distance, dot, norm};
 use crate::ordered::Ordered;
+use crate::{Error, Result};
 
 /// The part of every face of the patch.
 ///
 /// Parts flood the patch from the rim, the face that fits best first (Cohen-Steiner et al. 2004), so that
 /// each stays joined to what it continues; then faces change sides where that makes the borders shorter than
 /// it makes the fit worse.
-pub(super) fn assign(region: &Region, parts: &SmoothParts, edge: f64) -> Vec<u32> {
-    let mut labels = vec![NONE; region.mesh.n_faces() - region.n_outer];
-    flood(region, parts, edge, &mut labels);
+pub(super) fn assign(region: &Region, parts: &SmoothParts, edge: f64) -> Result<Vec<u32>> {
+    let mut labels = memory::repeated(NONE, region.mesh.n_faces() - region.n_outer)?;
+    flood(region, parts, edge, &mut labels)?;
     shorten(region, parts, edge, &mut labels);
-    keep_joined(region, parts, &mut labels);
-    flood(region, parts, edge, &mut labels);
-    labels
+    keep_joined(region, parts, &mut labels)?;
+    flood(region, parts, edge, &mut labels)?;
+    Ok(labels)
 }
 
 /// How badly face `f` fits to `part`: squared distance in edge lengths, and direction,
@@ -60,17 +61,19 @@ fn part_of(region: &Region, parts: &SmoothParts, labels: &[u32], f: u32) -> u32 
 }
 
 /// Gives every face without a part that of a neighbor, best fits first.
-fn flood(region: &Region, parts: &SmoothParts, edge: f64, labels: &mut [u32]) {
+fn flood(region: &Region, parts: &SmoothParts, edge: f64, labels: &mut [u32]) -> Result<()> {
     let first = region.n_outer as u32;
     let mut heap = BinaryHeap::new();
     let offer = |heap: &mut BinaryHeap<_>, f: u32, part: u32| {
+        memory::extend_heap(heap, 1)?;
         heap.push(Reverse((Ordered(misfit(region, parts, edge, f, part)), f, part)));
+        Ok::<(), Error>(())
     };
     for f in (first..region.mesh.n_faces() as u32).filter(|&f| labels[(f - first) as usize] == NONE) {
         for (_, g) in across(region, f) {
             let part = part_of(region, parts, labels, g);
             if part != NONE {
-                offer(&mut heap, f, part);
+                offer(&mut heap, f, part)?;
             }
         }
     }
@@ -82,10 +85,11 @@ fn flood(region: &Region, parts: &SmoothParts, edge: f64, labels: &mut [u32]) {
         *label = part;
         for (_, g) in across(region, f) {
             if g >= first && labels[(g - first) as usize] == NONE {
-                offer(&mut heap, g, part);
+                offer(&mut heap, g, part)?;
             }
         }
     }
+    Ok(())
 }
 
 fn shorten(region: &Region, parts: &SmoothParts, edge: f64, labels: &mut [u32]) {
@@ -127,15 +131,14 @@ fn shorten(region: &Region, parts: &SmoothParts, edge: f64, labels: &mut [u32]) 
 }
 
 /// Takes their part from faces that are not joined to the faces around the patch that have it.
-fn keep_joined(region: &Region, parts: &SmoothParts, labels: &mut [u32]) {
+fn keep_joined(region: &Region, parts: &SmoothParts, labels: &mut [u32]) -> Result<()> {
     let first = region.n_outer as u32;
-    let mut joined = vec![false; labels.len()];
-    let mut front: Vec<u32> = (first..region.mesh.n_faces() as u32)
-        .filter(|&f| {
-            let part = labels[(f - first) as usize];
-            across(region, f).any(|(_, g)| g < first && parts.of_face[g as usize] == part)
-        })
-        .collect();
+    let mut joined = memory::repeated(false, labels.len())?;
+    let is_joined = |&f: &u32| {
+        let part = labels[(f - first) as usize];
+        across(region, f).any(|(_, g)| g < first && parts.of_face[g as usize] == part)
+    };
+    let mut front = memory::sifted((first..region.mesh.n_faces() as u32).filter(is_joined))?;
     front.iter().for_each(|&f| joined[(f - first) as usize] = true);
     while let Some(f) = front.pop() {
         for (_, g) in across(region, f) {
@@ -144,23 +147,24 @@ fn keep_joined(region: &Region, parts: &SmoothParts, labels: &mut [u32]) {
                 && labels[(g - first) as usize] == labels[(f - first) as usize]
             {
                 joined[(g - first) as usize] = true;
-                front.push(g);
+                memory::push(&mut front, g)?;
             }
         }
     }
     labels.iter_mut().zip(joined).filter(|(_, joined)| !joined).for_each(|(label, _)| *label = NONE);
+    Ok(())
 }
 
 /// The edges at the patch between two parts, smaller vertex first, ascending.
-pub(super) fn borders(region: &Region, parts: &SmoothParts, labels: &[u32]) -> Vec<[u32; 2]> {
+pub(super) fn borders(region: &Region, parts: &SmoothParts, labels: &[u32]) -> Result<Vec<[u32; 2]>> {
     let part = |f: u32| part_of(region, parts, labels, f);
-    let mut edges = region.mesh.edges();
+    let mut edges = region.mesh.edges()?;
     edges.retain(|&[a, b]| {
         region.mesh.wings(a, b).is_some_and(|wings| {
             wings.faces.iter().any(|&f| region.is_patch(f)) && part(wings.faces[0]) != part(wings.faces[1])
         })
     });
-    edges
+    Ok(edges)
 }
 
 /// The parts that meet at every vertex, ascending: of the patch and of the faces around it.

@@ -23,8 +23,8 @@ pub(super) fn complete(
     watch: &mut Watch<'_>,
 ) -> Result<Completed> {
     smooth(region, Energy::L2Laplacian, SMOOTH_ROUNDS, progress)?;
-    watch(region, 0.05, 0, None);
-    let ridges = ridges_around(region);
+    watch(region, 0.05, 0, None)?;
+    let ridges = ridges_around(region)?;
     let (sharpness, flows) = match (options.shape, options.sharpness) {
         (PatchShape::Smooth, _) => (0.0, false),
         (PatchShape::Sharp, Sharpness::Auto) => (SHARP, true),
@@ -47,21 +47,20 @@ impl Completion<'_, '_> {
         if !is_remeshed || region.mesh.n_faces() - region.n_outer <= 2 * COARSE_FACES {
             return self.form_ridges(region);
         }
-        let smooth = region.clone();
+        let smooth = region.twin()?;
         self.resample(region, self.ridge(), COARSE_FACES, FINE_ROUNDS)?;
         self.form_ridges(region)?;
         if self.completed.sharpness == 0.0 {
             *region = smooth;
             return Ok(());
         }
-        let coarse = region.clone();
+        let coarse = region.twin()?;
         self.resample(region, self.ridge(), FINE_FACES, FINE_ROUNDS)?;
-        flip_along_ridges(region, FLIP_SWEEPS);
+        flip_along_ridges(region, FLIP_SWEEPS)?;
         fair(region, self.ridge(), self.progress)?;
         if worst_bend(&region.mesh) < worst_bend(&coarse.mesh).min(FOLDED) {
             *region = coarse;
         }
-        self.report(region, 1.0);
-        Ok(())
+        self.report(region, 1.0)
     }
 }

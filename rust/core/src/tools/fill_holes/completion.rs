@@ -10,7 +10,7 @@ use crate::progress::Progress;
 use crate::Result;
 
 /// Hears of every cycle: the region, how much is done, the steps so far, the energy.
-pub(super) type Watch<'a> = dyn FnMut(&Region, f64, usize, Option<f64>) + 'a;
+pub(super) type Watch<'a> = dyn FnMut(&Region, f64, usize, Option<f64>) -> Result<()> + 'a;
 
 /// The completion of one patch: what it goes by, and what has become of it.
 pub(super) struct Completion<'a, 'w> {
@@ -41,7 +41,7 @@ impl Completion<'_, '_> {
     }
 
     /// Tells the watch how much is done.
-    pub(super) fn report(&mut self, region: &Region, part: f64) {
-        (self.watch)(region, part, self.completed.iterations, Some(self.completed.energy[1]));
+    pub(super) fn report(&mut self, region: &Region, part: f64) -> Result<()> {
+        (self.watch)(region, part, self.completed.iterations, Some(self.completed.energy[1]))
     }
 }

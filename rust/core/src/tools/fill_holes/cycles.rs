@@ -27,25 +27,26 @@ struct Unfolded {
 }
 
 impl Unfolded {
-    fn new(region: &Region) -> Self {
-        Self { region: region.clone(), worst: worst_bend(&region.mesh).min(FOLDED) }
+    fn new(region: &Region) -> Result<Self> {
+        Ok(Self { region: region.twin()?, worst: worst_bend(&region.mesh).min(FOLDED) })
     }
 
     fn allows(&self, region: &Region) -> bool {
         worst_bend(&region.mesh) >= self.worst
     }
 
-    fn keep(&mut self, region: &Region) {
+    fn keep(&mut self, region: &Region) -> Result<()> {
         if self.allows(region) {
-            self.region.clone_from(region);
+            self.region = region.twin()?;
         }
+        Ok(())
     }
 }
 
 impl Completion<'_, '_> {
     /// The cycles that bring the ridges around the hole back.
     pub(super) fn form_ridges(&mut self, region: &mut Region) -> Result<()> {
-        let (smooth, mut last) = (region.clone(), Unfolded::new(region));
+        let (smooth, mut last) = (region.twin()?, Unfolded::new(region)?);
         let cycles = self.options.iterations.div_ceil(FLOW_STEPS);
         let is_sharp = self.completed.sharpness > 0.0;
         self.completed.status = HoleStatus::Finished;
@@ -56,39 +57,39 @@ impl Completion<'_, '_> {
                 return Ok(());
             }
             let flowed = self.flow(region, cycle)?;
-            let moved = if is_sharp { flowed.max(align(region, cycle)) } else { flowed };
-            self.report(region, 0.05 + 0.9 * cycle as f64 / cycles as f64);
-            last.keep(region);
-            if cycle > SNAP_FROM && moved < STILL_CYCLE * typical_edge(&region.mesh) {
+            let moved = if is_sharp { flowed.max(align(region, cycle)?) } else { flowed };
+            self.report(region, 0.05 + 0.9 * cycle as f64 / cycles as f64)?;
+            last.keep(region)?;
+            if cycle > SNAP_FROM && moved < STILL_CYCLE * typical_edge(&region.mesh)? {
                 self.completed.status = HoleStatus::Converged;
                 break;
             }
             if is_sharp && cycle == EXTEND_AFTER {
                 if let Some(extended) = self.extended(region)?.filter(|extended| last.allows(extended)) {
                     *region = extended;
-                    self.report(region, 1.0);
+                    self.report(region, 1.0)?;
                     self.completed.status = HoleStatus::Converged;
                     return Ok(());
                 }
             }
             if is_sharp && cycle % RESAMPLE_EVERY == 0 {
                 self.resample(region, self.ridge(), COARSE_FACES, RESAMPLE_ROUNDS)?;
-                flip_along_ridges(region, FLIP_SWEEPS);
+                flip_along_ridges(region, FLIP_SWEEPS)?;
             }
         }
         if is_sharp && cycles > 0 {
             self.smooth_between(region, self.ridge())?;
             if !last.allows(region) {
-                region.clone_from(&last.region);
+                *region = last.region.twin()?;
                 self.smooth_between(region, self.ridge())?;
             }
-            self.report(region, 1.0);
+            self.report(region, 1.0)?;
         }
         if !last.allows(region) {
             *region = last.region;
         }
         let is_free = self.options.sharpness == Sharpness::Auto && self.options.shape != PatchShape::Sharp;
-        if is_free && is_sharp && cycles > 0 && total_bend(region) > MOST_BEND * total_bend(&smooth) {
+        if is_free && is_sharp && cycles > 0 && total_bend(region)? > MOST_BEND * total_bend(&smooth)? {
             *region = smooth;
             self.completed = Completed::smooth();
         }
@@ -113,7 +114,7 @@ impl Completion<'_, '_> {
     fn extended(&self, region: &Region) -> Result<Option<Region>> {
         let Some(ridges) = self.ridges else { return Ok(None) };
         for bend in [ridges.least, ridges.most] {
-            let mut extended = region.clone();
+            let mut extended = region.twin()?;
             match extend(&mut extended, RIDGE_SHARE * bend, self.options.edge_length, self.progress)? {
                 Extended::NotMet => {}
                 Extended::Planes => return Ok(Some(extended)),
@@ -135,7 +136,7 @@ impl Completion<'_, '_> {
         for _ in 0..FAIR_ROUNDS {
             self.resample(region, ridge, COARSE_FACES, RESAMPLE_ROUNDS)?;
             for _ in 0..FAIR_STEPS {
-                flip_along_ridges(region, FLIP_SWEEPS);
+                flip_along_ridges(region, FLIP_SWEEPS)?;
                 fair(region, ridge, self.progress)?;
             }
         }
@@ -145,18 +146,14 @@ impl Completion<'_, '_> {
 
 /// Turns the edges of the patch along its ridges and snaps its vertices onto them; returns the longest move,
 /// infinite where an edge was flipped.
-fn align(region: &mut Region, cycle: usize) -> f64 {
-    let mut flips = flip_along_ridges(region, FLIP_SWEEPS);
+fn align(region: &mut Region, cycle: usize) -> Result<f64> {
+    let mut flips = flip_along_ridges(region, FLIP_SWEEPS)?;
     let mut moved: f64 = 0.0;
     if cycle >= SNAP_FROM {
         for _ in 0..SNAPS {
-            moved = moved.max(snap(region, &Snapping::DEFAULT));
-            flips += flip_along_ridges(region, FLIP_SWEEPS);
+            moved = moved.max(snap(region, &Snapping::DEFAULT)?);
+            flips += flip_along_ridges(region, FLIP_SWEEPS)?;
         }
     }
-    if flips > 0 {
-        f64::INFINITY
-    } else {
-        moved
-    }
+    Ok(if flips > 0 { f64::INFINITY } else { moved })
 }

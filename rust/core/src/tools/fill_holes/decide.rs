@@ -3,7 +3,9 @@
 use super::constants::{CONTRAST, LEAST_RIDGE_ANGLE};
 use super::region::Region;
 use super::surface::FaceGeometry;
+use crate::memory;
 use crate::mesh::vector::distance;
+use crate::Result;
 
 /// The ridges that reach a hole.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,34 +21,31 @@ pub(super) struct Ridges {
 ///
 /// What is common is found by adding the edges of the surroundings from the least bent on, until one is
 /// [`CONTRAST`] times as bent as the root mean square (by length) of those before.
-pub(super) fn ridges_around(region: &Region) -> Option<Ridges> {
-    let surface = FaceGeometry::of(region);
+pub(super) fn ridges_around(region: &Region) -> Result<Option<Ridges>> {
+    let surface = FaceGeometry::of(region)?;
     let mesh = &region.mesh;
-    let mut on_rim = vec![false; mesh.n_vertices()];
+    let mut on_rim = memory::repeated(false, mesh.n_vertices())?;
     region.patch_faces().for_each(|(_, face)| face.into_iter().for_each(|v| on_rim[v as usize] = true));
-    let mut edges: Vec<(f64, f64, bool)> = mesh
-        .edges()
-        .into_iter()
-        .filter_map(|[a, b]| {
-            let wings = mesh.wings(a, b)?;
-            let around = wings.faces.iter().all(|&f| !region.is_patch(f));
-            let length = distance(mesh.position(a), mesh.position(b));
-            around.then(|| (surface.dihedral(wings.faces), length, on_rim[a as usize] || on_rim[b as usize]))
-        })
-        .collect();
+    let bend = |[a, b]: [u32; 2]| {
+        let wings = mesh.wings(a, b)?;
+        let around = wings.faces.iter().all(|&f| !region.is_patch(f));
+        let length = distance(mesh.position(a), mesh.position(b));
+        around.then(|| (surface.dihedral(wings.faces), length, on_rim[a as usize] || on_rim[b as usize]))
+    };
+    let mut edges = memory::sifted(mesh.edges()?.into_iter().filter_map(bend))?;
     edges.sort_by(|x, y| x.0.total_cmp(&y.0));
     let (mut squares, mut length) = (0.0, 0.0);
     for (i, &(angle, l, _)) in edges.iter().enumerate() {
         let common = f64::sqrt(squares / length);
         if length > 0.0 && angle > LEAST_RIDGE_ANGLE && angle > CONTRAST * common {
             let mut bends = edges[i..].iter().filter(|(_, _, at_rim)| *at_rim).map(|(angle, ..)| *angle);
-            let least = bends.next()?;
-            return Some(Ridges { least, most: bends.next_back().unwrap_or(least) });
+            let least = bends.next();
+            return Ok(least.map(|least| Ridges { least, most: bends.next_back().unwrap_or(least) }));
         }
         squares += l * angle * angle;
         length += l;
     }
-    None
+    Ok(None)
 }
 
 #[cfg(test)]
@@ -57,7 +56,7 @@ mod tests {
     use crate::tools::fill_holes::region::tests::around_hole;
 
     fn ridges(shape: Shape, place: [f64; 3], radius: f64) -> Option<Ridges> {
-        ridges_around(&around_hole(&shape, place, radius))
+        ridges_around(&around_hole(&shape, place, radius)).unwrap()
     }
 
     #[test]

@@ -13,11 +13,12 @@ use super::parts::SmoothParts;
 use super::region::Region;
 use super::resample::{resample, typical_edge, Kept, Target};
 use super::untangle::untangle;
-use crate::mesh::vector::{between, centroid, distance, Point};
+use crate::memory;
+use crate::mesh::vector::{between, centroid, distance};
 use crate::progress::Progress;
 use crate::remesh::split::LONG;
 use crate::shape_guard::{farthest, SLIVER};
-use crate::Result;
+use crate::{Error, Result};
 
 /// How letting the parts go on ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,32 +38,32 @@ pub(super) fn extend(
     edge_length: Option<f64>,
     progress: &Progress,
 ) -> Result<Extended> {
-    let edge = typical_edge(&region.mesh);
-    let Some(parts) = SmoothParts::around(region, ridge, edge) else { return Ok(Extended::NotMet) };
+    let edge = typical_edge(&region.mesh)?;
+    let Some(parts) = SmoothParts::around(region, ridge, edge)? else { return Ok(Extended::NotMet) };
     let target = Target { edge_length, max_faces: COARSE_FACES, rounds: RESAMPLE_ROUNDS };
     let mut labels = Vec::new();
     for round in 0..EXTEND_ROUNDS {
         progress.check()?;
         if round > 0 {
-            let borders = borders(region, &parts, &labels);
+            let borders = borders(region, &parts, &labels)?;
             let kept = Kept {
                 borders: &borders,
-                merges: &merges(region, &parts, &labels, edge),
+                merges: &merges(region, &parts, &labels, edge)?,
                 ridge: std::f64::consts::PI,
             };
             resample(region, &kept, &target, progress)?;
         }
-        labels = assign(region, &parts, edge);
+        labels = assign(region, &parts, edge)?;
         for _ in 0..CUTS {
-            if !cut(region, &parts, &mut labels, edge) {
+            if !cut(region, &parts, &mut labels, edge)? {
                 break;
             }
-            labels = assign(region, &parts, edge);
+            labels = assign(region, &parts, edge)?;
         }
-        let mut moved = settle(region, &parts, &labels);
-        if flip_along_ridges(region, FLIP_SWEEPS) > 0 {
-            labels = assign(region, &parts, edge);
-            moved = moved.max(settle(region, &parts, &labels));
+        let mut moved = settle(region, &parts, &labels)?;
+        if flip_along_ridges(region, FLIP_SWEEPS)? > 0 {
+            labels = assign(region, &parts, edge)?;
+            moved = moved.max(settle(region, &parts, &labels)?);
         }
         if round >= UNTANGLE_FROM {
             untangle(region, &parts, &labels);
@@ -81,7 +82,7 @@ pub(super) fn extend(
 /// Cuts triangles that cannot lie on their part whatever their free vertices do, because they have none or
 /// because all their vertices are where the part meets another one; and long borders that have no free
 /// vertex. Returns whether anything was cut.
-fn cut(region: &mut Region, parts: &SmoothParts, labels: &mut Vec<u32>, edge: f64) -> bool {
+fn cut(region: &mut Region, parts: &SmoothParts, labels: &mut Vec<u32>, edge: f64) -> Result<bool> {
     let first = region.n_outer as u32;
     let before = labels.len();
     let is_off = |region: &Region, v: u32, part: u32| {
@@ -92,12 +93,14 @@ fn cut(region: &mut Region, parts: &SmoothParts, labels: &mut Vec<u32>, edge: f6
     let split = |region: &mut Region, labels: &mut Vec<u32>, a: u32, b: u32| {
         let Some(wings) = region.mesh.wings(a, b).filter(|w| w.faces.iter().all(|&f| region.is_patch(f)))
         else {
-            return;
+            return Ok(());
         };
         let middle = between(region.mesh.position(a), region.mesh.position(b), 0.5);
-        if region.mesh.split(a, b, middle).is_some() {
+        if region.mesh.split(a, b, middle)?.is_some() {
+            memory::extend(labels, 2)?;
             wings.faces.iter().for_each(|&f| labels.push(labels[(f - first) as usize]));
         }
+        Ok::<(), Error>(())
     };
     for f in first..first + before as u32 {
         let Some(face) = region.mesh.face(f) else { continue };
@@ -108,16 +111,17 @@ fn cut(region: &mut Region, parts: &SmoothParts, labels: &mut Vec<u32>, edge: f6
             let [a, b] = [face[i], face[(i + 1) % 3]];
             let shared = parts.at(region, a).iter().any(|part| parts.at(region, b).contains(part));
             if !shared {
-                split(region, labels, a, b);
+                split(region, labels, a, b)?;
                 continue;
             }
         }
         let is_stiff = off.contains(&true) && face.iter().all(|&v| region.is_anchor(v));
-        if is_stiff && region.mesh.split_face(f, centroid(region.mesh.corners(face))).is_some() {
+        if is_stiff && region.mesh.split_face(f, centroid(region.mesh.corners(face)))?.is_some() {
+            memory::extend(labels, 2)?;
             labels.extend([part; 2]);
         }
     }
-    for [a, b] in region.mesh.edges() {
+    for [a, b] in region.mesh.edges()? {
         let Some(wings) = region.mesh.wings(a, b) else { continue };
         if !wings.faces.iter().all(|&f| region.is_patch(f)) {
             continue;
@@ -128,15 +132,15 @@ fn cut(region: &mut Region, parts: &SmoothParts, labels: &mut Vec<u32>, edge: f6
         let is_stiff =
             own != other && [a, b].iter().all(|&v| region.is_anchor(v)) && length(region, a, b) > LONG * edge;
         if is_chord || is_stiff {
-            split(region, labels, a, b);
+            split(region, labels, a, b)?;
         }
     }
-    labels.len() > before
+    Ok(labels.len() > before)
 }
 
 /// Free vertices that belong where a neighbor is, and that neighbor:
 /// remeshing does not join two vertices that are both fixed.
-fn merges(region: &Region, parts: &SmoothParts, labels: &[u32], edge: f64) -> Vec<[u32; 2]> {
+fn merges(region: &Region, parts: &SmoothParts, labels: &[u32], edge: f64) -> Result<Vec<[u32; 2]>> {
     let found = |v: u32| {
         let own = parts_at(region, parts, labels, v);
         let joins = |w: u32| {
@@ -149,7 +153,7 @@ fn merges(region: &Region, parts: &SmoothParts, labels: &[u32], edge: f64) -> Ve
         };
         region.mesh.neighbors(v).into_iter().find(|&w| joins(w))
     };
-    region.free().filter_map(|v| Some([v, found(v)?])).collect()
+    Ok(memory::sifted(region.free().filter_map(|v| Some([v, found(v)?])))?)
 }
 
 fn length(region: &Region, a: u32, b: u32) -> f64 {
@@ -160,25 +164,21 @@ fn length(region: &Region, a: u32, b: u32) -> f64 {
 /// that leaves the faces around them in order; returns the longest move.
 ///
 /// First all together, which finds its way where the patch is far from its surfaces, then one by one.
-fn settle(region: &mut Region, parts: &SmoothParts, labels: &[u32]) -> f64 {
-    let goals: Vec<Point> = (0..region.mesh.n_vertices() as u32)
-        .map(|v| {
-            if region.is_anchor(v) {
-                region.mesh.position(v)
-            } else {
-                meeting_point(region, parts, labels, v)
-            }
-        })
-        .collect();
-    let mut longest = move_guarded(region, &goals);
+fn settle(region: &mut Region, parts: &SmoothParts, labels: &[u32]) -> Result<f64> {
+    let goal = |v: u32| {
+        if region.is_anchor(v) {
+            region.mesh.position(v)
+        } else {
+            meeting_point(region, parts, labels, v)
+        }
+    };
+    let goals = memory::sifted((0..region.mesh.n_vertices() as u32).map(goal))?;
+    let mut longest = move_guarded(region, &goals)?;
     for _ in 0..SETTLE_PASSES {
-        let mut moves: Vec<(f64, u32, Point)> = region
-            .free()
-            .map(|v| {
-                let (at, goal) = (region.mesh.position(v), meeting_point(region, parts, labels, v));
-                (distance(at, goal), v, goal)
-            })
-            .collect();
+        let mut moves = memory::sifted(region.free().map(|v| {
+            let (at, goal) = (region.mesh.position(v), meeting_point(region, parts, labels, v));
+            (distance(at, goal), v, goal)
+        }))?;
         moves.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
         for (_, v, goal) in moves {
             let start = region.mesh.position(v);
@@ -191,7 +191,7 @@ fn settle(region: &mut Region, parts: &SmoothParts, labels: &[u32]) -> f64 {
             longest = longest.max(reached.map_or(0.0, |position| distance(start, position)));
         }
     }
-    longest
+    Ok(longest)
 }
 
 #[cfg(test)]
@@ -200,7 +200,7 @@ mod tests {
     use super::super::region::tests::around_hole;
     use super::super::start::smooth;
     use super::*;
-    use crate::mesh::vector::{norm, quality, scale};
+    use crate::mesh::vector::{norm, quality, scale, Point};
     use crate::operators::Energy;
     use crate::shapes::{self, Shape};
 

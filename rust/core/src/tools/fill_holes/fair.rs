@@ -8,6 +8,7 @@ use super::ridge_curves::third_derivatives;
 use super::surface::FaceGeometry;
 use crate::block_rows::BlockRows;
 use crate::linear::Columns;
+use crate::memory;
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::norm;
 use crate::mesh::Mesh;
@@ -24,32 +25,36 @@ use crate::Result;
 /// and the ridge lies where the parts meet; the squared third derivative along the ridges
 /// ([`third_derivatives`]) is added.
 pub(super) fn fair(region: &mut Region, ridge: f64, progress: &Progress) -> Result<f64> {
-    let cut = Cut::new(region, ridge);
-    let points: Vec<_> = cut.origin.iter().map(|&v| region.mesh.position(v)).collect();
+    let cut = Cut::new(region, ridge)?;
+    let points = memory::gathered(cut.origin.iter().map(|&v| region.mesh.position(v)))?;
     let form = EnergyForm::new(Energy::L2Hessian, &Mesh::new(points, cut.faces)?, None, Dual::default())?;
-    let mut joined = BlockRows::empty(region.mesh.n_vertices());
+    let ridges = third_derivatives(region, ridge)?;
+    let n_blocks = form.operator.n_blocks() + ridges.len();
+    let n_entries = form.operator.columns.len() + 4 * ridges.len();
+    let mut joined = BlockRows::with_room(region.mesh.n_vertices(), n_blocks, n_entries)?;
     for b in 0..form.operator.n_blocks() {
         let (columns, values) = form.operator.block(b);
         joined.push_block(columns.iter().zip(values).map(|(&c, &value)| (cut.origin[c as usize], value)));
     }
     let mut weights = form.weights;
     let area: f64 = region.patch_faces().map(|(f, _)| norm(region.mesh.area_vector(f))).sum();
-    for (vertices, coefficients, length) in third_derivatives(region, ridge) {
+    for (vertices, coefficients, length) in ridges {
         joined.push_block(vertices.into_iter().zip(coefficients).map(|(v, c)| (v, [c, 0.0, 0.0])));
+        memory::extend(&mut weights, 1)?;
         weights.push(RIDGE_STIFFNESS * area.powf(1.5) * length);
     }
     let problem = Problem {
         operator: &joined,
         weights,
-        fidelity: vec![0.0; joined.n_columns],
+        fidelity: memory::repeated(0.0, joined.n_columns)?,
         target: Columns::from_points(region.mesh.positions())?,
-        fixed: region.fixed(),
+        fixed: region.fixed()?,
         linear_constraints: None,
         coupling: Coupling::Joint,
     };
     let settings = Settings { announce: false, ..Settings::default() };
     let goal = quadratic::minimize(&problem, &settings, progress)?.values.to_points()?;
-    Ok(move_guarded(region, &goal))
+    move_guarded(region, &goal)
 }
 
 /// A region cut along its ridges.
@@ -60,15 +65,15 @@ struct Cut {
 }
 
 impl Cut {
-    fn new(region: &Region, ridge: f64) -> Self {
+    fn new(region: &Region, ridge: f64) -> Result<Self> {
         let mesh = &region.mesh;
-        let surface = FaceGeometry::of(region);
-        let faces = region.faces();
+        let surface = FaceGeometry::of(region)?;
+        let faces = region.faces()?;
         // Corners of faces that are one vertex, as a forest: across every edge that is no ridge.
         let mut corners = Partition::new(3 * faces.len());
         let corner =
             |f: u32, v: u32| 3 * f + faces[f as usize].iter().position(|&w| w == v).unwrap_or(0) as u32;
-        for [a, b] in mesh.edges() {
+        for [a, b] in mesh.edges()? {
             let Some(wings) = mesh.wings(a, b) else { continue };
             let [f, g] = wings.faces;
             if surface.dihedral([f, g]) > ridge {
@@ -78,19 +83,19 @@ impl Cut {
                 corners.unite(corner(f, v), corner(g, v));
             }
         }
-        let mut number = vec![u32::MAX; 3 * faces.len()];
+        let mut number = memory::repeated(u32::MAX, 3 * faces.len())?;
         let mut origin = Vec::new();
-        let mut cut = faces.clone();
+        let mut cut = memory::twin(&faces)?;
         for (f, face) in faces.iter().enumerate() {
             for (i, &v) in face.iter().enumerate() {
                 let r = corners.root((3 * f + i) as u32) as usize;
                 if number[r] == u32::MAX {
                     number[r] = origin.len() as u32;
-                    origin.push(v);
+                    memory::push(&mut origin, v)?;
                 }
                 cut[f][i] = number[r];
             }
         }
-        Self { faces: cut, origin }
+        Ok(Self { faces: cut, origin })
     }
 }

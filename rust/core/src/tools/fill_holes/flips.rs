@@ -3,18 +3,18 @@
 use super::constants::EVEN_ANGLE;
 use super::region::Region;
 use super::surface::angle;
+use crate::memory;
 use crate::mesh::vector::{area_vector, distance, quality, Point};
 use crate::remesh::editable::key;
 use crate::remesh::EditableMesh;
 use crate::shape_guard::is_thinned;
+use crate::Result;
 
 /// Flips edges of the patch while that lowers `Σ length · |dihedral angle|` over the edge and its four
 /// neighbors, and makes no sliver where there was none ([`is_thinned`]). Returns the number of flips.
-pub(super) fn flip_along_ridges(region: &mut Region, sweeps: usize) -> usize {
-    let mut edges: Vec<[u32; 2]> = (region.n_outer as u32..region.mesh.n_faces() as u32)
-        .filter_map(|f| region.mesh.face(f))
-        .flat_map(|[a, b, c]| [key(a, b), key(b, c), key(c, a)])
-        .collect();
+pub(super) fn flip_along_ridges(region: &mut Region, sweeps: usize) -> Result<usize> {
+    let faces = (region.n_outer as u32..region.mesh.n_faces() as u32).filter_map(|f| region.mesh.face(f));
+    let mut edges = memory::sifted(faces.flat_map(|[a, b, c]| [key(a, b), key(b, c), key(c, a)]))?;
     let mut total = 0;
     for _ in 0..sweeps {
         edges.sort_unstable();
@@ -28,6 +28,7 @@ pub(super) fn flip_along_ridges(region: &mut Region, sweeps: usize) -> usize {
             if region.mesh.flip(a, b).is_some() {
                 total += 1;
                 let [c, d] = wings.tips;
+                memory::extend(&mut next, 5)?;
                 next.extend([key(a, c), key(c, b), key(b, d), key(d, a), key(c, d)]);
             }
         }
@@ -36,7 +37,7 @@ pub(super) fn flip_along_ridges(region: &mut Region, sweeps: usize) -> usize {
         }
         edges = next;
     }
-    total
+    Ok(total)
 }
 
 fn lowers(region: &Region, a: u32, b: u32) -> bool {

@@ -35,7 +35,7 @@ pub(super) fn flow(
         sharpness,
         coupling: options.coupling,
         scale: Scale::Length(unit(region, options.scale)?),
-        fixed: Some(region.fixed()),
+        fixed: Some(region.fixed()?),
         dual: options.dual,
         solve: SolveOptions {
             // Threads are set once, around all holes.
@@ -50,7 +50,7 @@ pub(super) fn flow(
         ..StylizeOptions::default()
     };
     let result = stylize::flow(&mesh, Unit::default(), &options, None, &progress.quiet())?;
-    let moved = move_guarded(region, &result.vertices);
+    let moved = move_guarded(region, &result.vertices)?;
     let (first, last) = (result.energy.first(), result.energy.last());
     Ok(Flowed {
         moved,
@@ -61,7 +61,7 @@ pub(super) fn flow(
 
 /// The length that is 1 for the fidelity weight: of the patch alone, so that nothing farther away matters.
 fn unit(region: &Region, scale: Scale) -> Result<f64> {
-    let (points, faces, _) = region.patch();
+    let (points, faces, _) = region.patch()?;
     let lengths = edge_lengths(&faces, &points);
     Ok(scale.unit(&Connectivity::new(faces, points.len())?, &points, &lengths))
 }

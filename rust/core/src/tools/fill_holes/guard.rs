@@ -2,27 +2,26 @@
 
 use super::constants::{KEPT, MOVED_BEND};
 use super::region::Region;
+use crate::memory;
 use crate::mesh::vector::{area_vector, between, cosine, distance, norm, quality, Point};
 use crate::shape_guard::{farthest, is_thinned, is_turned, shorter};
+use crate::Result;
 
 /// Moves the free vertices toward `goal` as far as the faces around them stay in order,
 /// and returns the longest move.
-pub(super) fn move_guarded(region: &mut Region, goal: &[Point]) -> f64 {
-    let old = region.mesh.positions().to_vec();
-    let mut part: Vec<f64> =
-        (0..old.len() as u32).map(|v| if region.is_anchor(v) { 0.0 } else { 1.0 }).collect();
-    let faces: Vec<(u32, [u32; 3])> = region.patch_faces().collect();
-    let before: Vec<(Point, f64)> = faces
-        .iter()
-        .map(|&(_, face)| region.mesh.corners(face))
-        .map(|c| (area_vector(c), quality(c)))
-        .collect();
+pub(super) fn move_guarded(region: &mut Region, goal: &[Point]) -> Result<f64> {
+    let old = memory::twin(region.mesh.positions())?;
+    let mut part =
+        memory::sifted((0..old.len() as u32).map(|v| if region.is_anchor(v) { 0.0 } else { 1.0 }))?;
+    let faces = memory::sifted(region.patch_faces())?;
+    let corners = faces.iter().map(|&(_, face)| region.mesh.corners(face));
+    let before = memory::gathered(corners.map(|c| (area_vector(c), quality(c))))?;
     loop {
         for v in region.free() {
             let i = v as usize;
             region.mesh.set_position(v, between(old[i], goal[i], part[i]));
         }
-        let mut bad = vec![false; old.len()];
+        let mut bad = memory::repeated(false, old.len())?;
         let mut any = false;
         for (&(f, face), &(area, shape)) in faces.iter().zip(&before) {
             let sound = is_sound(region.mesh.corners(face), area, shape);
@@ -40,7 +39,7 @@ pub(super) fn move_guarded(region: &mut Region, goal: &[Point]) -> f64 {
         part.iter_mut().zip(&bad).filter(|(_, bad)| **bad).for_each(|(part, _)| *part = shorter(*part));
     }
     let moved = |(&a, &b): (&Point, &Point)| distance(a, b);
-    old.iter().zip(region.mesh.positions()).map(moved).fold(0.0, f64::max)
+    Ok(old.iter().zip(region.mesh.positions()).map(moved).fold(0.0, f64::max))
 }
 
 /// Moves one vertex to `goal`, or half or a quarter of the way, if the faces around it stay in order;

@@ -57,7 +57,7 @@ use super::answer::{self, Surroundings};
 use super::Scale;
 use crate::error::MeshError;
 use crate::hole_filling::{faces_at, FillOptions, Lids, Patch};
-use crate::memory::{Demand, Tool};
+use crate::memory::{self, Demand, Tool};
 use crate::mesh::{boundary_loops, Mesh, Working};
 use crate::progress::{Progress, Report};
 use crate::remesh::budget;
@@ -144,7 +144,7 @@ fn fill(working: &Working<'_>, options: &FillHolesOptions, progress: &Progress) 
     let at_loops = faces_at(mesh, &loops)?;
     let patches = choice::triangulate(mesh, &mut chosen, &at_loops, &geometry, progress)?;
     let mut filled = Filled::none();
-    let near = Neighborhoods::new(mesh.connectivity(), &at_loops);
+    let near = Neighborhoods::new(mesh.connectivity(), &at_loops)?;
     let shared = choice::on_several(&chosen);
     let filling = Filling { working, near, shared, options, progress };
     let total = patches.iter().map(|patch| patch.faces.len()).sum::<usize>().max(1) as f64;
@@ -199,16 +199,22 @@ impl Filling<'_> {
             self.options,
             progress,
             &mut |region, part, steps, energy| {
-                let (vertices, faces, _) = region.patch();
-                progress.set_surface(vertices.into_iter().map(|p| self.working.place(p)).collect(), faces);
+                let (mut vertices, faces, _) = region.patch()?;
+                vertices.iter_mut().for_each(|p| *p = self.working.place(*p));
+                progress.set_surface(vertices, faces);
                 watch(part, steps, energy);
+                Ok(())
             },
         )?;
+        memory::extend(&mut filled.vertices, region.free().len())?;
         filled.vertices.extend(region.free().map(|v| region.mesh.position(v)));
+        memory::extend(&mut filled.faces, region.mesh.n_faces() - region.n_outer)?;
         filled.faces.extend(region.patch_faces().map(|(_, face)| face.map(|v| region.global(v))));
-        filled.patch.resize(filled.faces.len(), filled.holes.len() as u32);
+        memory::grow(&mut filled.patch, filled.faces.len(), filled.holes.len() as u32)?;
         if completed.shape != PatchShape::Smooth {
-            filled.ridges.extend(surface::ridges(&region, MARKED_ANGLE));
+            let ridges = surface::ridges(&region, MARKED_ANGLE)?;
+            memory::extend(&mut filled.ridges, ridges.len())?;
+            filled.ridges.extend(ridges);
         }
         Ok(completed)
     }

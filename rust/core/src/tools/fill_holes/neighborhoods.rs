@@ -2,7 +2,9 @@
 
 use std::collections::HashSet;
 
+use crate::memory;
 use crate::mesh::Connectivity;
+use crate::Result;
 
 /// The faces at the loops of a mesh, and those around them on demand.
 pub(super) struct Neighborhoods<'a> {
@@ -13,11 +15,11 @@ pub(super) struct Neighborhoods<'a> {
 
 impl<'a> Neighborhoods<'a> {
     /// Those of `connectivity`, given the faces at the loops ([`crate::hole_filling::faces_at`]).
-    pub(super) fn new(connectivity: &'a Connectivity, at_loops: &[u32]) -> Self {
+    pub(super) fn new(connectivity: &'a Connectivity, at_loops: &[u32]) -> Result<Self> {
         let corners = |&f: &u32| connectivity.faces()[f as usize].map(|v| (v, f));
-        let mut corners: Vec<(u32, u32)> = at_loops.iter().flat_map(corners).collect();
+        let mut corners = memory::sifted(at_loops.iter().flat_map(corners))?;
         corners.sort_unstable();
-        Self { connectivity, corners }
+        Ok(Self { connectivity, corners })
     }
 
     /// The faces of a vertex on a loop.
@@ -30,47 +32,59 @@ impl<'a> Neighborhoods<'a> {
     ///
     /// Rings grow about every vertex through the edges with two faces. Of surfaces that touch in a vertex or
     /// an edge away from the seeds, only those belong to it that one reaches otherwise.
-    pub(super) fn within(&self, seeds: &[u32], rings: usize) -> Vec<u32> {
-        let mut front: Vec<u32> = seeds.iter().flat_map(|&v| self.at(v)).collect();
+    pub(super) fn within(&self, seeds: &[u32], rings: usize) -> Result<Vec<u32>> {
+        let mut front = memory::sifted(seeds.iter().flat_map(|&v| self.at(v)))?;
         front.sort_unstable();
         front.dedup();
-        let mut found: HashSet<u32> = front.iter().copied().collect();
-        let mut faces = front.clone();
+        let mut found = HashSet::new();
+        memory::extend_set(&mut found, front.len())?;
+        found.extend(front.iter().copied());
+        let mut faces = memory::twin(&front)?;
         let mut turned = HashSet::new();
         for _ in 1..rings {
             let mut next = Vec::new();
             for corner in front.iter().flat_map(|&f| 3 * f..3 * f + 3) {
                 self.turn(corner, &mut turned, |f| {
+                    memory::extend_set(&mut found, 1)?;
                     if found.insert(f) {
-                        next.push(f);
+                        memory::push(&mut next, f)?;
                     }
-                });
+                    Ok(())
+                })?;
             }
+            memory::extend(&mut faces, next.len())?;
             faces.extend_from_slice(&next);
             front = next;
         }
         faces.sort_unstable();
-        faces
+        Ok(faces)
     }
 
     /// Visits the faces of the fan about the vertex at `corner`,
     /// unless one of its corners was `turned` before.
-    fn turn(&self, corner: u32, turned: &mut HashSet<u32>, mut visit: impl FnMut(u32)) {
+    fn turn(
+        &self,
+        corner: u32,
+        turned: &mut HashSet<u32>,
+        mut visit: impl FnMut(u32) -> Result<()>,
+    ) -> Result<()> {
         let faces = self.connectivity.faces();
         let vertex = faces[corner as usize / 3][corner as usize % 3];
         let mut stack = vec![corner];
         while let Some(corner) = stack.pop() {
+            memory::extend_set(turned, 1)?;
             if !turned.insert(corner) {
                 continue;
             }
             let f = corner / 3;
-            visit(f);
+            visit(f)?;
             for h in (3 * f..3 * f + 3).filter(|&h| h != corner) {
                 let Some(mate) = self.connectivity.mate(h as usize) else { continue };
                 let beside = faces[mate / 3].iter().position(|&v| v == vertex);
                 stack.extend(beside.map(|i| (mate - mate % 3 + i) as u32));
             }
         }
+        Ok(())
     }
 }
 
@@ -102,12 +116,12 @@ mod tests {
         for shape in [open, grid(9, 7)] {
             let mesh = shape.mesh().unwrap();
             let loops = boundary_loops(mesh.connectivity());
-            let near = Neighborhoods::new(mesh.connectivity(), &faces_at(&mesh, &loops).unwrap());
+            let near = Neighborhoods::new(mesh.connectivity(), &faces_at(&mesh, &loops).unwrap()).unwrap();
             for (vertices, rings) in
                 loops.iter().flat_map(|vertices| [1, 2, 5].map(|rings| (vertices, rings)))
             {
                 let expected = by_passes(mesh.connectivity().faces(), vertices, rings);
-                assert_eq!(near.within(vertices, rings), expected);
+                assert_eq!(near.within(vertices, rings).unwrap(), expected);
             }
         }
     }
@@ -117,8 +131,8 @@ mod tests {
         // Two tetrahedra, open at the bottom, that touch in vertex 0 of both loops.
         let faces = vec![[0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 4, 6], [4, 5, 6], [5, 0, 6]];
         let connectivity = Connectivity::new(faces, 7).unwrap();
-        let near = Neighborhoods::new(&connectivity, &[0, 1, 2, 3, 5]);
-        assert_eq!(near.within(&[0, 1, 2], 1), [0, 1, 2, 3, 5]);
-        assert_eq!(near.within(&[0, 1, 2], 2), [0, 1, 2, 3, 4, 5]);
+        let near = Neighborhoods::new(&connectivity, &[0, 1, 2, 3, 5]).unwrap();
+        assert_eq!(near.within(&[0, 1, 2], 1).unwrap(), [0, 1, 2, 3, 5]);
+        assert_eq!(near.within(&[0, 1, 2], 2).unwrap(), [0, 1, 2, 3, 4, 5]);
     }
 }

@@ -5,8 +5,10 @@ use super::constants::{NEAR_PART, PART_WIDTH, WORST_FIT};
 use super::model::Model;
 use super::region::Region;
 use super::surface::FaceGeometry;
+use crate::memory;
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::{add, norm, scale, unit, Point};
+use crate::Result;
 
 /// No part.
 pub(super) const NONE: u32 = u32::MAX;
@@ -23,43 +25,43 @@ impl SmoothParts {
     /// The parts around the patch of `region`, between edges bent by more than `ridge` radians. Nothing if a
     /// ridge at the hole has the same part on both sides, or a part is not smooth enough: then they do not
     /// say how the surface goes on.
-    pub(super) fn around(region: &Region, ridge: f64, edge: f64) -> Option<Self> {
+    pub(super) fn around(region: &Region, ridge: f64, edge: f64) -> Result<Option<Self>> {
         let mesh = &region.mesh;
-        let surface = FaceGeometry::of(region);
-        let mut on_rim = vec![false; mesh.n_vertices()];
+        let surface = FaceGeometry::of(region)?;
+        let mut on_rim = memory::repeated(false, mesh.n_vertices())?;
         region.patch_faces().for_each(|(_, face)| face.into_iter().for_each(|v| on_rim[v as usize] = true));
         let mut pieces = Partition::new(region.n_outer);
         let mut ridges = Vec::new();
         let mut seeds = Vec::new();
-        for [a, b] in mesh.edges() {
+        for [a, b] in mesh.edges()? {
             let Some(wings) = mesh.wings(a, b) else { continue };
             let [f, g] = wings.faces;
             match [f, g].map(|f| region.is_patch(f)) {
                 [true, true] => {}
-                [true, false] => seeds.push(g),
-                [false, true] => seeds.push(f),
+                [true, false] => memory::push(&mut seeds, g)?,
+                [false, true] => memory::push(&mut seeds, f)?,
                 [false, false] if surface.dihedral([f, g]) > ridge => {
                     if on_rim[a as usize] || on_rim[b as usize] {
-                        ridges.push([f, g]);
+                        memory::push(&mut ridges, [f, g])?;
                     }
                 }
                 [false, false] => pieces.unite(f, g),
             }
         }
-        let roots: Vec<u32> = (0..region.n_outer as u32).map(|f| pieces.root(f)).collect();
+        let roots = memory::sifted((0..region.n_outer as u32).map(|f| pieces.root(f)))?;
         if ridges.iter().any(|&[f, g]| roots[f as usize] == roots[g as usize]) {
-            return None;
+            return Ok(None);
         }
-        let mut reached: Vec<u32> = seeds.into_iter().map(|f| roots[f as usize]).collect();
+        let mut reached = memory::gathered(seeds.into_iter().map(|f| roots[f as usize]))?;
         reached.sort_unstable();
         reached.dedup();
-        let of_face: Vec<u32> =
-            roots.iter().map(|r| reached.binary_search(r).map_or(NONE, |part| part as u32)).collect();
-        let rings = rings(region, &on_rim);
+        let part_of = |r: &u32| reached.binary_search(r).map_or(NONE, |part| part as u32);
+        let of_face = memory::gathered(roots.iter().map(part_of))?;
+        let rings = rings(region, &on_rim)?;
         let models =
             (0..reached.len() as u32).map(|part| model(region, &surface, &of_face, &rings, part, edge));
-        let models = models.collect::<Option<Vec<_>>>()?;
-        Some(Self { of_face, models })
+        let models = models.collect::<Result<Option<Vec<_>>>>()?;
+        Ok(models.map(|models| Self { of_face, models }))
     }
 
     /// Whether `p` lies on the surface that `part` goes on as.
@@ -76,9 +78,9 @@ impl SmoothParts {
 }
 
 /// The number of edges between every vertex and the hole.
-fn rings(region: &Region, on_rim: &[bool]) -> Vec<u32> {
-    let mut rings: Vec<u32> = on_rim.iter().map(|&at| if at { 0 } else { u32::MAX }).collect();
-    let mut front: Vec<u32> = (0..rings.len() as u32).filter(|&v| on_rim[v as usize]).collect();
+fn rings(region: &Region, on_rim: &[bool]) -> Result<Vec<u32>> {
+    let mut rings = memory::gathered(on_rim.iter().map(|&at| if at { 0 } else { u32::MAX }))?;
+    let mut front = memory::sifted((0..rings.len() as u32).filter(|&v| on_rim[v as usize]))?;
     let mut ring = 0;
     while !front.is_empty() {
         ring += 1;
@@ -86,12 +88,12 @@ fn rings(region: &Region, on_rim: &[bool]) -> Vec<u32> {
         for w in front.into_iter().flat_map(|v| region.mesh.neighbors(v)) {
             if rings[w as usize] == u32::MAX {
                 rings[w as usize] = ring;
-                next.push(w);
+                memory::push(&mut next, w)?;
             }
         }
         front = next;
     }
-    rings
+    Ok(rings)
 }
 
 fn model(
@@ -101,8 +103,8 @@ fn model(
     rings: &[u32],
     part: u32,
     edge: f64,
-) -> Option<Model> {
-    let mut weights = vec![0.0; region.anchors.len()];
+) -> Result<Option<Model>> {
+    let mut weights = memory::repeated(0.0, region.anchors.len())?;
     let mut normal = [0.0; 3];
     for (f, face) in region.mesh.faces().take(region.n_outer) {
         if of_face[f as usize] != part {
@@ -116,12 +118,9 @@ fn model(
         }
     }
     if norm(normal) <= 0.0 {
-        return None;
+        return Ok(None);
     }
-    let points: Vec<_> = (0..)
-        .zip(weights)
-        .filter(|&(_, weight)| weight > 0.0)
-        .map(|(v, weight)| (region.mesh.position(v), weight))
-        .collect();
-    Model::fit(&points, unit(normal), edge).filter(|model| model.misfit < WORST_FIT * edge)
+    let weighted = (0..).zip(weights).filter(|&(_, weight)| weight > 0.0);
+    let points = memory::sifted(weighted.map(|(v, weight)| (region.mesh.position(v), weight)))?;
+    Ok(Model::fit(&points, unit(normal), edge).filter(|model| model.misfit < WORST_FIT * edge))
 }

@@ -5,16 +5,22 @@ use std::collections::{HashMap, HashSet};
 use super::neighborhoods::Neighborhoods;
 use crate::error::MeshError;
 use crate::hole_filling::Patch;
+use crate::memory;
 use crate::mesh::vector::Point;
 use crate::mesh::Mesh;
 use crate::remesh::editable::key;
 use crate::remesh::EditableMesh;
+use crate::Result;
+
+/// A patch alone: its vertices, those on the rim first, its faces, and the number in the region of each vertex
+/// on the rim.
+pub(super) type PatchAlone = (Vec<Point>, Vec<[u32; 3]>, Vec<u32>);
 
 /// A patch and its surroundings as a small mesh of its own.
 ///
 /// Vertices that stay (those of the mesh) come first, then those of the patch; faces around the patch come
 /// first, then those of the patch. Only patch faces are ever changed.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Region {
     /// Positions and faces, as they are now.
     pub mesh: EditableMesh,
@@ -38,32 +44,27 @@ impl Region {
         first_new: u32,
         rings: usize,
         shared: &HashSet<u32>,
-    ) -> Result<Self, MeshError> {
+    ) -> Result<Self> {
         let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
         let n = positions.len() as u32;
-        let mut rim: Vec<u32> = patch.faces.iter().flatten().copied().filter(|&v| v < n).collect();
+        let mut rim = memory::sifted(patch.faces.iter().flatten().copied().filter(|&v| v < n))?;
         rim.sort_unstable();
         rim.dedup();
-        let outer: Vec<[u32; 3]> = near
-            .within(&rim, rings)
-            .into_iter()
-            .map(|f| mesh.connectivity().faces()[f as usize])
-            .filter(|[a, b, c]| a != b && b != c && c != a)
-            .collect();
-        let mut anchors: Vec<u32> = outer.iter().flatten().chain(&rim).copied().collect();
+        let around = near.within(&rim, rings)?.into_iter().map(|f| mesh.connectivity().faces()[f as usize]);
+        let outer = memory::sifted(around.filter(|[a, b, c]| a != b && b != c && c != a))?;
+        let mut anchors = memory::sifted(outer.iter().flatten().chain(&rim).copied())?;
         anchors.sort_unstable();
         anchors.dedup();
-        let number: HashMap<u32, u32> = anchors.iter().copied().zip(0..).collect();
+        let number = numbered(&anchors)?;
         let n_anchors = anchors.len() as u32;
         let local =
             |v: u32| number.get(&v).copied().unwrap_or_else(|| n_anchors + v.saturating_sub(first_new));
-        let points =
-            anchors.iter().map(|&v| positions[v as usize]).chain(patch.vertices.iter().copied()).collect();
+        let stay = anchors.iter().map(|&v| positions[v as usize]);
+        let points = memory::sifted(stay.chain(patch.vertices.iter().copied()))?;
         let n_outer = outer.len();
-        let faces =
-            outer.into_iter().chain(patch.faces.iter().copied()).map(|face| face.map(local)).collect();
-        let shared: Vec<u32> =
-            (0..).zip(&anchors).filter(|(_, v)| shared.contains(v)).map(|(v, _)| v).collect();
+        let faces = outer.into_iter().chain(patch.faces.iter().copied());
+        let faces = memory::sifted(faces.map(|face| face.map(local)))?;
+        let shared = memory::sifted((0..).zip(&anchors).filter(|(_, v)| shared.contains(v)).map(|(v, _)| v))?;
         let pairs =
             shared.iter().enumerate().flat_map(|(i, &a)| shared[i + 1..].iter().map(move |&b| key(a, b)));
         let mut region = Self {
@@ -71,10 +72,21 @@ impl Region {
             n_outer,
             anchors,
             first_new,
-            forbidden: pairs.collect(),
+            forbidden: memory::sifted(pairs)?,
         };
         region.forbid();
         Ok(region)
+    }
+
+    /// A copy.
+    pub(super) fn twin(&self) -> Result<Self> {
+        Ok(Self {
+            mesh: self.mesh.twin()?,
+            n_outer: self.n_outer,
+            anchors: memory::twin(&self.anchors)?,
+            first_new: self.first_new,
+            forbidden: memory::twin(&self.forbidden)?,
+        })
     }
 
     /// Tells the mesh what must not be made.
@@ -100,13 +112,13 @@ impl Region {
     }
 
     /// Which vertices stay.
-    pub(super) fn fixed(&self) -> Vec<bool> {
-        (0..self.mesh.n_vertices() as u32).map(|v| self.is_anchor(v)).collect()
+    pub(super) fn fixed(&self) -> Result<Vec<bool>> {
+        Ok(memory::sifted((0..self.mesh.n_vertices() as u32).map(|v| self.is_anchor(v)))?)
     }
 
     /// All faces; none is ever removed.
-    pub(super) fn faces(&self) -> Vec<[u32; 3]> {
-        self.mesh.faces().map(|(_, face)| face).collect()
+    pub(super) fn faces(&self) -> Result<Vec<[u32; 3]>> {
+        Ok(memory::sifted(self.mesh.faces().map(|(_, face)| face))?)
     }
 
     /// The faces of the patch.
@@ -115,8 +127,8 @@ impl Region {
     }
 
     /// The surface as it is now.
-    pub(super) fn to_mesh(&self) -> Result<Mesh, MeshError> {
-        Mesh::new(self.mesh.positions().to_vec(), self.faces())
+    pub(super) fn to_mesh(&self) -> Result<Mesh> {
+        Ok(Mesh::new(memory::twin(self.mesh.positions())?, self.faces()?)?)
     }
 
     /// The number in the whole mesh of vertex `v`.
@@ -125,37 +137,41 @@ impl Region {
         self.anchors.get(v as usize).copied().unwrap_or_else(|| self.first_new + (v - n))
     }
 
-    /// The patch alone: its vertices, those on the rim first, its faces,
-    /// and the number here of each vertex on the rim.
-    pub(super) fn patch(&self) -> (Vec<Point>, Vec<[u32; 3]>, Vec<u32>) {
-        let mut rim: Vec<u32> =
-            self.patch_faces().flat_map(|(_, face)| face).filter(|&v| self.is_anchor(v)).collect();
+    /// The patch alone.
+    pub(super) fn patch(&self) -> Result<PatchAlone> {
+        let corners = self.patch_faces().flat_map(|(_, face)| face);
+        let mut rim = memory::sifted(corners.filter(|&v| self.is_anchor(v)))?;
         rim.sort_unstable();
         rim.dedup();
-        let number: HashMap<u32, u32> = rim.iter().copied().zip(0..).collect();
+        let number = numbered(&rim)?;
         let shift = self.anchors.len() as u32 - rim.len() as u32;
         let local = |v: u32| number.get(&v).copied().unwrap_or_else(|| v.saturating_sub(shift));
-        let points = rim.iter().copied().chain(self.free()).map(|v| self.mesh.position(v)).collect();
-        (points, self.patch_faces().map(|(_, face)| face.map(local)).collect(), rim)
+        let points = memory::sifted(rim.iter().copied().chain(self.free()).map(|v| self.mesh.position(v)))?;
+        let faces = memory::sifted(self.patch_faces().map(|(_, face)| face.map(local)))?;
+        Ok((points, faces, rim))
     }
 
     /// Puts another patch in the place of the present one: like [`Region::patch`], with the same rim.
-    pub(super) fn replace_patch(
-        &mut self,
-        points: &[Point],
-        faces: &[[u32; 3]],
-        rim: &[u32],
-    ) -> Result<(), MeshError> {
+    pub(super) fn replace_patch(&mut self, points: &[Point], faces: &[[u32; 3]], rim: &[u32]) -> Result<()> {
         let n = self.anchors.len();
         let shift = n as u32 - rim.len() as u32;
         let number = |v: u32| rim.get(v as usize).copied().unwrap_or(v + shift);
-        let all = self.mesh.positions()[..n].iter().chain(points.iter().skip(rim.len())).copied().collect();
+        let all =
+            memory::sifted(self.mesh.positions()[..n].iter().chain(points.iter().skip(rim.len())).copied())?;
         let outer = self.mesh.faces().take(self.n_outer).map(|(_, face)| face);
-        let faces = outer.chain(faces.iter().map(|face| face.map(number))).collect();
+        let faces = memory::sifted(outer.chain(faces.iter().map(|face| face.map(number))))?;
         self.mesh = EditableMesh::new(all, faces)?;
         self.forbid();
         Ok(())
     }
+}
+
+/// The place of each of `vertices`.
+fn numbered(vertices: &[u32]) -> Result<HashMap<u32, u32>> {
+    let mut number = HashMap::new();
+    memory::extend_map(&mut number, vertices.len())?;
+    number.extend(vertices.iter().copied().zip(0..));
+    Ok(number)
 }
 
 #[cfg(test)]
@@ -175,7 +191,7 @@ pub(super) mod tests {
         let hole = find_holes(&mesh).unwrap().remove(0).vertices;
         let patch = fill_loop(&mesh, &hole, &FillOptions::default(), &Progress::new()).unwrap();
         let at = faces_at(&mesh, std::slice::from_ref(&hole)).unwrap();
-        let near = Neighborhoods::new(mesh.connectivity(), &at);
+        let near = Neighborhoods::new(mesh.connectivity(), &at).unwrap();
         let n = mesh.connectivity().n_vertices() as u32;
         Region::new(&mesh, &near, &patch, n, super::super::constants::REGION_RINGS, &HashSet::new()).unwrap()
     }
@@ -183,10 +199,10 @@ pub(super) mod tests {
     #[test]
     fn a_patch_replaced_by_itself_is_the_same() {
         let mut region = around_hole(&crate::shapes::icosphere(3), [0.0, 0.0, 1.0], 0.4);
-        let before = (region.mesh.positions().to_vec(), region.faces());
-        let (points, faces, rim) = region.patch();
+        let before = (region.mesh.positions().to_vec(), region.faces().unwrap());
+        let (points, faces, rim) = region.patch().unwrap();
         assert!(rim.iter().all(|&v| region.is_anchor(v)));
         region.replace_patch(&points, &faces, &rim).unwrap();
-        assert_eq!((region.mesh.positions().to_vec(), region.faces()), before);
+        assert_eq!((region.mesh.positions().to_vec(), region.faces().unwrap()), before);
     }
 }

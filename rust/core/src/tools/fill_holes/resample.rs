@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::region::Region;
+use crate::memory;
 use crate::mesh::vector::{distance, norm};
 use crate::progress::Progress;
 use crate::remesh::budget;
@@ -51,7 +52,7 @@ pub(super) fn resample(
     progress: &Progress,
 ) -> Result<()> {
     let &Target { edge_length, max_faces, rounds } = target;
-    let (points, faces, rim) = region.patch();
+    let (points, faces, rim) = region.patch()?;
     let n = rim.len();
     let mut mesh = EditableMesh::new(points, faces)?;
     let place = |v: u32| rim.binary_search(&v).ok().map(|i| i as u32);
@@ -61,7 +62,7 @@ pub(super) fn resample(
         Edge::NonManifold => true,
         Edge::None => false,
     };
-    let edges = region.mesh.edges().into_iter().filter(outside).chain(region.forbidden.iter().copied());
+    let edges = region.mesh.edges()?.into_iter().filter(outside).chain(region.forbidden.iter().copied());
     for [a, b] in edges {
         if let (Some(a), Some(b)) = (place(a), place(b)) {
             mesh.forbid_edge(a, b);
@@ -94,43 +95,43 @@ pub(super) fn resample(
         .filter_map(|&[a, b]| Some(key(number(a)?, number(b)?)))
         .filter(|[a, b]| a != b)
         .collect();
-    let surface = Reference::of(&mesh);
-    let fixed: Vec<bool> = (0..mesh.n_vertices()).map(|v| v < n).collect();
+    let surface = Reference::of(&mesh)?;
+    let fixed = memory::gathered((0..mesh.n_vertices()).map(|v| v < n))?;
     let keep = Keep {
         fixed: &fixed,
         fixed_faces: false,
         feature_cosine: kept.ridge.cos(),
         features: Some(&features),
     };
-    let typical = typical_edge(&mesh);
-    let (growth, rim_edge) = growth_from_rim(&mesh, edge_length, max_faces);
+    let typical = typical_edge(&mesh)?;
+    let (growth, rim_edge) = growth_from_rim(&mesh, edge_length, max_faces)?;
     let mut remesher = Remesher::new(mesh, &surface, &keep, |mesh, curves| match edge_length {
         Some(length) => Sizing::uniform(length, growth, mesh, curves),
         None if growth > 0.0 => Sizing::grown(rim_edge, growth, mesh, curves),
-        None => Sizing::graded(vec![typical; mesh.n_vertices()], 0.0, mesh, curves),
-    });
+        None => Sizing::graded(memory::repeated(typical, mesh.n_vertices())?, 0.0, mesh, curves),
+    })?;
     run(&mut remesher, rounds, budget::patch_faces(max_faces, n), &progress.quiet())?;
-    let (points, faces, _) = remesher.mesh.into_parts(|v| (v as usize) < n);
-    Ok(region.replace_patch(&points, &faces, &rim)?)
+    let (points, faces, _) = remesher.mesh.into_parts(|v| (v as usize) < n)?;
+    region.replace_patch(&points, &faces, &rim)
 }
 
 /// By how much edges of the patch `mesh` must grow for every unit of distance from its rim,
 /// and how long those at the rim are.
-fn growth_from_rim(mesh: &EditableMesh, edge_length: Option<f64>, max_faces: usize) -> (f64, f64) {
+fn growth_from_rim(mesh: &EditableMesh, edge_length: Option<f64>, max_faces: usize) -> Result<(f64, f64)> {
     let is_border = |&[a, b]: &[u32; 2]| matches!(mesh.edge(a, b), Edge::Border(..));
     let length = |[a, b]: [u32; 2]| distance(mesh.position(a), mesh.position(b));
-    let rim: Vec<f64> = mesh.edges().into_iter().filter(is_border).map(length).collect();
+    let rim = memory::sifted(mesh.edges()?.into_iter().filter(is_border).map(length))?;
     let total: f64 = rim.iter().sum();
     let edge = edge_length.unwrap_or(total / rim.len().max(1) as f64);
     let area: f64 = mesh.faces().map(|(f, _)| norm(mesh.area_vector(f))).sum();
-    (growth(area, total, edge, max_faces), edge)
+    Ok((growth(area, total, edge, max_faces), edge))
 }
 
 /// The mean edge length.
-pub(super) fn typical_edge(mesh: &EditableMesh) -> f64 {
-    let edges = mesh.edges();
+pub(super) fn typical_edge(mesh: &EditableMesh) -> Result<f64> {
+    let edges = mesh.edges()?;
     let sum: f64 = edges.iter().map(|&[a, b]| distance(mesh.position(a), mesh.position(b))).sum();
-    sum / f64::max(edges.len() as f64, 1.0)
+    Ok(sum / f64::max(edges.len() as f64, 1.0))
 }
 
 #[cfg(test)]
@@ -152,7 +153,7 @@ mod tests {
         let (progress, coarse) = (Progress::new(), FillOptions { max_faces: 1500, ..FillOptions::default() });
         let patch = fill_loop(&mesh, &hole, &coarse, &progress).unwrap();
         let at = faces_at(&mesh, std::slice::from_ref(&hole)).unwrap();
-        let near = Neighborhoods::new(mesh.connectivity(), &at);
+        let near = Neighborhoods::new(mesh.connectivity(), &at).unwrap();
         let n = mesh.connectivity().n_vertices() as u32;
         let mut region = Region::new(&mesh, &near, &patch, n, 2, &HashSet::new()).unwrap();
         let mut faces_after = |max_faces| {

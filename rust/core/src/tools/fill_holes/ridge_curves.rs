@@ -2,8 +2,13 @@
 
 use super::region::Region;
 use super::surface::FaceGeometry;
+use crate::memory;
 use crate::mesh::vector::{distance, dot, norm, sub};
 use crate::remesh::curves::CORNER_COSINE;
+use crate::Result;
+
+/// Vertices, their coefficients, and the length that they stand for.
+type Row = ([u32; 4], [f64; 4], f64);
 
 /// Rows of the third derivative along the ridges: vertices, their coefficients,
 /// and the length that each row stands for.
@@ -11,13 +16,13 @@ use crate::remesh::curves::CORNER_COSINE;
 /// Every edge of a ridge that goes on at both ends has one: the third divided difference, by chord length,
 /// over its four vertices. It vanishes on straight lines and nearly so on arcs of circles. Edges bent by more
 /// than `ridge` radians are ridges.
-pub(super) fn third_derivatives(region: &Region, ridge: f64) -> Vec<([u32; 4], [f64; 4], f64)> {
+pub(super) fn third_derivatives(region: &Region, ridge: f64) -> Result<Vec<Row>> {
     let mesh = &region.mesh;
-    let surface = FaceGeometry::of(region);
+    let surface = FaceGeometry::of(region)?;
     let is_ridge =
         |&[a, b]: &[u32; 2]| mesh.wings(a, b).is_some_and(|wings| surface.dihedral(wings.faces) > ridge);
-    let edges: Vec<[u32; 2]> = mesh.edges().into_iter().filter(is_ridge).collect();
-    let mut ends: Vec<Vec<u32>> = vec![Vec::new(); mesh.n_vertices()];
+    let edges = memory::sifted(mesh.edges()?.into_iter().filter(is_ridge))?;
+    let mut ends: Vec<Vec<u32>> = memory::repeated(Vec::new(), mesh.n_vertices())?;
     for &[a, b] in &edges {
         ends[a as usize].push(b);
         ends[b as usize].push(a);
@@ -45,5 +50,5 @@ pub(super) fn third_derivatives(region: &Region, ridge: f64) -> Vec<([u32; 4], [
             [0, 1, 2, 3].map(|i| 6.0 / others(i).map(|j| places[i] - places[j]).product::<f64>());
         coefficients.iter().all(|c| c.is_finite()).then_some((vertices, coefficients, places[2] - places[1]))
     };
-    edges.iter().filter_map(row).collect()
+    Ok(memory::sifted(edges.iter().filter_map(row))?)
 }

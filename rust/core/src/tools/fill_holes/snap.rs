@@ -6,8 +6,10 @@ use super::guard::move_one;
 use super::region::Region;
 use super::surface::FaceGeometry;
 use crate::linear::small::Quadric;
+use crate::memory;
 use crate::mesh::vector::{add, distance, dot, norm, scale, sub, Point};
 use crate::remesh::Rings;
+use crate::Result;
 
 /// What snapping is done with.
 #[derive(Debug, Clone, Copy)]
@@ -56,39 +58,37 @@ impl Snapping {
 /// Heckbert 1997) of the planes takes it onto a plane, onto the line of two, into the corner of three. In the
 /// directions that the planes leave free, it goes to the centroid of its neighbors: ridges and plane parts
 /// keep their triangles in shape.
-pub(super) fn snap(region: &mut Region, how: &Snapping) -> f64 {
-    let surface = FaceGeometry::of(region);
-    let bent = near_bends(region, &surface, how);
-    let mut moves: Vec<(f64, u32, Point)> = region
-        .free()
-        .into_par_iter()
-        .map_init(
-            || Rings::new(&region.mesh),
-            |rings, v| {
-                let step = step(region, &surface, &bent, rings, v, how);
-                (norm(step), v, add(region.mesh.position(v), step))
-            },
-        )
-        .collect();
+pub(super) fn snap(region: &mut Region, how: &Snapping) -> Result<f64> {
+    let surface = FaceGeometry::of(region)?;
+    let bent = near_bends(region, &surface, how)?;
+    let moves = region.free().into_par_iter().map_init(
+        || Rings::new(&region.mesh),
+        |rings, v| {
+            let rings = rings.as_mut().map_err(|error| error.clone())?;
+            let step = step(region, &surface, &bent, rings, v, how);
+            Ok((norm(step), v, add(region.mesh.position(v), step)))
+        },
+    );
+    let mut moves = memory::all(memory::joined(moves)?)?;
     // The nearest first: of several vertices that a corner attracts, only one finds room there.
     moves.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
-    moves.into_iter().fold(0.0, |longest: f64, (_, v, goal)| longest.max(move_one(region, v, goal)))
+    Ok(moves.into_iter().fold(0.0, |longest: f64, (_, v, goal)| longest.max(move_one(region, v, goal))))
 }
 
 /// Which vertices have an edge bent by more than the threshold on a face within `near` rings.
-fn near_bends(region: &Region, surface: &FaceGeometry, how: &Snapping) -> Vec<bool> {
-    let mut bent = vec![false; region.mesh.n_vertices()];
+fn near_bends(region: &Region, surface: &FaceGeometry, how: &Snapping) -> Result<Vec<bool>> {
+    let mut bent = memory::repeated(false, region.mesh.n_vertices())?;
     let is_bent = |f: u32| surface.face_angles[f as usize] > how.threshold;
     for (_, face) in region.mesh.faces().filter(|&(f, _)| is_bent(f)) {
         face.iter().for_each(|&v| bent[v as usize] = true);
     }
     for _ in 1..how.near {
-        let before = bent.clone();
+        let before = memory::twin(&bent)?;
         for (_, face) in region.mesh.faces().filter(|(_, face)| face.iter().any(|&v| before[v as usize])) {
             face.iter().for_each(|&v| bent[v as usize] = true);
         }
     }
-    bent
+    Ok(bent)
 }
 
 fn step(

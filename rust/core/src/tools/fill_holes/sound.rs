@@ -22,10 +22,10 @@ pub(super) fn completed_in_order(
     watch: &mut Watch<'_>,
 ) -> Result<Completed> {
     if patch.is_flat {
-        watch(region, 1.0, 0, None);
+        watch(region, 1.0, 0, None)?;
         return Ok(Completed { shape: PatchShape::Flat, ..Completed::smooth() });
     }
-    let start = region.clone();
+    let start = region.twin()?;
     let mut completed = complete(region, options, progress, watch)?;
     let mut best = order(region, patch.lid_normal);
     if best >= 0.0 {
@@ -33,7 +33,7 @@ pub(super) fn completed_in_order(
     }
     let mut simpler = Vec::new();
     if completed.sharpness > 0.0 {
-        let mut smooth = start.clone();
+        let mut smooth = start.twin()?;
         let options = FillHolesOptions { shape: PatchShape::Smooth, ..options.clone() };
         complete(&mut smooth, &options, progress, watch)?;
         simpler.push(smooth);
@@ -50,7 +50,7 @@ pub(super) fn completed_in_order(
             break;
         }
     }
-    watch(region, 1.0, completed.iterations, None);
+    watch(region, 1.0, completed.iterations, None)?;
     Ok(completed)
 }
 

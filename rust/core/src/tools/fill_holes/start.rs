@@ -2,6 +2,7 @@
 
 use super::region::Region;
 use crate::linear::Columns;
+use crate::memory;
 use crate::operators::{Dual, Energy, EnergyForm};
 use crate::progress::Progress;
 use crate::solve::{quadratic, Coupling, Problem, Settings};
@@ -18,9 +19,9 @@ pub(super) fn smooth(region: &mut Region, energy: Energy, rounds: usize, progres
         let problem = Problem {
             operator: &form.operator,
             weights: form.weights,
-            fidelity: vec![0.0; region.mesh.n_vertices()],
+            fidelity: memory::repeated(0.0, region.mesh.n_vertices())?,
             target: Columns::from_points(region.mesh.positions())?,
-            fixed: region.fixed(),
+            fixed: region.fixed()?,
             linear_constraints: None,
             coupling: Coupling::Joint,
         };

@@ -1,8 +1,10 @@
 //! Normals, areas and dihedral angles of a region as it is now.
 
 use super::region::Region;
+use crate::memory;
 use crate::mesh::vector::{area_vector, centroid, cross, distance, dot, norm, scale, Point};
 use crate::remesh::editable::{key, Wings};
+use crate::Result;
 
 /// The angle between two directions of any length, in radians.
 pub(super) fn angle(a: Point, b: Point) -> f64 {
@@ -22,19 +24,19 @@ pub(super) struct FaceGeometry {
 }
 
 impl FaceGeometry {
-    pub(super) fn of(region: &Region) -> Self {
+    pub(super) fn of(region: &Region) -> Result<Self> {
         let mesh = &region.mesh;
-        let corners: Vec<_> = mesh.faces().map(|(_, face)| mesh.corners(face)).collect();
-        let vectors: Vec<Point> = corners.iter().map(|&c| area_vector(c)).collect();
-        let areas: Vec<f64> = vectors.iter().map(|&a| norm(a)).collect();
+        let corners = memory::sifted(mesh.faces().map(|(_, face)| mesh.corners(face)))?;
+        let vectors = memory::gathered(corners.iter().map(|&c| area_vector(c)))?;
+        let areas = memory::gathered(vectors.iter().map(|&a| norm(a)))?;
         let normal = |(a, &area): (&Point, &f64)| if area > 0.0 { scale(*a, 1.0 / area) } else { [0.0; 3] };
         let mut surface = Self {
-            normals: vectors.iter().zip(&areas).map(normal).collect(),
-            centers: corners.into_iter().map(centroid).collect(),
-            face_angles: vec![0.0; areas.len()],
+            normals: memory::gathered(vectors.iter().zip(&areas).map(normal))?,
+            centers: memory::gathered(corners.into_iter().map(centroid))?,
+            face_angles: memory::repeated(0.0, areas.len())?,
             areas,
         };
-        for [a, b] in mesh.edges() {
+        for [a, b] in mesh.edges()? {
             let Some(Wings { faces, .. }) = mesh.wings(a, b) else { continue };
             let theta = surface.dihedral(faces);
             for f in faces {
@@ -42,7 +44,7 @@ impl FaceGeometry {
                 *largest = largest.max(theta);
             }
         }
-        surface
+        Ok(surface)
     }
 
     /// The dihedral angle between two faces, 0 where they are coplanar.
@@ -52,26 +54,27 @@ impl FaceGeometry {
 }
 
 /// How much the patch is bent in all: `Σ length · |dihedral angle|` over its edges and those of its rim.
-pub(super) fn total_bend(region: &Region) -> f64 {
-    let surface = FaceGeometry::of(region);
+pub(super) fn total_bend(region: &Region) -> Result<f64> {
+    let surface = FaceGeometry::of(region)?;
     let mesh = &region.mesh;
     let bend = |[a, b]: [u32; 2]| {
         let faces = mesh.wings(a, b)?.faces;
         let at_patch = faces.iter().any(|&f| region.is_patch(f));
         at_patch.then(|| distance(mesh.position(a), mesh.position(b)) * surface.dihedral(faces))
     };
-    mesh.edges().into_iter().filter_map(bend).sum()
+    Ok(mesh.edges()?.into_iter().filter_map(bend).sum())
 }
 
 /// The edges at the patch that are bent by more than `least` radians, by vertices of the whole mesh,
 /// smaller first.
-pub(super) fn ridges(region: &Region, least: f64) -> Vec<[u32; 2]> {
-    let surface = FaceGeometry::of(region);
+pub(super) fn ridges(region: &Region, least: f64) -> Result<Vec<[u32; 2]>> {
+    let surface = FaceGeometry::of(region)?;
     let mesh = &region.mesh;
     let bent = |&[a, b]: &[u32; 2]| {
         let faces = mesh.wings(a, b).map(|wings| wings.faces);
         faces
             .is_some_and(|faces| faces.iter().any(|&f| region.is_patch(f)) && surface.dihedral(faces) > least)
     };
-    mesh.edges().into_iter().filter(bent).map(|[a, b]| key(region.global(a), region.global(b))).collect()
+    let edges = mesh.edges()?.into_iter().filter(bent);
+    Ok(memory::sifted(edges.map(|[a, b]| key(region.global(a), region.global(b))))?)
 }

@@ -5,7 +5,7 @@ use super::constants::{AS_IT_IS, CENTERINGS, CLUSTERS, LEAST_OPENNESS};
 use super::graph::{Edge, Graph};
 use crate::mesh::vector::{add, distance, scale};
 use crate::progress::Progress;
-use crate::Result;
+use crate::{memory, Result};
 
 /// The cluster of every node of `graph`, and how many there are: none is empty, and none is in two pieces.
 ///
@@ -14,15 +14,15 @@ use crate::Result;
 pub(super) fn clusters(graph: &Graph, progress: &Progress) -> Result<(Vec<u32>, usize)> {
     let n = graph.n_nodes();
     if n as f64 <= AS_IT_IS * CLUSTERS as f64 {
-        return Ok(((0..n as u32).collect(), n));
+        return Ok((memory::sifted(0..n as u32)?, n));
     }
     let mut seeds = spread(graph);
-    let (pieces, n_pieces) = graph.pieces(|_| true);
-    let mut seeded = vec![false; n_pieces];
+    let (pieces, n_pieces) = graph.pieces(|_| true)?;
+    let mut seeded = memory::repeated(false, n_pieces)?;
     seeds.iter().for_each(|&seed| seeded[pieces[seed as usize] as usize] = true);
     for (i, &piece) in (0..).zip(&pieces) {
         if !std::mem::replace(&mut seeded[piece as usize], true) {
-            seeds.push(i);
+            memory::push(&mut seeds, i)?;
         }
     }
     let step = |edge: &Edge| {
@@ -32,9 +32,9 @@ pub(super) fn clusters(graph: &Graph, progress: &Progress) -> Result<(Vec<u32>, 
     let mut labels = Vec::new();
     for round in 0..=CENTERINGS {
         progress.check()?;
-        labels = graph.nearest(&seeds, f64::INFINITY, step).1;
+        labels = graph.nearest(&seeds, f64::INFINITY, step)?.1;
         if round < CENTERINGS {
-            centered(graph, &labels, &mut seeds);
+            centered(graph, &labels, &mut seeds)?;
         }
     }
     Ok((labels, seeds.len()))
@@ -56,14 +56,14 @@ fn spread(graph: &Graph) -> Vec<u32> {
 }
 
 /// Moves every seed to the node of its cluster that is nearest to the middle.
-fn centered(graph: &Graph, labels: &[u32], seeds: &mut [u32]) {
-    let mut middles = vec![([0.0; 3], 0.0); seeds.len()];
+fn centered(graph: &Graph, labels: &[u32], seeds: &mut [u32]) -> Result<()> {
+    let mut middles = memory::repeated(([0.0; 3], 0.0), seeds.len())?;
     for (i, &label) in labels.iter().enumerate() {
         let (sum, area) = &mut middles[label as usize];
         *sum = add(*sum, scale(graph.centers[i], graph.areas[i]));
         *area += graph.areas[i];
     }
-    let mut nearest = vec![f64::INFINITY; seeds.len()];
+    let mut nearest = memory::repeated(f64::INFINITY, seeds.len())?;
     for (i, &label) in (0_u32..).zip(labels) {
         let (sum, area) = middles[label as usize];
         let far = distance(graph.centers[i as usize], scale(sum, 1.0 / area));
@@ -71,4 +71,5 @@ fn centered(graph: &Graph, labels: &[u32], seeds: &mut [u32]) {
             (nearest[label as usize], seeds[label as usize]) = (far, i);
         }
     }
+    Ok(())
 }

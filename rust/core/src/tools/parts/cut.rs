@@ -11,7 +11,7 @@ use super::tighten::moved;
 use crate::block_rows::BlockRows;
 use crate::progress::Progress;
 use crate::solve::eigen::Pencil;
-use crate::Result;
+use crate::{memory, Result};
 
 /// A part in two: which nodes are on the side that goes, and what the cut costs.
 #[derive(Debug, Clone, PartialEq)]
@@ -83,7 +83,7 @@ pub(super) fn cheapest(graph: &Graph, progress: &Progress) -> Result<Option<Cut>
     }
     let mut found: Vec<Cut> = Vec::new();
     for function in eigenfunctions(graph, progress)? {
-        sweep(graph, &function, &mut found);
+        sweep(graph, &function, &mut found)?;
     }
     found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let mut looked_at: Vec<Vec<bool>> = Vec::new();
@@ -92,13 +92,13 @@ pub(super) fn cheapest(graph: &Graph, progress: &Progress) -> Result<Option<Cut>
         if looked_at.len() == TIGHTENED {
             break;
         }
-        if !is_whole(graph, &side)
+        if !is_whole(graph, &side)?
             || looked_at.iter().any(|other| differ(graph, &side, other) < SAME_CUT * whole)
         {
             continue;
         }
-        looked_at.push(side.clone());
-        let side = tightened(graph, side);
+        looked_at.push(memory::twin(&side)?);
+        let side = tightened(graph, side)?;
         let cost = cost(graph, &side);
         if best.as_ref().is_none_or(|best| cost < best.cost) {
             best = Some(Cut { cost, side });
@@ -108,24 +108,23 @@ pub(super) fn cheapest(graph: &Graph, progress: &Progress) -> Result<Option<Cut>
 }
 
 /// Whether both sides are connected.
-fn is_whole(graph: &Graph, side: &[bool]) -> bool {
-    graph.pieces(|e| side[e.ends[0] as usize] == side[e.ends[1] as usize]).1 == 2
+fn is_whole(graph: &Graph, side: &[bool]) -> Result<bool> {
+    Ok(graph.pieces(|e| side[e.ends[0] as usize] == side[e.ends[1] as usize])?.1 == 2)
 }
 
 /// The cut moved to where it costs least within its band, as long as that makes it cheaper and both sides
 /// stay connected.
-fn tightened(graph: &Graph, mut side: Vec<bool>) -> Vec<bool> {
+fn tightened(graph: &Graph, mut side: Vec<bool>) -> Result<Vec<bool>> {
     let area = area_of(graph, &side);
     let width = BAND * area.min(graph.area() - area).max(0.0).sqrt();
     for _ in 0..TIGHTENINGS {
-        match moved(graph, &side, width) {
-            Some(better) if is_whole(graph, &better) && cost(graph, &better) < cost(graph, &side) => {
-                side = better
-            }
-            _ => break,
+        let Some(better) = moved(graph, &side, width)? else { break };
+        if !(is_whole(graph, &better)? && cost(graph, &better) < cost(graph, &side)) {
+            break;
         }
+        side = better;
     }
-    side
+    Ok(side)
 }
 
 /// The area in which two cuts differ, whichever side is called which.
@@ -138,11 +137,12 @@ fn differ(graph: &Graph, a: &[bool], b: &[bool]) -> f64 {
 /// The lowest eigenfunctions of the graph's Laplacian but the constant, where edges carry border cost over
 /// distance.
 fn eigenfunctions(graph: &Graph, progress: &Progress) -> Result<Vec<Vec<f64>>> {
-    let mut differences = BlockRows::empty(graph.n_nodes());
+    let n_edges = graph.edges.len();
+    let mut differences = BlockRows::with_room(graph.n_nodes(), n_edges, 2 * n_edges)?;
     for edge in &graph.edges {
         differences.push_block([(edge.ends[0], [1.0, 0.0, 0.0]), (edge.ends[1], [-1.0, 0.0, 0.0])]);
     }
-    let weights: Vec<f64> = graph.edges.iter().map(|e| e.cost / e.distance).collect();
+    let weights = memory::gathered(graph.edges.iter().map(|e| e.cost / e.distance))?;
     let pencil = Pencil {
         operator: &differences,
         weights: &weights,
@@ -159,14 +159,14 @@ fn eigenfunctions(graph: &Graph, progress: &Progress) -> Result<Vec<Vec<f64>>> {
 
 /// Adds the cheapest cuts along level sets of `function`, each connected piece of a level set's sides for
 /// itself.
-fn sweep(graph: &Graph, function: &[f64], found: &mut Vec<Cut>) {
+fn sweep(graph: &Graph, function: &[f64], found: &mut Vec<Cut>) -> Result<()> {
     let n = graph.n_nodes();
     let by_value = |a: &u32, b: &u32| function[*a as usize].total_cmp(&function[*b as usize]).then(a.cmp(b));
-    let mut order: Vec<u32> = (0..n as u32).collect();
+    let mut order = memory::sifted(0..n as u32)?;
     order.sort_by(|a, b| -> Ordering { by_value(a, b) });
-    let mut rank = vec![0_u32; n];
+    let mut rank = memory::repeated(0_u32, n)?;
     (0..).zip(&order).for_each(|(i, &node)| rank[node as usize] = i);
-    let mut rise = vec![0.0; n];
+    let mut rise = memory::repeated(0.0, n)?;
     for edge in &graph.edges {
         let [a, b] = edge.ends.map(|end| rank[end as usize] as usize);
         rise[a.min(b)] += edge.cost;
@@ -174,7 +174,7 @@ fn sweep(graph: &Graph, function: &[f64], found: &mut Vec<Cut>) {
     }
     let (all, mut below) = (Side::of(graph, |_| true), Side::default());
     let (whole, mut border) = (all.area, 0.0_f64);
-    let mut levels: Vec<(f64, f64)> = Vec::with_capacity(n - 1);
+    let mut levels: Vec<(f64, f64)> = memory::room(n - 1)?;
     for (&node, rise) in order.iter().zip(&rise).take(n - 1) {
         border += rise;
         below.add(graph, node as usize);
@@ -184,7 +184,7 @@ fn sweep(graph: &Graph, function: &[f64], found: &mut Vec<Cut>) {
     }
     for _ in 0..LEVELS {
         let cheapest = (0..levels.len()).min_by(|&i, &j| levels[i].0.total_cmp(&levels[j].0));
-        let Some(level) = cheapest.filter(|&i| levels[i].0.is_finite()) else { return };
+        let Some(level) = cheapest.filter(|&i| levels[i].0.is_finite()) else { break };
         let at = levels[level].1;
         let apart = LEVELS_APART * at.min(whole - at) + 0.01 * whole;
         levels
@@ -192,14 +192,15 @@ fn sweep(graph: &Graph, function: &[f64], found: &mut Vec<Cut>) {
             .filter(|(_, area)| (area - at).abs() < apart)
             .for_each(|(price, _)| *price = f64::INFINITY);
         let below = |end: u32| rank[end as usize] as usize <= level;
-        let (pieces, count) = graph.pieces(|e| below(e.ends[0]) == below(e.ends[1]));
+        let (pieces, count) = graph.pieces(|e| below(e.ends[0]) == below(e.ends[1]))?;
         // With two pieces each is the other's rest.
         for piece in 0..if count == 2 { 1 } else { count as u32 } {
-            let side: Vec<bool> = pieces.iter().map(|p| *p == piece).collect();
+            let side = memory::gathered(pieces.iter().map(|p| *p == piece))?;
             let area = area_of(graph, &side);
             if area.min(whole - area) >= LEAST_PART {
                 found.push(Cut { cost: cost(graph, &side), side });
             }
         }
     }
+    Ok(())
 }

@@ -8,7 +8,7 @@ use super::cut::{cheapest, Cut};
 use super::graph::{Graph, NONE};
 use crate::ordered::Ordered;
 use crate::progress::{Progress, Report};
-use crate::Result;
+use crate::{memory, Result};
 
 /// A part that was divided: the nodes on one side of the cut are a part of their own from then on, with
 /// the next number.
@@ -37,7 +37,7 @@ pub(super) fn divisions(graph: &Graph, wanted: Option<usize>, progress: &Progres
     let mut heap = BinaryHeap::new();
     let mut candidates: Vec<Option<Candidate>> = Vec::new();
     let mut divisions: Vec<Division> = Vec::new();
-    let all: Vec<u32> = (0..graph.n_nodes() as u32).collect();
+    let all = memory::sifted(0..graph.n_nodes() as u32)?;
     let mut fresh = vec![candidate(graph, 0, all, progress)?];
     loop {
         for found in fresh.drain(..).flatten() {
@@ -75,6 +75,6 @@ fn split(nodes: &[u32], side: &[bool]) -> (Vec<u32>, Vec<u32>) {
 }
 
 fn candidate(graph: &Graph, part: u32, nodes: Vec<u32>, progress: &Progress) -> Result<Option<Candidate>> {
-    let own = graph.subgraph(&nodes, &mut vec![NONE; graph.n_nodes()]);
+    let own = graph.subgraph(&nodes, &mut memory::repeated(NONE, graph.n_nodes())?)?;
     Ok(cheapest(&own, progress)?.map(|cut| Candidate { part, nodes, cut }))
 }

@@ -8,6 +8,7 @@ use super::constants::ROUNDING;
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::{add, distance, scale, Point};
 use crate::ordered::Ordered;
+use crate::{memory, Result};
 
 /// No node.
 pub(super) const NONE: u32 = u32::MAX;
@@ -38,20 +39,24 @@ pub(super) struct Graph {
 }
 
 impl Graph {
-    pub(super) fn new(areas: Vec<f64>, centers: Vec<Point>, mut edges: Vec<Edge>) -> Self {
+    /// The graph of these nodes and edges.
+    ///
+    /// # Errors
+    /// [`crate::error::SolveError::Memory`], as of all that makes arrays here.
+    pub(super) fn new(areas: Vec<f64>, centers: Vec<Point>, mut edges: Vec<Edge>) -> Result<Self> {
         for edge in &mut edges {
             edge.cost = edge.cost.max(ROUNDING);
             edge.distance = edge.distance.max(ROUNDING);
         }
-        let mut starts = vec![0_u32; areas.len() + 1];
+        let mut starts = memory::repeated(0_u32, areas.len() + 1)?;
         for end in edges.iter().flat_map(|e| e.ends) {
             starts[end as usize + 1] += 1;
         }
         for i in 0..areas.len() {
             starts[i + 1] += starts[i];
         }
-        let mut fill = starts.clone();
-        let mut arcs = vec![[0; 2]; 2 * edges.len()];
+        let mut fill = memory::twin(&starts)?;
+        let mut arcs = memory::repeated([0; 2], 2 * edges.len())?;
         for (i, edge) in (0_u32..).zip(&edges) {
             for (own, other) in [(0, 1), (1, 0)] {
                 let slot = &mut fill[edge.ends[own] as usize];
@@ -59,7 +64,7 @@ impl Graph {
                 *slot += 1;
             }
         }
-        Self { areas, centers, thickness: Vec::new(), edges, starts, arcs }
+        Ok(Self { areas, centers, thickness: Vec::new(), edges, starts, arcs })
     }
 
     /// The same with the logarithm of the thickness under each node.
@@ -73,8 +78,9 @@ impl Graph {
     }
 
     /// The same nodes with other edges.
-    pub(super) fn with_edges(&self, edges: Vec<Edge>) -> Self {
-        Self::new(self.areas.clone(), self.centers.clone(), edges).with_thickness(self.thickness.clone())
+    pub(super) fn with_edges(&self, edges: Vec<Edge>) -> Result<Self> {
+        let same = Self::new(memory::twin(&self.areas)?, memory::twin(&self.centers)?, edges)?;
+        Ok(same.with_thickness(memory::twin(&self.thickness)?))
     }
 
     pub(super) fn n_nodes(&self) -> usize {
@@ -92,7 +98,7 @@ impl Graph {
 
     /// The graph of some nodes, renumbered in their order; `place` has a row for every node, all [`NONE`],
     /// and is left so.
-    pub(super) fn subgraph(&self, nodes: &[u32], place: &mut [u32]) -> Self {
+    pub(super) fn subgraph(&self, nodes: &[u32], place: &mut [u32]) -> Result<Self> {
         (0..).zip(nodes).for_each(|(i, &node)| place[node as usize] = i);
         let mut edges = Vec::new();
         for (i, &node) in (0_u32..).zip(nodes) {
@@ -100,21 +106,22 @@ impl Graph {
                 let other = place[other as usize];
                 // Each edge is met from both ends; from its first one it is kept.
                 if other != NONE && self.edges[e as usize].ends[0] == node {
-                    edges.push(Edge { ends: [i, other], ..self.edges[e as usize] });
+                    memory::push(&mut edges, Edge { ends: [i, other], ..self.edges[e as usize] })?;
                 }
             }
         }
         nodes.iter().for_each(|&node| place[node as usize] = NONE);
-        let of = |values: &[f64]| nodes.iter().filter_map(|&i| values.get(i as usize).copied()).collect();
-        let centers = nodes.iter().map(|&i| self.centers[i as usize]).collect();
-        Self::new(of(&self.areas), centers, edges).with_thickness(of(&self.thickness))
+        let of =
+            |values: &[f64]| memory::sifted(nodes.iter().filter_map(|&i| values.get(i as usize).copied()));
+        let centers = memory::gathered(nodes.iter().map(|&i| self.centers[i as usize]))?;
+        Ok(Self::new(of(&self.areas)?, centers, edges)?.with_thickness(of(&self.thickness)?))
     }
 
     /// The graph of `n` clusters, given the one of each node: costs add up.
-    pub(super) fn quotient(&self, labels: &[u32], n: usize) -> Self {
-        let mut areas = vec![0.0; n];
-        let mut centers = vec![[0.0; 3]; n];
-        let mut thickness = vec![0.0; n];
+    pub(super) fn quotient(&self, labels: &[u32], n: usize) -> Result<Self> {
+        let mut areas = memory::repeated(0.0, n)?;
+        let mut centers = memory::repeated([0.0; 3], n)?;
+        let mut thickness = memory::repeated(0.0, n)?;
         for (i, &label) in labels.iter().enumerate() {
             areas[label as usize] += self.areas[i];
             centers[label as usize] = add(centers[label as usize], scale(self.centers[i], self.areas[i]));
@@ -138,29 +145,27 @@ impl Graph {
             cost,
             distance: apart(ends),
         });
-        let edges = edges.collect();
-        Self::new(areas, centers, edges).with_thickness(thickness)
+        let edges = memory::gathered(edges)?;
+        Ok(Self::new(areas, centers, edges)?.with_thickness(thickness))
     }
 
     /// The connected pieces over the edges that `keep` takes, numbered in the order of their first nodes,
     /// and how many there are.
-    pub(super) fn pieces(&self, keep: impl Fn(&Edge) -> bool) -> (Vec<u32>, usize) {
-        let mut partition = Partition::new(self.n_nodes());
+    pub(super) fn pieces(&self, keep: impl Fn(&Edge) -> bool) -> Result<(Vec<u32>, usize)> {
+        let mut partition = Partition::try_new(self.n_nodes())?;
         self.edges.iter().filter(|e| keep(e)).for_each(|e| partition.unite(e.ends[0], e.ends[1]));
-        let mut names = vec![NONE; self.n_nodes()];
+        let mut names = memory::repeated(NONE, self.n_nodes())?;
         let mut count = 0;
         // The root of a set is its least element, so it is met first.
-        let piece = (0..self.n_nodes() as u32)
-            .map(|i| {
-                let name = &mut names[partition.root(i) as usize];
-                if *name == NONE {
-                    *name = count;
-                    count += 1;
-                }
-                *name
-            })
-            .collect();
-        (piece, count as usize)
+        let piece = memory::sifted((0..self.n_nodes() as u32).map(|i| {
+            let name = &mut names[partition.root(i) as usize];
+            if *name == NONE {
+                *name = count;
+                count += 1;
+            }
+            *name
+        }))?;
+        Ok((piece, count as usize))
     }
 
     /// For each node the distance to the nearest of `seeds` along edges as long as `length` says, and
@@ -170,10 +175,11 @@ impl Graph {
         seeds: &[u32],
         limit: f64,
         length: impl Fn(&Edge) -> f64,
-    ) -> (Vec<f64>, Vec<u32>) {
-        let mut distances = vec![f64::INFINITY; self.n_nodes()];
-        let mut nearest = vec![NONE; self.n_nodes()];
+    ) -> Result<(Vec<f64>, Vec<u32>)> {
+        let mut distances = memory::repeated(f64::INFINITY, self.n_nodes())?;
+        let mut nearest = memory::repeated(NONE, self.n_nodes())?;
         let mut heap = BinaryHeap::new();
+        memory::extend_heap(&mut heap, seeds.len())?;
         for (i, &seed) in (0_u32..).zip(seeds) {
             (distances[seed as usize], nearest[seed as usize]) = (0.0, i);
             heap.push(Reverse((Ordered(0.0), seed)));
@@ -187,32 +193,34 @@ impl Graph {
                 if next <= limit && next < distances[other as usize] {
                     distances[other as usize] = next;
                     nearest[other as usize] = nearest[node as usize];
+                    memory::extend_heap(&mut heap, 1)?;
                     heap.push(Reverse((Ordered(next), other)));
                 }
             }
         }
-        (distances, nearest)
+        Ok((distances, nearest))
     }
 }
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     fn path() -> Graph {
         let edge = |a: u32, cost| Edge { ends: [a, a + 1], length: 3.0, cost, distance: 1.0 };
         let edges = vec![edge(0, 3.0), edge(1, 1.0), edge(2, 3.0)];
-        Graph::new(vec![1.0; 4], (0..4).map(|i| [f64::from(i), 0.0, 0.0]).collect(), edges)
+        Graph::new(vec![1.0; 4], (0..4).map(|i| [f64::from(i), 0.0, 0.0]).collect(), edges).unwrap()
     }
 
     #[test]
     fn parts_and_clusters_keep_areas_and_costs() {
         let graph = path();
         let mut place = vec![NONE; 4];
-        let part = graph.subgraph(&[1, 2, 3], &mut place);
+        let part = graph.subgraph(&[1, 2, 3], &mut place).unwrap();
         assert_eq!((part.n_nodes(), part.edges.len(), part.edges[1].cost), (3, 2, 3.0));
         assert!(place.iter().all(|p| *p == NONE));
-        let halves = graph.quotient(&[0, 0, 1, 1], 2);
+        let halves = graph.quotient(&[0, 0, 1, 1], 2).unwrap();
         assert_eq!(halves.areas, [2.0, 2.0]);
         assert_eq!(halves.edges, [Edge { ends: [0, 1], length: 3.0, cost: 1.0, distance: 2.0 }]);
     }
@@ -220,8 +228,8 @@ mod tests {
     #[test]
     fn pieces_and_distances_follow_the_edges() {
         let graph = path();
-        assert_eq!(graph.pieces(|edge| edge.cost > 2.0), (vec![0, 0, 1, 1], 2));
-        let (distances, nearest) = graph.nearest(&[0], 2.5, |edge| edge.distance);
+        assert_eq!(graph.pieces(|edge| edge.cost > 2.0).unwrap(), (vec![0, 0, 1, 1], 2));
+        let (distances, nearest) = graph.nearest(&[0], 2.5, |edge| edge.distance).unwrap();
         assert_eq!(distances, [0.0, 1.0, 2.0, f64::INFINITY]);
         assert_eq!(nearest, [0, 0, 0, NONE]);
     }

@@ -22,9 +22,10 @@ use crate::{memory, Result};
 /// [`crate::Error::Cancelled`].
 pub(super) fn border_graph(surface: &Surface, progress: &Progress) -> Result<Graph> {
     let flow = |length: f64, distance: f64| length / distance.max(f64::MIN_POSITIVE);
-    let links: Vec<Link> = surface.joints.iter().map(|j| (j.faces, flow(j.length, j.distance))).collect();
+    let links: Vec<Link> =
+        memory::gathered(surface.joints.iter().map(|j| (j.faces, flow(j.length, j.distance))))?;
     let smooth = diffused(&surface.areas, &links, BEND_SCALE, memory::twin(&surface.normals)?)?;
-    let normals: Vec<_> = smooth.into_iter().map(unit).collect();
+    let normals = memory::gathered(smooth.into_iter().map(unit))?;
     progress.check()?;
     let thickness = thickness(surface, &normals, &links, THICKNESS_SCALE, progress)?;
     let edges = surface.joints.par_iter().map(|joint| {
@@ -46,6 +47,6 @@ pub(super) fn border_graph(surface: &Surface, progress: &Progress) -> Result<Gra
             distance: joint.distance,
         }
     });
-    let edges = edges.collect();
-    Ok(Graph::new(surface.areas.clone(), surface.centers.clone(), edges).with_thickness(thickness))
+    let (areas, centers) = (memory::twin(&surface.areas)?, memory::twin(&surface.centers)?);
+    Ok(Graph::new(areas, centers, memory::joined(edges)?)?.with_thickness(thickness))
 }

@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use super::cut::Side;
 use super::graph::Graph;
 use crate::mesh::partition::Partition;
+use crate::Result;
 
 /// Parts that become one, two at a time.
 pub(super) struct Merging {
@@ -27,19 +28,25 @@ pub(super) struct Merging {
 impl Merging {
     /// The parts by `labels`, from 0, of a graph whose nodes lie in `pieces` that only gaps join; which part
     /// each comes from that was `found`, and up to which price cuts are made.
-    pub(super) fn new(graph: &Graph, pieces: &[u32], labels: &[u32], found: Vec<u32>, limit: f64) -> Self {
-        let parts = graph.quotient(labels, found.len());
+    pub(super) fn new(
+        graph: &Graph,
+        pieces: &[u32],
+        labels: &[u32],
+        found: Vec<u32>,
+        limit: f64,
+    ) -> Result<Self> {
+        let parts = graph.quotient(labels, found.len())?;
         let sides = (0..parts.n_nodes()).map(|i| Side::of(&parts, |node| node == i)).collect();
         let mut borders: BTreeMap<[u32; 2], f64> = BTreeMap::new();
         parts.edges.iter().for_each(|e| *borders.entry(ordered(e.ends)).or_default() += e.cost);
         // A part that holds a gap makes one piece of both sides.
-        let mut joined = Partition::new(found.len() + pieces.len());
+        let mut joined = Partition::try_new(found.len() + pieces.len())?;
         let name = |piece: u32| found.len() as u32 + piece;
         labels.iter().zip(pieces).for_each(|(&part, &piece)| joined.unite(part, name(piece)));
         let roots: Vec<u32> = (0..found.len() as u32).map(|part| joined.root(part)).collect();
         let others = |root: u32| roots.iter().filter(|r| **r == root).count() - 1;
         let pieces = roots.iter().map(|&root| (root, others(root))).collect();
-        Self { sides, borders, found, pieces, limit }
+        Ok(Self { sides, borders, found, pieces, limit })
     }
 
     /// The pairs that merge, the second into the first, with the price of the cut that goes,
@@ -98,18 +105,19 @@ fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::tools::parts::graph::Edge;
 
     /// Parts with these areas, and what the borders between them cost.
     fn parts(areas: &[f64], borders: &[([u32; 2], f64)]) -> Graph {
         let edges = borders.iter().map(|&(ends, cost)| Edge { ends, length: cost, cost, distance: 1.0 });
-        Graph::new(areas.to_vec(), vec![[0.0; 3]; areas.len()], edges.collect())
+        Graph::new(areas.to_vec(), vec![[0.0; 3]; areas.len()], edges.collect()).unwrap()
     }
 
     fn merges(parts: &Graph, pieces: &[u32], found: &[u32]) -> Vec<([u32; 2], f64)> {
         let labels: Vec<u32> = (0..found.len() as u32).collect();
-        Merging::new(parts, pieces, &labels, found.to_vec(), 1.0).merges()
+        Merging::new(parts, pieces, &labels, found.to_vec(), 1.0).unwrap().merges()
     }
 
     fn pairs(parts: &Graph, pieces: &[u32], found: &[u32]) -> Vec<[u32; 2]> {

@@ -25,7 +25,7 @@ mod tighten;
 
 pub use options::PartsOptions;
 
-use crate::memory::Tool;
+use crate::memory::{self, Tool};
 use crate::mesh::Mesh;
 use crate::progress::{Progress, Report};
 use crate::solve::Status;
@@ -69,23 +69,21 @@ pub fn parts(mesh: &Mesh, options: &PartsOptions, progress: &Progress) -> Result
 
 fn found(mesh: &Mesh, options: &PartsOptions, progress: &Progress) -> Result<Parts> {
     let n_faces = mesh.connectivity().n_faces();
-    let faces: Vec<u32> = match &options.faces {
-        None => (0..n_faces as u32).collect(),
-        Some(mask) => (0..n_faces as u32).filter(|&f| mask[f as usize]).collect(),
-    };
+    let is_chosen = |&f: &u32| options.faces.as_ref().is_none_or(|mask| mask[f as usize]);
+    let faces = memory::sifted((0..n_faces as u32).filter(is_chosen))?;
     say(progress, "measuring");
     let surface = Surface::new(mesh, &faces, |h| options.weight(h))?;
     let graph = hollows::border_graph(&surface, progress)?;
-    let (graph, pieces) = stitch::stitched(&surface, graph);
+    let (graph, pieces) = stitch::stitched(&surface, graph)?;
     let (clusters, n_clusters) = clusters::clusters(&graph, progress)?;
-    let coarse = graph.quotient(&clusters, n_clusters);
+    let coarse = graph.quotient(&clusters, n_clusters)?;
     say(progress, "dividing");
     let divisions = division::divisions(&coarse, options.n_parts, progress)?;
     say(progress, "drawing borders");
     let drawn = borders::drawn(&graph, &clusters, n_clusters, &divisions, progress)?;
     let costs: Vec<f64> = drawn.divisions.iter().map(|(_, cost)| *cost).collect();
     let found = choice::count(&costs, options.most_cost());
-    let hierarchy = nested(&graph, &pieces, drawn, found, options.most_cost()).spread(&faces, n_faces);
+    let hierarchy = nested(&graph, &pieces, drawn, found, options.most_cost())?.spread(&faces, n_faces)?;
     let n_parts = options.n_parts.unwrap_or(found).min(hierarchy.range()[0]);
     let labels = hierarchy.labels_at(n_parts)?;
     let status = if progress.is_finishing() { Status::Stopped } else { Status::Solved };
@@ -93,14 +91,14 @@ fn found(mesh: &Mesh, options: &PartsOptions, progress: &Progress) -> Result<Par
 }
 
 /// Divisions of every count, among them the first `found` parts that were divided.
-fn nested(graph: &Graph, pieces: &[u32], drawn: Drawn, found: usize, limit: f64) -> Hierarchy {
+fn nested(graph: &Graph, pieces: &[u32], drawn: Drawn, found: usize, limit: f64) -> Result<Hierarchy> {
     let count = drawn.divisions.len() + 1;
     let mut origin: Vec<u32> = (0..found as u32).collect();
     drawn.divisions.iter().skip(found - 1).for_each(|([part, _], _)| origin.push(origin[*part as usize]));
-    let merging = merging::Merging::new(graph, pieces, &drawn.labels, origin, limit);
+    let merging = merging::Merging::new(graph, pieces, &drawn.labels, origin, limit)?;
     let strengths =
         merging.merges().into_iter().map(|(pair, price)| (pair, 1.0 / price.max(f64::MIN_POSITIVE)));
-    Hierarchy::new(drawn.labels, count, strengths)
+    Ok(Hierarchy::new(drawn.labels, count, strengths))
 }
 
 fn say(progress: &Progress, stage: &str) {

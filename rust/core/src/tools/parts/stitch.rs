@@ -6,19 +6,21 @@
 use super::constants::{HOLLOW, LEAST_PART, LOOKOUTS};
 use super::graph::{Edge, Graph};
 use super::surface::Surface;
+use crate::memory;
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::{between, distance, Point};
 use crate::remesh::closest::ClosestPoint;
+use crate::Result;
 
 /// `graph` with edges that make one piece of it, and the piece of each node without those across gaps.
-pub(super) fn stitched(surface: &Surface, graph: Graph) -> (Graph, Vec<u32>) {
-    let (mut pieces, mut count) = graph.pieces(|_| true);
+pub(super) fn stitched(surface: &Surface, graph: Graph) -> Result<(Graph, Vec<u32>)> {
+    let (mut pieces, mut count) = graph.pieces(|_| true)?;
     if count == 1 {
-        return (graph, pieces);
+        return Ok((graph, pieces));
     }
-    let tree = ClosestPoint::new(surface.triangles.clone());
-    let mut edges = graph.edges.clone();
-    let areas = piece_areas(&graph, &pieces, count);
+    let tree = ClosestPoint::new(memory::twin(&surface.triangles)?)?;
+    let mut edges = memory::twin(&graph.edges)?;
+    let areas = piece_areas(&graph, &pieces, count)?;
     for &h in &surface.open {
         let f = h / 3;
         if areas[pieces[f] as usize] >= LEAST_PART {
@@ -29,28 +31,25 @@ pub(super) fn stitched(surface: &Surface, graph: Graph) -> (Graph, Vec<u32>) {
         if let Some(found) = tree.closest(between(p, q, 0.5), None, elsewhere) {
             let ends = [f as u32, found.triangle];
             let length = distance(p, q);
-            edges.push(Edge { ends, length, cost: length, distance: distance_of(&graph, ends) });
+            let distance = distance_of(&graph, ends);
+            memory::push(&mut edges, Edge { ends, length, cost: length, distance })?;
         }
     }
-    let mut graph = graph.with_edges(edges.clone());
-    (pieces, count) = graph.pieces(|_| true);
-    let apart = pieces.clone();
+    let mut graph = graph.with_edges(memory::twin(&edges)?)?;
+    (pieces, count) = graph.pieces(|_| true)?;
+    let apart = memory::twin(&pieces)?;
     // Each round joins every piece to the one nearest to it (Borůvka 1926).
     while count > 1 {
-        let areas = piece_areas(&graph, &pieces, count);
-        for (ends, area) in nearest_pairs(surface, &graph, &pieces, &areas, &tree) {
+        let areas = piece_areas(&graph, &pieces, count)?;
+        for (ends, area) in nearest_pairs(surface, &graph, &pieces, &areas, &tree)? {
             let length = area.sqrt();
-            edges.push(Edge {
-                ends,
-                length,
-                cost: HOLLOW * HOLLOW * length,
-                distance: distance_of(&graph, ends),
-            });
+            let (cost, distance) = (HOLLOW * HOLLOW * length, distance_of(&graph, ends));
+            memory::push(&mut edges, Edge { ends, length, cost, distance })?;
         }
-        graph = graph.with_edges(edges.clone());
-        (pieces, count) = graph.pieces(|_| true);
+        graph = graph.with_edges(memory::twin(&edges)?)?;
+        (pieces, count) = graph.pieces(|_| true)?;
     }
-    (graph, apart)
+    Ok((graph, apart))
 }
 
 fn distance_of(graph: &Graph, ends: [u32; 2]) -> f64 {
@@ -58,10 +57,10 @@ fn distance_of(graph: &Graph, ends: [u32; 2]) -> f64 {
     distance(p, q)
 }
 
-fn piece_areas(graph: &Graph, pieces: &[u32], count: usize) -> Vec<f64> {
-    let mut areas = vec![0.0; count];
+fn piece_areas(graph: &Graph, pieces: &[u32], count: usize) -> Result<Vec<f64>> {
+    let mut areas = memory::repeated(0.0, count)?;
     pieces.iter().zip(&graph.areas).for_each(|(&piece, area)| areas[piece as usize] += area);
-    areas
+    Ok(areas)
 }
 
 /// For every piece the face pair that joins it to the nearest other one, and the area of the smaller of
@@ -72,10 +71,10 @@ fn nearest_pairs(
     pieces: &[u32],
     areas: &[f64],
     tree: &ClosestPoint,
-) -> Vec<([u32; 2], f64)> {
-    let mut members: Vec<Vec<u32>> = vec![Vec::new(); areas.len()];
-    (0..).zip(pieces).for_each(|(f, &piece)| members[piece as usize].push(f));
-    let mut united = Partition::new(areas.len());
+) -> Result<Vec<([u32; 2], f64)>> {
+    let mut members: Vec<Vec<u32>> = memory::repeated(Vec::new(), areas.len())?;
+    (0..).zip(pieces).try_for_each(|(f, &piece)| memory::push(&mut members[piece as usize], f))?;
+    let mut united = Partition::try_new(areas.len())?;
     let mut pairs = Vec::new();
     for (piece, faces) in (0_u32..).zip(&members) {
         let mut best: Option<(f64, [u32; 2])> = None;
@@ -91,8 +90,9 @@ fn nearest_pairs(
         let other = pieces[ends[1] as usize];
         if united.root(piece) != united.root(other) {
             united.unite(piece, other);
-            pairs.push((ends, areas[piece as usize].min(areas[other as usize]).min(graph.area())));
+            let area = areas[piece as usize].min(areas[other as usize]).min(graph.area());
+            memory::push(&mut pairs, (ends, area))?;
         }
     }
-    pairs
+    Ok(pairs)
 }

@@ -7,7 +7,7 @@ use super::constants::LEAST_AREA;
 use crate::error::MeshError;
 use crate::mesh::vector::{add, area_vector, between, centroid, distance, dot, norm, scale, Point};
 use crate::mesh::{Connectivity, EdgeTable, Mesh};
-use crate::Result;
+use crate::{memory, Result};
 
 /// Two faces with a common edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,22 +40,22 @@ impl Surface {
     /// [`MeshError::NoPositions`], and [`MeshError::NoFaces`] where no face has area.
     pub(super) fn new(mesh: &Mesh, faces: &[u32], weight: impl Fn(usize) -> f64) -> Result<Self> {
         let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
-        let corners: Vec<[u32; 3]> = faces.iter().map(|&f| mesh.connectivity().faces()[f as usize]).collect();
-        let welded = Connectivity::new(welded(&corners, positions), positions.len())?;
-        let raw: Vec<[Point; 3]> = corners.iter().map(|face| face.map(|v| positions[v as usize])).collect();
+        let corners = memory::gathered(faces.iter().map(|&f| mesh.connectivity().faces()[f as usize]))?;
+        let welded = Connectivity::new(welded(&corners, positions)?, positions.len())?;
+        let raw = memory::gathered(corners.iter().map(|face| face.map(|v| positions[v as usize])))?;
         let total: f64 = raw.iter().map(|&t| norm(area_vector(t))).sum();
         if !(total > 0.0 && total.is_finite()) {
             return Err(MeshError::NoFaces.into());
         }
         let unit = 1.0 / total.sqrt();
-        let triangles: Vec<[Point; 3]> = raw.iter().map(|t| t.map(|p| scale(p, unit))).collect();
-        let centers: Vec<Point> = triangles.iter().map(|&t| centroid(t)).collect();
+        let triangles = memory::gathered(raw.iter().map(|t: &[Point; 3]| t.map(|p| scale(p, unit))))?;
+        let centers = memory::gathered(triangles.iter().map(|&t| centroid(t)))?;
         let (mut joints, mut opposite, mut open) = (Vec::new(), Vec::new(), Vec::new());
-        let table = EdgeTable::new(&welded);
+        let table = EdgeTable::new(&welded)?;
         for halfedges in table.edges() {
             let halfedges: Vec<usize> = halfedges.collect();
             if let [single] = halfedges[..] {
-                open.push(single);
+                memory::push(&mut open, single)?;
             }
             // Where three or more faces meet, each is joined to the next.
             for pair in halfedges.windows(2) {
@@ -66,18 +66,19 @@ impl Surface {
                 let [p, q] = [1, 2].map(|i| triangles[f][(pair[0] + i) % 3]);
                 let middle = between(p, q, 0.5);
                 let given = [pair[0], pair[1]].map(|h| weight(3 * faces[h / 3] as usize + h % 3));
-                joints.push(Joint {
+                let joint = Joint {
                     faces: [f as u32, g as u32],
                     length: distance(p, q),
                     distance: distance(centers[f], middle) + distance(middle, centers[g]),
                     weight: 0.5 * (given[0] + given[1]),
-                });
-                opposite.push(welded.tail(pair[0]) == welded.tail(pair[1]));
+                };
+                memory::push(&mut joints, joint)?;
+                memory::push(&mut opposite, welded.tail(pair[0]) == welded.tail(pair[1]))?;
             }
         }
-        let mut normals: Vec<Point> = triangles.iter().map(|&t| area_vector(t)).collect();
-        orient(&mut normals, &centers, &joints, &opposite, open.is_empty());
-        let areas = normals.iter().map(|&n| norm(n).max(LEAST_AREA)).collect();
+        let mut normals = memory::gathered(triangles.iter().map(|&t| area_vector(t)))?;
+        orient(&mut normals, &centers, &joints, &opposite, open.is_empty())?;
+        let areas = memory::gathered(normals.iter().map(|&n| norm(n).max(LEAST_AREA)))?;
         Ok(Self { triangles, areas, centers, normals, joints, open })
     }
 
@@ -87,23 +88,29 @@ impl Surface {
 }
 
 /// The faces with each vertex named after the first one at its place.
-fn welded(faces: &[[u32; 3]], positions: &[Point]) -> Vec<[u32; 3]> {
+fn welded(faces: &[[u32; 3]], positions: &[Point]) -> Result<Vec<[u32; 3]>> {
     let mut first: BTreeMap<[u64; 3], u32> = BTreeMap::new();
     // Adding zero makes one of both zeros.
     let mut name = |v: u32| *first.entry(positions[v as usize].map(|x| (x + 0.0).to_bits())).or_insert(v);
-    faces.iter().map(|face| face.map(&mut name)).collect()
+    Ok(memory::gathered(faces.iter().map(|face| face.map(&mut name)))?)
 }
 
 /// Turns the normals of faces whose neighbors run the other way; every piece then points as most of its
 /// area did, or, where the surface is closed, outwards.
-fn orient(normals: &mut [Point], centers: &[Point], joints: &[Joint], opposite: &[bool], closed: bool) {
-    let mut around: Vec<Vec<(u32, bool)>> = vec![Vec::new(); normals.len()];
+fn orient(
+    normals: &mut [Point],
+    centers: &[Point],
+    joints: &[Joint],
+    opposite: &[bool],
+    closed: bool,
+) -> Result<()> {
+    let mut around: Vec<Vec<(u32, bool)>> = memory::repeated(Vec::new(), normals.len())?;
     for (joint, &turned) in joints.iter().zip(opposite) {
         let [f, g] = joint.faces;
         around[f as usize].push((g, turned));
         around[g as usize].push((f, turned));
     }
-    let mut sign = vec![0.0; normals.len()];
+    let mut sign = memory::repeated(0.0, normals.len())?;
     for start in 0..normals.len() {
         if sign[start] != 0.0 {
             continue;
@@ -116,7 +123,7 @@ fn orient(normals: &mut [Point], centers: &[Point], joints: &[Joint], opposite: 
             for &(g, turned) in &around[f] {
                 if sign[g as usize] == 0.0 {
                     sign[g as usize] = if turned { -sign[f] } else { sign[f] };
-                    piece.push(g as usize);
+                    memory::push(&mut piece, g as usize)?;
                 }
             }
         }
@@ -126,4 +133,5 @@ fn orient(normals: &mut [Point], centers: &[Point], joints: &[Joint], opposite: 
         }
     }
     normals.iter_mut().zip(&sign).for_each(|(normal, sign)| *normal = add([0.0; 3], scale(*normal, *sign)));
+    Ok(())
 }

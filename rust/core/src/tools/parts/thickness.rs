@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::constants::{LEAST_COSINE, LEAST_RAYS, RAYS, RAY_START, SAMPLES, UNSEEN};
 use super::diffusion::{diffused, Link};
 use super::surface::Surface;
+use crate::memory;
 use crate::mesh::vector::{add, cross, dot, scale, unit, Point};
 use crate::progress::Progress;
 use crate::remesh::closest::ClosestPoint;
@@ -23,34 +24,35 @@ pub(super) fn thickness(
     length: f64,
     progress: &Progress,
 ) -> Result<Vec<f64>> {
-    let tree = ClosestPoint::new(surface.triangles.clone());
-    let samples = sampled(&surface.areas);
+    let tree = ClosestPoint::new(memory::twin(&surface.triangles)?)?;
+    let samples = sampled(&surface.areas)?;
     let found = samples.par_iter().map(|&f| {
         progress.check()?;
         let turned = |triangle: u32, along: Point| dot(surface.normals[triangle as usize], along) > 0.0;
         Ok((f, diameter(&tree, surface.centers[f as usize], normals[f as usize], turned)))
     });
-    let found: Vec<(u32, Option<f64>)> = found.collect::<Result<_>>()?;
-    let known: Vec<(u32, f64)> = found.into_iter().filter_map(|(f, d)| d.map(|d| (f, d.ln()))).collect();
+    let found: Vec<(u32, Option<f64>)> = memory::all(memory::joined(found)?)?;
+    let known = memory::sifted(found.into_iter().filter_map(|(f, d)| d.map(|d| (f, d.ln()))))?;
     if known.is_empty() {
-        return Ok(vec![0.0; surface.n_faces()]);
+        return Ok(memory::repeated(0.0, surface.n_faces())?);
     }
     // Around their mean, so that faces far from all that is known take that.
     let mean = known.iter().map(|(_, d)| d).sum::<f64>() / known.len() as f64;
-    let mut masses: Vec<f64> = surface.areas.iter().map(|area| UNSEEN * area).collect();
-    let mut right = vec![[0.0]; surface.n_faces()];
+    let mut masses = memory::gathered(surface.areas.iter().map(|area| UNSEEN * area))?;
+    let mut right = memory::repeated([0.0], surface.n_faces())?;
     for (f, logarithm) in known {
         let mass = surface.areas[f as usize].max(1.0 / samples.len() as f64);
         masses[f as usize] = mass;
         right[f as usize] = [mass * (logarithm - mean)];
     }
-    Ok(diffused(&masses, links, length, right)?.into_iter().map(|[x]| mean + x).collect())
+    let smooth = diffused(&masses, links, length, right)?;
+    Ok(memory::gathered(smooth.into_iter().map(|[x]| mean + x))?)
 }
 
 /// Faces at equal steps of area, or all where there are few.
-fn sampled(areas: &[f64]) -> Vec<u32> {
+fn sampled(areas: &[f64]) -> Result<Vec<u32>> {
     if areas.len() <= SAMPLES {
-        return (0..areas.len() as u32).collect();
+        return Ok(memory::sifted(0..areas.len() as u32)?);
     }
     let step = areas.iter().sum::<f64>() / SAMPLES as f64;
     let mut passed = 0.0;
@@ -59,7 +61,7 @@ fn sampled(areas: &[f64]) -> Vec<u32> {
         passed += area;
         ((passed / step) as usize > before).then_some(f)
     };
-    (0..).zip(areas).filter_map(steps).collect()
+    Ok(memory::sifted((0..).zip(areas).filter_map(steps))?)
 }
 
 /// The median length of rays from `from` against `normal` that leave the shape: hit a triangle `turned`

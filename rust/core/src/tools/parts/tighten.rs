@@ -2,15 +2,16 @@
 
 use super::graph::{Graph, NONE};
 use crate::tools::minimum_cut;
+use crate::{memory, Result};
 
 /// The minimum cut between what lies farther than `width` from the border on one side, and on the other;
 /// nothing where one of them is empty.
-pub(super) fn moved(graph: &Graph, side: &[bool], width: f64) -> Option<Vec<bool>> {
+pub(super) fn moved(graph: &Graph, side: &[bool], width: f64) -> Result<Option<Vec<bool>>> {
     let parted = |ends: [u32; 2]| side[ends[0] as usize] != side[ends[1] as usize];
-    let front: Vec<u32> = graph.edges.iter().filter(|e| parted(e.ends)).flat_map(|e| e.ends).collect();
-    let (distances, _) = graph.nearest(&front, width, |edge| edge.distance);
+    let front = memory::sifted(graph.edges.iter().filter(|e| parted(e.ends)).flat_map(|e| e.ends))?;
+    let (distances, _) = graph.nearest(&front, width, |edge| edge.distance)?;
     // The far sides are nodes 0 and 1; those of the band follow.
-    let mut names = vec![NONE; side.len()];
+    let mut names = memory::repeated(NONE, side.len())?;
     let (mut count, mut far) = (2, [false; 2]);
     for (name, (&side, distance)) in names.iter_mut().zip(side.iter().zip(&distances)) {
         if distance.is_finite() {
@@ -22,10 +23,10 @@ pub(super) fn moved(graph: &Graph, side: &[bool], width: f64) -> Option<Vec<bool
         }
     }
     if far != [true; 2] {
-        return None;
+        return Ok(None);
     }
     let named = graph.edges.iter().map(|e| (e.ends.map(|end| names[end as usize]), e.cost));
-    let edges: Vec<([u32; 2], f64)> = named.filter(|(ends, _)| ends[0] != ends[1]).collect();
+    let edges = memory::sifted(named.filter(|(ends, _)| ends[0] != ends[1]))?;
     let cut = minimum_cut::Graph::new(count as usize, &edges).cut(1, 0);
-    Some(names.iter().map(|&name| cut[name as usize]).collect())
+    Ok(Some(memory::gathered(names.iter().map(|&name| cut[name as usize]))?))
 }

@@ -1,7 +1,7 @@
 //! From the finest segmentation to one segment for each connected part: nested, one merge after the other.
 
 use super::surface::contiguous;
-use crate::{Error, Result};
+use crate::{memory, Error, Result};
 
 /// Nested segmentations of any size.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -37,13 +37,13 @@ impl Hierarchy {
 
     /// The same for a mesh of which only some faces took part:
     /// face `i` of this hierarchy is face `faces[i]` there, of `n_faces`.
-    pub(in crate::tools) fn spread(mut self, faces: &[u32], n_faces: usize) -> Self {
-        let mut leaves = vec![u32::MAX; n_faces];
+    pub(in crate::tools) fn spread(mut self, faces: &[u32], n_faces: usize) -> Result<Self> {
+        let mut leaves = memory::repeated(u32::MAX, n_faces)?;
         for (&face, leaf) in faces.iter().zip(&self.leaves) {
             leaves[face as usize] = *leaf;
         }
         self.leaves = leaves;
-        self
+        Ok(self)
     }
 
     /// The same for faces that are each one of those here, `faces[i]`. Segments without a face are none.
@@ -101,16 +101,15 @@ impl Hierarchy {
             return Err(Error::argument("n_segments", "is 0; ask for at least one segment"));
         }
         let count = self.n_leaves.saturating_sub(n_segments).min(self.merges.len());
-        let mut name: Vec<u32> = (0..self.n_leaves as u32).collect();
+        let mut name = memory::sifted(0..self.n_leaves as u32)?;
         for &[kept, gone] in self.merges[..count].iter().rev() {
             name[gone as usize] = name[kept as usize];
         }
-        let used: Vec<u32> =
-            self.leaves.iter().filter(|l| **l != u32::MAX).map(|&l| name[l as usize]).collect();
-        let mut renamed = contiguous(&used).0.into_iter();
+        let used = self.leaves.iter().filter(|l| **l != u32::MAX).map(|&l| name[l as usize]);
+        let mut renamed = contiguous(&memory::sifted(used)?).0.into_iter();
         let label =
             |leaf: &u32| if *leaf == u32::MAX { -1 } else { renamed.next().map_or(-1, u32::cast_signed) };
-        Ok(self.leaves.iter().map(label).collect())
+        Ok(memory::gathered(self.leaves.iter().map(label))?)
     }
 }
 
@@ -130,7 +129,7 @@ mod tests {
         assert_eq!(hierarchy.labels_at(2).unwrap(), [0, 0, 1, 1, 0]);
         assert_eq!(hierarchy.labels_at(1).unwrap(), [0; 5]);
         assert!(hierarchy.labels_at(0).is_err());
-        let spread = hierarchy.spread(&[1, 2, 3, 5, 6], 7);
+        let spread = hierarchy.spread(&[1, 2, 3, 5, 6], 7).unwrap();
         assert_eq!(spread.labels_at(2).unwrap(), [-1, 0, 0, 1, -1, 1, 0]);
     }
 

@@ -68,7 +68,7 @@ pub(super) fn segment_part(
         indicator,
         values: filled,
         boundary_edges: found.boundary_edges.iter().map(|edge| edge.map(|v| vertices[v as usize])).collect(),
-        hierarchy: found.hierarchy.spread(&faces, all.len()),
+        hierarchy: found.hierarchy.spread(&faces, all.len())?,
         ..found
     })
 }
