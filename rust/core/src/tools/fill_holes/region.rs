@@ -12,8 +12,8 @@ use crate::remesh::editable::key;
 use crate::remesh::EditableMesh;
 use crate::Result;
 
-/// A patch alone: its vertices, those on the rim first, its faces, and the number in the region of each vertex
-/// on the rim.
+/// A patch alone: its vertices, those on the rim first, its faces, and the number in the region of each
+/// vertex on the rim.
 pub(super) type PatchAlone = (Vec<Point>, Vec<[u32; 3]>, Vec<u32>);
 
 /// A patch and its surroundings as a small mesh of its own.
