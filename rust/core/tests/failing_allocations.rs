@@ -33,7 +33,7 @@ const TRIED: usize = 3;
 
 /// How many allocations of ours end the process at most, in calls that have been gone through: a number may
 /// fall and not rise. Those of a library can: they have nothing to return an error with.
-const MOST: [(&str, usize); 12] = [
+const MOST: [(&str, usize); 13] = [
     ("stylize", 0),
     ("denoise", 0),
     ("denoise 3 columns", 0),
@@ -43,6 +43,7 @@ const MOST: [(&str, usize); 12] = [
     ("vibration_modes", 0),
     ("segment", 16),
     ("parts", 2),
+    ("fill_holes", 14),
     ("remesh", 0),
     ("diffusion_curves", 5),
     ("trace_curves", 0),
