@@ -11,7 +11,9 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 LINES, COLUMNS = 400, 110
-FEATURES = {"attributes", "check", "diffusion", "facets", "holes", "restore", "segments", "stylize"}
+FEATURES = set(
+    re.findall(r'^    "(\w+)",$', (ROOT / "addon/registry.py").read_text(encoding="utf-8"), re.MULTILINE)
+)
 CRATES = ("rust/core/src", "rust/python/src")
 FOLDERS = ("addon", "scripts", "benchmarks", "tests")
 

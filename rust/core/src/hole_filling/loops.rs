@@ -8,8 +8,9 @@ use super::islands::settle_islands;
 use super::lids;
 use super::polygon::Polygon;
 use crate::error::{MeshError, Refusal};
-use crate::mesh::vector::{area_vector, between, distance, dot, norm, sub, unit, Point};
+use crate::mesh::vector::{area_vector, distance, dot, norm, place, unit, Point};
 use crate::mesh::{boundary_walks, cycle, loop_area_vector, Connectivity, Mesh, Working};
+use crate::remesh::closest::closest_on_segment;
 use crate::Result;
 
 /// A loop is the outer border of its surface if the faces along it lie inside it, seen along its area vector:
@@ -174,11 +175,8 @@ fn has_no_width(vertices: &[u32], positions: &[Point]) -> bool {
     }
     let is_on = |i: usize| {
         (0..n).any(|j| {
-            let (a, b) = (points[j], points[(j + 1) % n]);
-            let along = sub(b, a);
-            let t =
-                (dot(sub(points[i], a), along) / dot(along, along).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-            j != i && (j + 1) % n != i && distance(between(a, b, t), points[i]) <= off
+            let near = closest_on_segment(points[i], points[j], points[(j + 1) % n]);
+            j != i && (j + 1) % n != i && distance(near, points[i]) <= off
         })
     };
     (0..n).filter(|&i| !is_on(i)).count() <= 2
@@ -186,8 +184,7 @@ fn has_no_width(vertices: &[u32], positions: &[Point]) -> bool {
 
 /// Whether every vertex but the two at the ends lies where another one does, or all lie on a line.
 fn is_slit(vertices: &[u32], positions: &[Point]) -> bool {
-    let mut places: Vec<[u64; 3]> =
-        vertices.iter().map(|&v| positions[v as usize].map(|x| (x + 0.0).to_bits())).collect();
+    let mut places: Vec<[u64; 3]> = vertices.iter().map(|&v| place(positions[v as usize])).collect();
     places.sort_unstable();
     let alone = places.chunk_by(|a, b| a == b).filter(|same| same.len() == 1).count();
     alone <= 2 && vertices.len() > 3

@@ -54,6 +54,40 @@ pub fn eigen3(mut a: [[f64; 3]; 3]) -> [(f64, [f64; 3]); 3] {
     [0, 1, 2].map(|j| (a[j][j], vectors[j]))
 }
 
+/// The least eigenvalue of a symmetric 3 × 3 matrix, and its unit eigenvector: where the matrix is that of
+/// [`scatter`], across the plane that the vectors are nearest to.
+#[must_use]
+pub fn least_eigen3(a: [[f64; 3]; 3]) -> (f64, [f64; 3]) {
+    eigen3(a).into_iter().fold((f64::INFINITY, [0.0; 3]), |a, b| if b.0 < a.0 { b } else { a })
+}
+
+/// `Σ w v vᵀ` over vectors with weights.
+pub fn scatter(vectors: impl Iterator<Item = ([f64; 3], f64)>) -> [[f64; 3]; 3] {
+    let mut matrix = [[0.0; 3]; 3];
+    for (v, weight) in vectors {
+        for i in 0..3 {
+            (0..3).for_each(|j| matrix[i][j] += weight * v[i] * v[j]);
+        }
+    }
+    matrix
+}
+
+/// The shortest solution of `matrix · x = right` for a small symmetric positive semidefinite matrix, by the
+/// pseudo-inverse: of eigenvalues above `drop` times the largest, to which `damping` times the largest is
+/// added.
+#[must_use]
+pub fn solved(matrix: Vec<Vec<f64>>, right: &[f64], drop: f64, damping: f64) -> Vec<f64> {
+    let (values, vectors) = symmetric_eigen(matrix);
+    let largest = values.last().copied().unwrap_or(0.0);
+    let mut x = vec![0.0; right.len()];
+    for (value, vector) in values.iter().zip(&vectors).filter(|(value, _)| **value > drop * largest) {
+        let along: f64 = vector.iter().zip(right).map(|(v, r)| v * r).sum();
+        let length = along / (value + damping * largest);
+        x.iter_mut().zip(vector).for_each(|(x, v)| *x += length * v);
+    }
+    x
+}
+
 /// Jacobi's rotations, which give the same bits on any number of threads: `a` becomes diagonal,
 /// `vectors` one a row.
 fn diagonalize<R: AsMut<[f64]> + AsRef<[f64]>>(a: &mut [R], vectors: &mut [R]) {

@@ -62,6 +62,12 @@ pub fn between(a: Point, b: Point, t: f64) -> Point {
     add(a, scale(sub(b, a), t))
 }
 
+/// Names for places: those of two points are equal if all coordinates are, whatever the sign of a zero.
+#[must_use]
+pub fn place(point: Point) -> [u64; 3] {
+    point.map(|x| (x + 0.0).to_bits())
+}
+
 /// The mean of three points.
 #[must_use]
 pub fn centroid([a, b, c]: [Point; 3]) -> Point {

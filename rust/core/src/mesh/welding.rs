@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::mesh::partition::Partition;
-use crate::mesh::vector::{distance, sub, Point};
+use crate::mesh::vector::{distance, place, sub, Point};
 use crate::mesh::Connectivity;
 
 /// The sides of a seam differ by the rounding of its coordinates:
@@ -120,7 +120,6 @@ fn unite_near(border: &[(u32, f64)], positions: &[Point], tolerance: f64, partit
     // Cells as wide as the tolerance: what is near lies in the next one at most. Beyond 2^53 of them cells
     // are not neighbors, but then coordinates are not told apart either.
     let cell = |v: u32| sub(positions[v as usize], origin).map(|x| (x / width).floor());
-    let key = |cell: Point| cell.map(|x| (x + 0.0).to_bits());
     let mut cells: HashMap<[u64; 3], Vec<(u32, f64)>> = HashMap::with_capacity(border.len());
     let mut any = false;
     for &(v, reach) in border {
@@ -131,7 +130,7 @@ fn unite_near(border: &[(u32, f64)], positions: &[Point], tolerance: f64, partit
                 at[1] + f64::from(step / 3 % 3 - 1),
                 at[2] + f64::from(step / 9 - 1),
             ];
-            for &(w, other) in cells.get(&key(near)).into_iter().flatten() {
+            for &(w, other) in cells.get(&place(near)).into_iter().flatten() {
                 let apart = sub(positions[v as usize], positions[w as usize])
                     .into_iter()
                     .fold(0.0, |a: f64, x| a.max(x.abs()));
@@ -141,7 +140,7 @@ fn unite_near(border: &[(u32, f64)], positions: &[Point], tolerance: f64, partit
                 }
             }
         }
-        cells.entry(key(at)).or_default().push((v, reach));
+        cells.entry(place(at)).or_default().push((v, reach));
     }
     any
 }

@@ -211,7 +211,7 @@ mod tests {
     use super::*;
     use crate::block_rows::BlockRows;
     use crate::linear::Columns;
-    use crate::solve::fast::system::System;
+    use crate::solve::fast::system::{System, Weighing};
     use crate::solve::{Coupling, FreeOperator, Problem};
 
     /// Blocks over three neighbors on a line, weights from nothing to two, fidelity on every other row,
@@ -268,7 +268,7 @@ mod tests {
         let mut far = f64::INFINITY;
         for _ in 0..n_steps {
             let model = Model::new(reduced, &u, &z, barrier).unwrap();
-            system.factorize_stiff(reduced, model.stiffness()).unwrap();
+            system.factorize(reduced, Weighing::Stiffness(model.stiffness())).unwrap();
             z = model.slope().to_vec();
             let mut step = lacking(reduced, &u, &z);
             system.solve_change(reduced, &mut step).unwrap();

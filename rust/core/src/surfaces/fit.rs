@@ -8,7 +8,7 @@ use super::motion::COUNT;
 use super::samples::Samples;
 use super::starts::starts;
 use super::{Kind, Surface};
-use crate::linear::small::symmetric_eigen;
+use crate::linear::small::solved;
 use crate::mesh::vector::norm;
 
 /// A fitted surface.
@@ -126,17 +126,9 @@ fn normal_equations(samples: &Samples, surface: &Surface, width: f64) -> (Matrix
 
 /// The step that the equations ask for; what they leave open, as turning a sphere, is not done.
 fn damped(matrix: &Matrix, right: &[f64; COUNT], damping: f64) -> [f64; COUNT] {
-    let (values, vectors) = symmetric_eigen(matrix.iter().map(|row| row.to_vec()).collect());
-    let largest = values.last().copied().unwrap_or(0.0);
+    let rows = matrix.iter().map(|row| row.to_vec()).collect();
     let mut step = [0.0; COUNT];
-    for (value, vector) in values.iter().zip(&vectors) {
-        if *value <= UNDETERMINED * largest {
-            continue;
-        }
-        let along: f64 = vector.iter().zip(right).map(|(v, r)| v * r).sum();
-        let length = along / (value + damping * largest);
-        step.iter_mut().zip(vector).for_each(|(s, v)| *s += length * v);
-    }
+    step.copy_from_slice(&solved(rows, right, UNDETERMINED, damping));
     // No turn of more than half a radian at once, nor a shift of more than the size.
     let most =
         norm([step[3], step[4], step[5]]).max(step[7].abs()).max(0.5 * norm([step[0], step[1], step[2]]))

@@ -1,8 +1,8 @@
 //! Surfaces to begin a fit with, from points and normals.
 
 use super::{beside, perpendicular, Kind, Surface};
-use crate::linear::small::{eigen3, symmetric_eigen};
-use crate::mesh::vector::{add, cross, dot, norm, scale, unit, Point};
+use crate::linear::small::{eigen3, scatter, solved, symmetric_eigen};
+use crate::mesh::vector::{add, cross, dot, norm, scale, sub, unit, Point};
 use crate::surfaces::Samples;
 
 /// Surfaces of a `kind` near points that lie about the origin, with the size 1.
@@ -21,13 +21,7 @@ fn spread(vectors: &[Point], weights: &[f64], is_central: bool) -> [[f64; 3]; 3]
     let total: f64 = weights.iter().sum();
     let sum = vectors.iter().zip(weights).fold([0.0; 3], |sum, (&v, &w)| add(sum, scale(v, w)));
     let mean = if is_central { scale(sum, 1.0 / total) } else { [0.0; 3] };
-    let mut matrix = [[0.0; 3]; 3];
-    for (v, w) in vectors.iter().zip(weights) {
-        for i in 0..3 {
-            (0..3).for_each(|j| matrix[i][j] += w * (v[i] - mean[i]) * (v[j] - mean[j]));
-        }
-    }
-    matrix
+    scatter(vectors.iter().zip(weights).map(|(&v, &w)| (sub(v, mean), w)))
 }
 
 /// The eigenvectors by falling eigenvalues.
@@ -49,18 +43,6 @@ fn planes(samples: &Samples) -> Vec<Surface> {
     [thin, unit(sum)].into_iter().filter(|n| norm(*n) > 0.5).map(through).collect()
 }
 
-/// The solution of `matrix · x = right` by the pseudo-inverse.
-fn solved(matrix: Vec<Vec<f64>>, right: &[f64]) -> Vec<f64> {
-    let (values, vectors) = symmetric_eigen(matrix);
-    let largest = values.last().copied().unwrap_or(0.0);
-    let mut x = vec![0.0; right.len()];
-    for (value, vector) in values.iter().zip(&vectors).filter(|(value, _)| **value > 1e-12 * largest) {
-        let along: f64 = vector.iter().zip(right).map(|(v, r)| v * r).sum();
-        x.iter_mut().zip(vector).for_each(|(x, v)| *x += along / value * v);
-    }
-    x
-}
-
 /// Least squares over rows of coefficients, right side and weight.
 fn least_squares<const N: usize>(rows: impl Iterator<Item = ([f64; N], f64, f64)>) -> Vec<f64> {
     let (mut matrix, mut right) = (vec![vec![0.0; N]; N], vec![0.0; N]);
@@ -70,7 +52,7 @@ fn least_squares<const N: usize>(rows: impl Iterator<Item = ([f64; N], f64, f64)
             (0..N).for_each(|j| matrix[i][j] += weight * row[i] * row[j]);
         }
     }
-    solved(matrix, &right)
+    solved(matrix, &right, 1e-12, 0.0)
 }
 
 /// `|p|² = 2 c · p + k`, and from the normals, which meet in the center.

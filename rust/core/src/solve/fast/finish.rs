@@ -8,6 +8,7 @@ use crate::progress::Progress;
 use crate::solve::certificate::spread;
 use crate::solve::cones::Block;
 use crate::solve::fast::sweep::Sweep;
+use crate::solve::fast::system::Weighing;
 use crate::solve::primal_dual::{clip, dual_point, follow, Model, Stiffness};
 use crate::solve::problem::Settings;
 use crate::{Error, Result};
@@ -126,7 +127,7 @@ impl<const K: usize> Run<'_, '_, K> {
         let mut z = memory::twin(model.slope())?;
         let is_new = !steps.is_near;
         if is_new {
-            self.system.factorize_stiff(&mut self.reduced, model.stiffness())?;
+            self.system.factorize(&mut self.reduced, Weighing::Stiffness(model.stiffness()))?;
         }
         self.y.clear();
         let mut step = self.lacking(&z, None)?;

@@ -20,7 +20,7 @@ use crate::solve::certificate::spread;
 use crate::solve::cones::{scaled, Block};
 use crate::solve::fast::penalty::{reweighted, uniform};
 use crate::solve::fast::sweep::Sums;
-use crate::solve::fast::system::System;
+use crate::solve::fast::system::{System, Weighing};
 use crate::solve::outcome::{Outcome, Warm};
 use crate::solve::problem::{Problem, Settings, Status};
 use crate::solve::reduced::Reduced;
@@ -103,7 +103,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             None => (uniform(&mut reduced, system, &h, progress)?, REWEIGHT_COLD),
         };
         if warm.is_some() {
-            system.factorize(&mut reduced, &r)?;
+            system.factorize(&mut reduced, Weighing::Penalties(&r))?;
         }
         let sweep = Sweep::new(&reduced, &r, |b| match &warm {
             Some(warm) => (warm.z[b], scaled(reduced.weights[b], &warm.p[b])),

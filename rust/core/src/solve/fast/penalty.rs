@@ -1,7 +1,7 @@
 //! The penalties of the fast solver: found from the problem itself, never set by hand.
 
 use crate::solve::cones::{norm, scaled, Block};
-use crate::solve::fast::system::System;
+use crate::solve::fast::system::{System, Weighing};
 use crate::solve::reduced::Reduced;
 use crate::{memory, Progress, Result};
 
@@ -68,7 +68,7 @@ pub fn uniform<const K: usize>(
     loop {
         progress.check()?;
         let r = penalties(scale)?;
-        system.factorize(reduced, &r)?;
+        system.factorize(reduced, Weighing::Penalties(&r))?;
         attempts += 1;
         if attempts == MOST_ATTEMPTS || progress.is_finishing() {
             return Ok(r);

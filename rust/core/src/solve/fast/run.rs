@@ -5,7 +5,7 @@ use crate::solve::certificate::{bound_along_ray, DualPoint};
 use crate::solve::cones::{norm, scaled};
 use crate::solve::fast::penalty::reweighted;
 use crate::solve::fast::sweep::Sweep;
-use crate::solve::fast::system::System;
+use crate::solve::fast::system::{System, Weighing};
 use crate::solve::outcome::{Outcome, Warm};
 use crate::solve::problem::{Problem, Settings, Status};
 use crate::solve::reduced::Reduced;
@@ -46,7 +46,7 @@ impl<const K: usize> Run<'_, '_, K> {
     /// New penalties from the lengths that the blocks have now; split variables and multipliers stay.
     pub(super) fn reweight(&mut self) -> Result<()> {
         let r = reweighted(&self.lengths()?, &self.reduced.weights)?;
-        self.system.factorize(&mut self.reduced, &r)?;
+        self.system.factorize(&mut self.reduced, Weighing::Penalties(&r))?;
         self.sweep = self.under(&r)?;
         self.r = r;
         Ok(())

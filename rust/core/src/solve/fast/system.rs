@@ -31,6 +31,15 @@ pub struct System {
     refined: bool,
 }
 
+/// What the blocks of the operator are weighed by in the matrix.
+#[derive(Debug, Clone, Copy)]
+pub enum Weighing<'a> {
+    /// A penalty for each.
+    Penalties(&'a [f64]),
+    /// A matrix for each.
+    Stiffness(&'a [Stiffness]),
+}
+
 impl System {
     /// Analyzes the pattern of the free operator.
     ///
@@ -56,38 +65,21 @@ impl System {
         self.cholesky.n_factorizations()
     }
 
-    /// Factors the matrix for the penalties `r`.
+    /// Factors the matrix.
     ///
     /// # Errors
     /// A matrix that is not positive definite, or dependent linear constraints.
     pub fn factorize<const K: usize>(
         &mut self,
         reduced: &mut Reduced<'_, K>,
-        r: &[f64],
-    ) -> Result<(), SolveError> {
-        self.factorize_by(reduced, |normal, h, twice, out| normal.assemble(h, r, twice, out))
-    }
-
-    /// Factors the matrix for a stiffness per block.
-    ///
-    /// # Errors
-    /// As [`System::factorize`].
-    pub fn factorize_stiff<const K: usize>(
-        &mut self,
-        reduced: &mut Reduced<'_, K>,
-        stiffness: &[Stiffness],
-    ) -> Result<(), SolveError> {
-        self.factorize_by(reduced, |normal, h, twice, out| normal.assemble_stiff(h, stiffness, twice, out))
-    }
-
-    /// Factors the matrix that `assemble` sums up, given the operator and twice the fidelities.
-    fn factorize_by<const K: usize>(
-        &mut self,
-        reduced: &mut Reduced<'_, K>,
-        assemble: impl FnOnce(&NormalMatrix, &BlockRows, &[f64], &mut Vec<f64>),
+        weighing: Weighing<'_>,
     ) -> Result<(), SolveError> {
         let twice: Vec<f64> = memory::gathered(reduced.fidelity.iter().map(|a| 2.0 * a))?;
-        assemble(&self.normal, &reduced.free.operator, &twice, &mut self.values);
+        let (h, values) = (&reduced.free.operator, &mut self.values);
+        match weighing {
+            Weighing::Penalties(r) => self.normal.assemble(h, r, &twice, values),
+            Weighing::Stiffness(stiffness) => self.normal.assemble_stiff(h, stiffness, &twice, values),
+        }
         let starts = &self.normal.pattern().starts;
         let diagonal: Vec<f64> = memory::gathered(starts[..twice.len()].iter().map(|&s| self.values[s]))?;
         let mean = diagonal.iter().sum::<f64>() / diagonal.len().max(1) as f64;

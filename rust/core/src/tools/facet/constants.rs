@@ -1,6 +1,12 @@
 //! Every number that facets depend on, with its reason.
 //! Lengths are parts of the diagonal of the bounding box.
 
+/// How many turns there are, and what changes by which factor in each.
+pub(super) struct Turns {
+    pub count: usize,
+    pub factor: f64,
+}
+
 /// What faces that are turned away cost against faces that are away, over the area of the region: a spherical
 /// cap of radius `r` and curvature `k` is off its plane by `k² r⁴ / 48` in the mean square, its normals by
 /// `k² r² / 2`; with the area `π r²` both then weigh about the same. Without it the two sides of an ear
@@ -59,14 +65,10 @@ pub(super) const REPAIRS: usize = 12;
 
 /// Faces are shared out and planes fitted until both surfaces have not come nearer, to this part of their
 /// distance, so many times in a row.
-pub(super) const NEARER: f64 = 0.999;
-pub(super) const IDLE: usize = 2;
+pub(super) const IDLE: Turns = Turns { count: 2, factor: 0.999 };
 
-/// How often a round is tried again with the corners of unsound facets held ten times as firmly.
-pub(super) const TRIES: usize = 6;
-
-/// How much firmer.
-pub(super) const FIRMER: f64 = 10.0;
+/// How often a round is tried again with the corners of unsound facets held so many times as firmly.
+pub(super) const TRIES: Turns = Turns { count: 6, factor: 10.0 };
 
 /// How many times the planes are taken anew to end at the number of facets asked for,
 /// since repairs change it.

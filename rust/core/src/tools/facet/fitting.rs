@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::constants::{FITTING, FLAT, IDLE, NEARER, PULL, REPAIRS, STAY, TRIES};
+use super::constants::{FITTING, FLAT, IDLE, PULL, REPAIRS, STAY, TRIES};
 use super::faces::Faces;
 use super::faults::Inspection;
 use super::moments::{Moments, Plane};
@@ -40,7 +40,7 @@ pub(super) fn refine(shape: &mut Shape, faces: &mut Faces, progress: &Progress) 
     let (mut labels, distance) = measured(shape, faces, &inspection)?;
     let mut best = (distance, shape.clone());
     let mut n_idle = 0;
-    while n_idle < IDLE && !progress.is_finishing() {
+    while n_idle < IDLE.count && !progress.is_finishing() {
         faces.labels = labels;
         faces.fit(shape);
         let Some(next) = fitted(shape, faces, &inspection, progress)? else { break };
@@ -48,7 +48,7 @@ pub(super) fn refine(shape: &mut Shape, faces: &mut Faces, progress: &Progress) 
         inspection = Inspection::new(shape, true)?;
         let distance;
         (labels, distance) = measured(shape, faces, &inspection)?;
-        n_idle = if distance < NEARER * best.0 { 0 } else { n_idle + 1 };
+        n_idle = if distance < IDLE.factor * best.0 { 0 } else { n_idle + 1 };
         if distance < best.0 {
             best = (distance, shape.clone());
         }
@@ -82,7 +82,7 @@ fn fitted(
 ) -> Result<Option<Shape>> {
     let aim = |corner: &Corner| between(corner.point, faces.on_mesh(corner.point), PULL);
     let aims = memory::gathered(shape.corners.iter().map(aim))?;
-    for _ in 0..TRIES {
+    for _ in 0..TRIES.count {
         progress.check()?;
         let mut trial = shape.clone();
         let off = flatten(&mut trial, FITTING, &aims)?;
@@ -101,7 +101,7 @@ fn fitted(
 /// # Errors
 /// Those of the linear solver.
 pub(super) fn fold(shape: &mut Shape, faces: &mut Faces) -> Result<()> {
-    for _ in 0..TRIES {
+    for _ in 0..TRIES.count {
         if shape.off_planes() <= FLAT {
             break;
         }

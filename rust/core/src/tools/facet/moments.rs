@@ -1,7 +1,7 @@
 //! The plane of a set of faces, by integrals over them.
 
 use super::constants::TURN;
-use crate::linear::small::eigen3;
+use crate::linear::small::least_eigen3;
 use crate::mesh::vector::{add, area_vector, dot, norm, scale, unit, Point};
 
 /// The points with `normal · x = offset`.
@@ -81,9 +81,8 @@ impl Moments {
             let plane = Plane::through(self.center(), normal);
             PlaneFit { plane, squared_distance, energy: squared_distance + TURN * self.area * turned }
         };
-        let least =
-            eigen3(spread).into_iter().fold((f64::INFINITY, [0.0; 3]), |a, b| if b.0 < a.0 { b } else { a });
-        let flat = if dot(least.1, self.vector) < 0.0 { scale(least.1, -1.0) } else { least.1 };
+        let (_, least) = least_eigen3(spread);
+        let flat = if dot(least, self.vector) < 0.0 { scale(least, -1.0) } else { least };
         let (first, second) = (fit(flat), fit(unit(self.vector)));
         if first.energy <= second.energy || self.vector == [0.0; 3] {
             first

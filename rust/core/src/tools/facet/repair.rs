@@ -3,7 +3,7 @@
 
 use std::collections::HashSet;
 
-use super::constants::FIRMER;
+use super::constants::TRIES;
 use super::faces::Faces;
 use super::moments::Moments;
 use super::shape::{sides, Facet, Shape};
@@ -205,5 +205,5 @@ fn divide(shape: &mut Shape, faces: &mut Faces, k: u32) -> bool {
 /// Holds the corners of a facet more firmly.
 pub(super) fn hold(shape: &mut Shape, k: u32) {
     let corners: Vec<u32> = shape.facets[k as usize].corners().collect();
-    corners.iter().for_each(|&c| shape.corners[c as usize].firmness *= FIRMER);
+    corners.iter().for_each(|&c| shape.corners[c as usize].firmness *= TRIES.factor);
 }

@@ -5,12 +5,9 @@
 pub(super) const ROUNDING: f64 = 1e-6;
 
 /// How far a vertex may move: so many standard deviations of the noise, which it is off by once in sixteen
-/// thousand times in each coordinate,
-pub(super) const MOST_NOISE_MOVE: f64 = 4.0;
-
-/// and this part of a mean edge, as borders that run along the mesh are off the curve where the surfaces
-/// meet.
-pub(super) const FREE_MOVE: f64 = 0.5;
+/// thousand times in each coordinate, and this part of a mean edge, as borders that run along the mesh are
+/// off the curve where the surfaces meet.
+pub(super) const MOST_MOVE: [f64; 2] = [4.0, 0.5];
 
 /// Vertices nearer to each other than this part of a mean edge would make a triangle vanish:
 /// one of them takes the corner.
@@ -26,12 +23,11 @@ pub(super) const FLOW_STEPS: usize = 12;
 /// it moves a scan of ten thousand vertices by a fraction of its noise.
 pub(super) const FLOW_FIDELITY: f64 = 1e7;
 
-/// Turns and shifts of axes are found in so many Newton steps at most; they end at rounding,
+/// Turns and shifts of axes are found in so many Newton steps at most.
 pub(super) const MOST_TURNS: usize = 20;
 
-/// that of unit vectors, and of places in the unit of the shape.
-pub(super) const TURN_ROUNDING: f64 = 1e-15;
-pub(super) const SHIFT_ROUNDING: f64 = 1e-14;
+/// They end at rounding: that of unit vectors for turns, that of places in the unit of the shape for shifts.
+pub(super) const TURN_AND_SHIFT_ROUNDING: [f64; 2] = [1e-15, 1e-14];
 
 /// A surface is shifted along what its points determine: along the axis of a cylinder nothing does, and what
 /// rounding leaves there is less than this part of the largest eigenvalue.

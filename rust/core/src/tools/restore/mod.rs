@@ -26,7 +26,7 @@ use crate::tools::scale::extent;
 use crate::tools::segment::{segment, SegmentOptions};
 use crate::unit::Unit;
 use crate::{Error, Result};
-use constants::{FREE_MOVE, MOST_NOISE_MOVE, ROUNDING};
+use constants::{MOST_MOVE, ROUNDING};
 use place::Placement;
 
 /// Moves the vertices of `mesh` onto the surfaces that its faces were sampled from. Connectivity stays.
@@ -88,7 +88,7 @@ fn on(working: &Working<'_>, unit: Unit, options: &RestoreOptions, progress: &Pr
     let fixed = options.fixed.as_ref().map(|fixed| working.any_of(fixed));
     let reach = options
         .max_move
-        .map_or(MOST_NOISE_MOVE * domain.sigma + FREE_MOVE * domain.mean_edge, |most| unit.measure(most));
+        .map_or(MOST_MOVE[0] * domain.sigma + MOST_MOVE[1] * domain.mean_edge, |most| unit.measure(most));
     let mut placement = Placement::new(&domain, &state, fixed.as_deref(), reach);
     placement.place(&domain, &state, progress)?;
     let has_free = state.pieces.iter().any(|piece| piece.surface.is_none());

@@ -1,6 +1,6 @@
 //! Surfaces made parallel, orthogonal and equal where they nearly are, as parts are made.
 
-use super::constants::{MOST_TURNS, SHIFT_ROUNDING, TURN_ROUNDING, UNDETERMINED};
+use super::constants::{MOST_TURNS, TURN_AND_SHIFT_ROUNDING, UNDETERMINED};
 use crate::labelling::{Domain, Labelling};
 use crate::linear::small::{determined, Quadric};
 use crate::mesh::vector::{add, cross, dot, norm, scale, sub, unit, Point};
@@ -139,7 +139,7 @@ fn nearest_frame(axes: &[(Point, f64)]) -> Vec<Point> {
         for axis in turned {
             frame.push(unit(frame.iter().fold(axis, |a, &f: &Point| sub(a, scale(f, dot(a, f))))));
         }
-        if norm(turn) < TURN_ROUNDING {
+        if norm(turn) < TURN_AND_SHIFT_ROUNDING[0] {
             break;
         }
     }
@@ -181,7 +181,7 @@ fn slid(mut surface: Surface, samples: &Samples) -> Surface {
         }
         let shift = planes.nearest(UNDETERMINED);
         surface = surface.placed(1.0, shift);
-        if norm(shift) < SHIFT_ROUNDING {
+        if norm(shift) < TURN_AND_SHIFT_ROUNDING[1] {
             break;
         }
     }

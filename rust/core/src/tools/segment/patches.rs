@@ -3,7 +3,7 @@
 
 use super::constants::{MOST_NEARBY, NEARBY, NEARBY_OF_NOISE, PATCH_STIFFNESS};
 use super::surface::Surface;
-use crate::linear::small::symmetric_eigen;
+use crate::linear::small::{least_eigen3, scatter, symmetric_eigen};
 use crate::linear::Columns;
 use crate::mesh::vector::{add, dot, norm, scale, sub, unit, Point};
 use crate::tools::heights::{value, Frame, LeastSquares, TERMS};
@@ -36,20 +36,16 @@ impl SegmentPlane {
             return None;
         }
         let center = center.map(|c| c / area);
-        let mut moments = vec![vec![0.0; 3]; 3];
-        for &f in faces {
+        let corners = |&f: &u32| {
             let weight = surface.areas[f as usize] / (3.0 * area);
-            for v in surface.connectivity.faces()[f as usize] {
-                let d = sub(surface.positions[v as usize], center);
-                (0..3).for_each(|i| (0..3).for_each(|j| moments[i][j] += weight * d[i] * d[j]));
-            }
-        }
-        let (values, vectors) = symmetric_eigen(moments);
-        let normal = std::array::from_fn(|c| vectors[0][c]);
+            let corners = surface.connectivity.faces()[f as usize];
+            corners.map(|v| (sub(surface.positions[v as usize], center), weight))
+        };
+        let (least, normal) = least_eigen3(scatter(faces.iter().flat_map(corners)));
         // The side that the faces show.
         let outward: f64 = faces.iter().map(|&f| dot(surface.vector_area(f as usize), normal)).sum();
         let normal = scale(normal, outward.signum());
-        Some(Self { normal, center, spread: values[0].max(0.0).sqrt() })
+        Some(Self { normal, center, spread: least.max(0.0).sqrt() })
     }
 
     /// The unit normal, to the side that the faces show.
