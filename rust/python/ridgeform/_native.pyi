@@ -153,6 +153,7 @@ def segment(
     face_weights: ArrayLike | None = None,
     edge_weights: ArrayLike | None = None,
     faces: ArrayLike | None = None,
+    coarse_to_fine: bool | None = None,
     solver: Solver = "auto",
     tolerance: float | None = None,
     max_iterations: int | None = None,

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use ridgeform_core::operators::{Dual, Energy};
 use ridgeform_core::solve::{Coupling, Solver};
-use ridgeform_core::tools::{EnergyOptions, Scale, SolveOptions};
+use ridgeform_core::tools::{EnergyOptions, Levels, Scale, SolveOptions};
 
 use crate::arrays::finite_floats;
 use crate::errors::argument;
@@ -68,6 +68,15 @@ const SOLVERS: [(&str, Solver); 5] = [
 /// `ArgumentError` for an unknown word.
 pub(crate) fn coupling(py: Python<'_>, given: &str) -> PyResult<Coupling> {
     choice(py, "coupling", given, &[("joint", Coupling::Joint), ("separate", Coupling::Separate)])
+}
+
+/// Whether a tool works on coarser meshes first: `coarse_to_fine` of the functions.
+pub(crate) fn levels(coarse_to_fine: Option<bool>) -> Levels {
+    match coarse_to_fine {
+        None => Levels::Auto,
+        Some(true) => Levels::Always,
+        Some(false) => Levels::Never,
+    }
 }
 
 /// `scale=`.

@@ -118,6 +118,9 @@ solver_function! {
     /// edge_weights : (m,3) array ≥ 0, the same for edges, column i opposite corner i;
     ///     the mean of both faces' entries counts
     /// faces : faces to segment, (m,) booleans or (j,) indices; None for all
+    /// coarse_to_fine : bool or None. True: segments are found on a mesh of some 9000 vertices, and their
+    ///     borders moved to where finer ones have them; False: on the mesh itself; None: on a coarser mesh
+    ///     from 18000 vertices on, for shapes by "fitted" without `fidelity` and `edge_weights`
     solver keywords
     /// progress : Progress or None
     ///
@@ -134,7 +137,8 @@ solver_function! {
     /// Rowe et al. 2024, eqs. (25) and (41), section 7.5, supplement E.
     signature = (mesh, *, values=None, length_weight=0.5, fidelity=None, epsilon_start=0.1, epsilon_end=0.001,
         inner_tolerance=1e-5, cut_threshold=0.6, min_faces=None, scale="extent", method="fitted",
-        n_segments=None, face_weights=None, edge_weights=None, faces=None), tolerance = None;
+        n_segments=None, face_weights=None, edge_weights=None, faces=None, coarse_to_fine=None),
+        tolerance = None;
     pub fn segment(py: Python<'_>, solve, progress;
         mesh: &Mesh,
         values: Option<&Bound<'_, PyAny>>,
@@ -151,6 +155,7 @@ solver_function! {
         face_weights: Option<&Bound<'_, PyAny>>,
         edge_weights: Option<&Bound<'_, PyAny>>,
         faces: Option<&Bound<'_, PyAny>>,
+        coarse_to_fine: Option<bool>,
     ) -> PyResult<Segmentation> {
         let (n, m) = (mesh.n_vertices(), mesh.n_faces());
         let signal = values.map(|given| columns::read("values", given, n, "vertex")).transpose()?;
@@ -169,6 +174,7 @@ solver_function! {
             face_weights: options::weights("face_weights", face_weights, m, "face")?,
             edge_weights: options::edge_weights(py, edge_weights)?,
             faces: arrays::mask("faces", faces, m, "face")?,
+            levels: options::levels(coarse_to_fine),
             solve: solve()?,
         };
         let given = signal.as_ref().map(|signal| &signal.columns);

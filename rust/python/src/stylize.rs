@@ -133,11 +133,7 @@ solver_function! {
             ridge_weights: options::weights("ridge_weights", ridge_weights, m, "face")?,
             delaunay,
             dual: options::dual(py, dual)?,
-            levels: match coarse_to_fine {
-                None => tools::Levels::Auto,
-                Some(true) => tools::Levels::Always,
-                Some(false) => tools::Levels::Never,
-            },
+            levels: options::levels(coarse_to_fine),
             solve: solve()?,
         };
         let result = doorway::call(py, &progress, || tools::stylize(mesh.inner(), &options, &progress))?;

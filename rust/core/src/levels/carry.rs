@@ -43,7 +43,6 @@ impl Carry {
             }
         });
         let corners = |f: u32| faces[f as usize].map(|v| points[v as usize]);
-        let squared = |p: Point, q: Point| dot(sub(p, q), sub(p, q));
         let place = |p: Point, parent: u32| {
             let mut best: Option<(f64, u32, Point)> = None;
             let (mut known, mut from): ([u32; 3], &[u32]) = ([u32::MAX; 3], &[parent]);
@@ -91,6 +90,28 @@ impl Carry {
         self.places.par_iter().map(|place| place.as_ref().map_or(none, value)).collect()
     }
 
+    /// For each of the `fine` faces, of the coarse ones that its corners lie on the one that is closest to
+    /// its middle; `None` where they lie on none.
+    ///
+    /// # Errors
+    /// [`MeshError::NoPositions`].
+    pub fn faces(&self, fine: &Mesh, coarse: &Mesh) -> Result<Vec<Option<u32>>, MeshError> {
+        let positions = fine.positions().ok_or(MeshError::NoPositions)?;
+        let points = coarse.positions().ok_or(MeshError::NoPositions)?;
+        let corners = coarse.connectivity().faces();
+        let closest = |face: &[u32; 3]| {
+            let sum = face.iter().fold([0.0; 3], |sum, &v| add(sum, positions[v as usize]));
+            let middle = scale(sum, 1.0 / 3.0);
+            let away = |f: u32| {
+                let corners = corners[f as usize].map(|v| points[v as usize]);
+                squared(middle, closest_on_triangle(middle, corners))
+            };
+            let found = face.iter().filter_map(|&v| self.places[v as usize]).map(|place| place.face);
+            found.min_by(|&f, &g| away(f).total_cmp(&away(g)))
+        };
+        Ok(fine.connectivity().faces().par_iter().map(closest).collect())
+    }
+
     /// The geometric mean of what the faces have that the corners of each of the `fine` faces lie on; 1 where
     /// none does.
     #[must_use]
@@ -110,6 +131,10 @@ impl Carry {
     }
 }
 
+fn squared(p: Point, q: Point) -> f64 {
+    dot(sub(p, q), sub(p, q))
+}
+
 /// The weights of the corners at a point of their triangle.
 fn weights(corners: [Point; 3], point: Point) -> [f64; 3] {
     let normal = area_vector(corners);
@@ -117,7 +142,7 @@ fn weights(corners: [Point; 3], point: Point) -> [f64; 3] {
     if square <= 0.0 {
         // A triangle without area: the closest corner.
         let nearest = (0..3).min_by(|&i, &j| {
-            let distance = |k: usize| dot(sub(corners[k], point), sub(corners[k], point));
+            let distance = |k: usize| squared(corners[k], point);
             distance(i).total_cmp(&distance(j))
         });
         return std::array::from_fn(|k| if Some(k) == nearest { 1.0 } else { 0.0 });

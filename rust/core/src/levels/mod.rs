@@ -43,8 +43,22 @@ impl Level {
     }
 }
 
+/// What faces have, as each level has it: the mean at a vertex of what it stands for, at a face of its
+/// corners.
+pub(crate) fn face_values(mesh: &Mesh, levels: &[Level], values: &[f64]) -> Vec<Vec<f64>> {
+    let faces = mesh.connectivity().faces().iter().zip(values);
+    let at_corners = faces.flat_map(|(face, &value)| face.map(|v| (v, value)));
+    let mut at_vertices = means(mesh.connectivity().n_vertices(), at_corners);
+    let on_level = |level: &Level| {
+        at_vertices = level.mean_of(&at_vertices);
+        let mean = |face: &[u32; 3]| face.iter().map(|&v| at_vertices[v as usize]).sum::<f64>() / 3.0;
+        level.mesh.connectivity().faces().iter().map(mean).collect()
+    };
+    levels.iter().map(on_level).collect()
+}
+
 /// The mean of the values of each of `n` vertices; 0 where one has none.
-pub(crate) fn means(n: usize, values: impl Iterator<Item = (u32, f64)>) -> Vec<f64> {
+fn means(n: usize, values: impl Iterator<Item = (u32, f64)>) -> Vec<f64> {
     let (mut sums, mut counts) = (vec![0.0; n], vec![0_u32; n]);
     for (v, value) in values {
         sums[v as usize] += value;

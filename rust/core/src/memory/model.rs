@@ -37,6 +37,8 @@ pub enum Tool {
     QuadraticModes,
     /// [`crate::tools::segment`].
     Segment,
+    /// The same with segments found on a coarser mesh.
+    SegmentByLevels,
     /// [`crate::tools::parts`].
     Parts,
     /// [`crate::tools::facet`].
@@ -65,7 +67,7 @@ pub(super) struct Cost {
 
 impl Tool {
     /// Every tool by the name that users call it by.
-    pub const ALL: [(&'static str, Self); 24] = [
+    pub const ALL: [(&'static str, Self); 25] = [
         ("mesh", Self::Mesh),
         ("report", Self::Report),
         ("hessian", Self::Hessian),
@@ -81,6 +83,7 @@ impl Tool {
         ("vibration_modes", Self::Modes),
         ("vibration_modes_quadratic", Self::QuadraticModes),
         ("segment", Self::Segment),
+        ("segment_coarse_to_fine", Self::SegmentByLevels),
         ("parts", Self::Parts),
         ("facet", Self::Facet),
         ("restore", Self::Restore),
@@ -106,7 +109,7 @@ impl Tool {
 
     /// Whether a linear system is solved in it.
     pub(super) const fn solves(self) -> bool {
-        self.cost().logarithmic > 0.0 || matches!(self, Self::FillHoles | Self::Parts)
+        self.cost().logarithmic > 0.0 || matches!(self, Self::FillHoles | Self::Parts | Self::SegmentByLevels)
     }
 
     pub(super) const fn cost(self) -> Cost {
@@ -125,6 +128,7 @@ impl Tool {
             Self::Modes => (1500.0, 68.0, 40.0),
             Self::QuadraticModes => (830.0, 62.0, 30.0),
             Self::Segment => (2400.0, 75.0, 0.0),
+            Self::SegmentByLevels => (700.0, 0.0, 0.0),
             Self::Parts => (520.0, 0.0, 0.0),
             Self::Facet => (820.0, 0.0, 0.0),
             Self::Restore => (2500.0, 77.0, 0.0),

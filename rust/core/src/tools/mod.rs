@@ -34,13 +34,13 @@ pub use fill_holes::{
 };
 pub use interpolate::interpolate;
 pub use modes::{vibration_modes, ModeOptions, Modes};
-pub use options::SolveOptions;
+pub use options::{Levels, SolveOptions};
 pub use parts::{parts, Parts, PartsOptions};
 pub use restore::{restore, RestoreOptions, RestoreStatus, Restored, RestoredSurface};
 pub use scalar::ScalarOptions;
 pub use scale::Scale;
 pub use segment::{segment, Hierarchy, SegmentMethod, SegmentOptions, Segmentation};
 pub use sharpness::sharpened_weights;
-pub use stylize::{stylize, Flatness, FlowStatus, Levels, StylizeOptions, Stylized};
+pub use stylize::{stylize, Flatness, FlowStatus, StylizeOptions, Stylized};
 
 pub use crate::solve::Solution;

@@ -3,6 +3,30 @@
 use crate::solve::{Settings, Solver};
 use crate::{threads, Error, Result};
 
+/// Whether a tool works on coarser meshes first ([`crate::levels`]).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Levels {
+    /// On meshes with at least twice the vertices of the coarsest level, where what is asked for suits it.
+    #[default]
+    Auto,
+    /// On meshes with more vertices than the coarsest level.
+    Always,
+    /// Everything is done on the mesh itself.
+    Never,
+}
+
+impl Levels {
+    /// Whether they are used on a mesh with so many vertices, if the coarsest level has `enough` and what is
+    /// asked for `is_suited`.
+    pub(super) fn are_used(self, n_vertices: usize, enough: usize, is_suited: bool) -> bool {
+        match self {
+            Self::Auto => is_suited && n_vertices >= 2 * enough,
+            Self::Always => n_vertices > enough,
+            Self::Never => false,
+        }
+    }
+}
+
 /// Which solver, how exact, how long, on how many threads.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SolveOptions {

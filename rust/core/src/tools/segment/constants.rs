@@ -2,6 +2,11 @@
 
 use crate::tools::Scale;
 
+// Coarser meshes.
+
+/// The most vertices of the mesh that the segments of a large one are found on.
+pub(super) const ENOUGH: usize = 9000;
+
 // Noise and the functional (41).
 
 /// `ε` below this many mean edges makes the indicator rise again everywhere: no row of faces is narrow

@@ -9,6 +9,7 @@
 //! them ([`regions`]). In any case a [`hierarchy`] of nested segmentations comes with it. Faces split at
 //! T-junctions ([`split`]) and [`copies`] of faces are given back as the mesh has them.
 
+mod coarse_to_fine;
 mod constants;
 mod copies;
 mod crease;
@@ -50,6 +51,7 @@ use crate::solve::Settings;
 use crate::tools::answer;
 use crate::unit::Unit;
 use crate::{memory, Result};
+use coarse_to_fine::coarse_to_fine;
 use constants::{BEND, LEAST_EPSILON};
 use copies::Copies;
 use exact::coarse_planes;
@@ -143,7 +145,8 @@ fn on(
     let copies = Copies::among(mesh.connectivity(), options.faces.as_deref());
     let without = copies.as_ref().map(|copies| copies.others(options.faces.as_deref()));
     let mut found = options.solve.run(|| {
-        mesh.demand(Tool::Segment)
+        let by_levels = options.are_levels_used(mesh.connectivity().n_vertices(), values.is_some());
+        mesh.demand(if by_levels { Tool::SegmentByLevels } else { Tool::Segment })
             .with_columns(n_columns, options.solve.solver.is_clarabel())
             .admit(options.solve.memory_limit)?;
         match without.as_ref().or(options.faces.as_ref()) {
@@ -188,11 +191,20 @@ fn whole(
         Some(signal) => signal.values.copied()?,
         None => Columns::from_points(&surface.positions)?,
     };
-    let plain = values.is_none() && options.fidelity.is_none() && options.method == SegmentMethod::Fitted;
-    let exact = if plain { coarse_planes(&surface, BEND * options.length_weight) } else { None };
+    let exact = if options.is_plain(values.is_some()) { coarse_planes(&surface, BEND * options.length_weight) } else { None };
     let is_exact = exact.is_some();
     let degrees = values.map_or(1, |v| v.n_columns);
     let noise = if is_exact { 0.0 } else { noise_level(&surface, &start, degrees) };
+    if options.are_levels_used(positions.len(), values.is_some()) {
+        if !is_exact {
+            if let Some(found) = coarse_to_fine(mesh, &surface, noise, unit, options, settings, progress)? {
+                return Ok(found);
+            }
+        }
+        mesh.demand(Tool::Segment)
+            .with_columns(3, options.solve.solver.is_clarabel())
+            .admit(options.solve.memory_limit)?;
+    }
     let mut epsilons = options.epsilons(LEAST_EPSILON * surface.mean_edge);
     if is_exact {
         epsilons.drain(..epsilons.len() - 1);

@@ -1,12 +1,11 @@
 //! How to segment.
 
-use super::constants::CLEAN_FIDELITY;
-use super::constants::DEFAULT_SCALE;
+use super::constants::{CLEAN_FIDELITY, DEFAULT_SCALE, ENOUGH};
 use crate::linear::Columns;
 use crate::mesh::Mesh;
 use crate::solve::MAX_JOINT_COLUMNS;
 use crate::tools::options::{check_edge_weights, check_faces, check_positive, check_range, check_weights};
-use crate::tools::{Scale, SolveOptions};
+use crate::tools::{Levels, Scale, SolveOptions};
 use crate::{Error, Result};
 
 /// How segments are made from the indicator.
@@ -53,6 +52,9 @@ pub struct SegmentOptions {
     pub edge_weights: Option<Vec<[f64; 3]>>,
     /// The faces to segment; all where `None`.
     pub faces: Option<Vec<bool>>,
+    /// Whether segments are found on a coarser mesh: those of shapes without weights of edges and a given
+    /// fidelity, by [`SegmentMethod::Fitted`]; others never are.
+    pub levels: Levels,
     /// The solver; the default stops on residuals.
     pub solve: SolveOptions,
 }
@@ -73,6 +75,7 @@ impl Default for SegmentOptions {
             face_weights: None,
             edge_weights: None,
             faces: None,
+            levels: Levels::Auto,
             solve: SolveOptions { tolerance: None, ..SolveOptions::default() },
         }
     }
@@ -110,6 +113,18 @@ impl SegmentOptions {
             return Err(Error::argument("values", problem));
         }
         Ok(())
+    }
+
+    /// Whether nothing is asked for but the faces of a shape.
+    pub(super) fn is_plain(&self, has_values: bool) -> bool {
+        !has_values && self.fidelity.is_none() && self.method == SegmentMethod::Fitted
+    }
+
+    /// Whether segments of a mesh with so many vertices are found on a coarser one. Weights of edges say where
+    /// borders run to the edge, which no coarser mesh has.
+    pub(super) fn are_levels_used(&self, n_vertices: usize, has_values: bool) -> bool {
+        let is_suited = self.is_plain(has_values) && self.edge_weights.is_none();
+        is_suited && self.levels.are_used(n_vertices, ENOUGH, true)
     }
 
     /// `α` to start with.

@@ -166,14 +166,7 @@ impl<'a> Passes<'a> {
 
     /// Merges and relabels in turns.
     fn fit(&self, merging: &Merging<'_>, labels: &mut Vec<u32>) -> Result<()> {
-        let relabel = Relabel {
-            surface: self.surface,
-            signal: (!self.is_shape).then_some(self.start),
-            noise: self.noise,
-            least_faces: self.least_faces(),
-            regions: self.groups(),
-            progress: self.progress,
-        };
+        let relabel = self.relabel(self.least_faces());
         let threshold = BEND * self.options.length_weight;
         for (round, share) in BEND_SHARES.into_iter().enumerate() {
             self.report(0.9 + 0.02 * round as f64, "segments");
@@ -200,6 +193,37 @@ impl<'a> Passes<'a> {
         if let Some(straighten) = &straighten {
             straighten.run(labels)?;
             relabel.rejoin(labels);
+        }
+        Ok(())
+    }
+
+    fn relabel(&self, least_faces: usize) -> Relabel<'_> {
+        Relabel {
+            surface: self.surface,
+            signal: (!self.is_shape).then_some(self.start),
+            noise: self.noise,
+            least_faces,
+            regions: self.groups(),
+            progress: self.progress,
+        }
+    }
+
+    /// Moves the borders of segments of a shape, found on a coarser mesh, to where this one has them. None
+    /// falls apart: small pieces that come loose are its neighbors'.
+    pub(super) fn refine(&self, labels: &mut Vec<u32>) -> Result<()> {
+        let relabel = self.relabel(usize::MAX);
+        relabel.run(labels)?;
+        let [_, flat] = self.deviations();
+        Straighten::new(self.surface, flat, self.groups(), self.progress).run(labels)?;
+        relabel.rejoin(labels);
+        Ok(())
+    }
+
+    /// What segments that were refined lack: what was asked for in faces of this mesh.
+    pub(super) fn settled(&self, merging: &Merging<'_>, labels: &mut [u32]) -> Result<()> {
+        merging.absorb_small(labels, self.options.min_faces.unwrap_or(0))?;
+        if let Some(n) = self.options.n_segments {
+            self.merge_to(merging, labels, n)?;
         }
         Ok(())
     }

@@ -11,7 +11,7 @@ use super::flow::{Flow, Legacy, Show};
 use super::options::{StylizeOptions, Stylized, ENOUGH};
 use super::Flatness;
 use crate::error::MeshError;
-use crate::levels::{levels, means, Level};
+use crate::levels::{face_values, levels, Level};
 use crate::mesh::vector::{add, sub, Point};
 use crate::mesh::{edge_lengths, Mesh};
 use crate::progress::Progress;
@@ -106,30 +106,18 @@ fn options_by_level(
     let mut fixed: Option<Vec<f64>> =
         held.map(|held| held.iter().map(|&is| f64::from(u8::from(is))).collect());
     let mut strength = options.strength.clone();
-    let mut ridges = options.ridge_weights.as_ref().map(|weights| at_vertices(mesh, weights));
-    for level in levels {
+    let ridges = options.ridge_weights.as_ref().map(|weights| face_values(mesh, levels, weights));
+    for (i, level) in levels.iter().enumerate() {
         fixed = fixed.map(|values| level.mean_of(&values));
         strength = strength.map(|values| level.mean_of(&values));
-        ridges = ridges.map(|values| level.mean_of(&values));
         all.push(StylizeOptions {
             fixed: fixed.as_ref().map(|values| values.iter().map(|&value| value > 0.5).collect()),
             strength: strength.clone(),
-            ridge_weights: ridges.as_ref().map(|values| at_faces(&level.mesh, values)),
+            ridge_weights: ridges.as_ref().map(|values| values[i].clone()),
             ..options.clone()
         });
     }
     all
-}
-
-/// The mean of a face's value over the faces of each vertex.
-fn at_vertices(mesh: &Mesh, values: &[f64]) -> Vec<f64> {
-    let faces = mesh.connectivity().faces().iter().zip(values);
-    means(mesh.connectivity().n_vertices(), faces.flat_map(|(face, &value)| face.map(|v| (v, value))))
-}
-
-fn at_faces(mesh: &Mesh, values: &[f64]) -> Vec<f64> {
-    let mean = |face: &[u32; 3]| face.iter().map(|&v| values[v as usize]).sum::<f64>() / 3.0;
-    mesh.connectivity().faces().iter().map(mean).collect()
 }
 
 /// Points of the coarsest of `levels`, as they move the vertices of `mesh`, the finest.

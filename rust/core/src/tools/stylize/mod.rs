@@ -9,7 +9,7 @@ mod pace;
 
 pub use flatness::Flatness;
 use options::check;
-pub use options::{FlowStatus, Levels, StylizeOptions, Stylized};
+pub use options::{FlowStatus, StylizeOptions, Stylized};
 
 use super::scale::Scale;
 use crate::error::MeshError;

@@ -6,7 +6,7 @@ use crate::mesh::Mesh;
 use crate::operators::Dual;
 use crate::solve::Coupling;
 use crate::tools::options::{check_fixed, check_positive, check_range, check_weights};
-use crate::tools::{Scale, SolveOptions};
+use crate::tools::{Levels, Scale, SolveOptions};
 
 /// How to stylize.
 #[derive(Debug, Clone)]
@@ -38,7 +38,7 @@ pub struct StylizeOptions {
     pub delaunay: bool,
     /// Dual edges of the operator.
     pub dual: Dual,
-    /// Whether most steps are done on coarser meshes.
+    /// Whether most steps are done on coarser meshes; where that is automatic, in flows that look for an end.
     pub levels: Levels,
     /// The solver.
     pub solve: SolveOptions,
@@ -65,18 +65,6 @@ impl Default for StylizeOptions {
     }
 }
 
-/// Whether a flow goes from coarse meshes to fine ones ([`crate::levels`]).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Levels {
-    /// A flow that looks for its end does, on meshes with at least twice the vertices of the coarsest level.
-    #[default]
-    Auto,
-    /// Any flow does, on meshes with more vertices than the coarsest level.
-    Always,
-    /// All steps are done on the mesh itself.
-    Never,
-}
-
 /// The most vertices of the coarsest level: what a flow makes of a shape at the usual strengths has some
 /// hundred facets, so that each has some tens of vertices; and the whole flow takes about a second.
 pub(super) const ENOUGH: usize = 9000;
@@ -90,14 +78,9 @@ impl StylizeOptions {
 
     /// Whether a mesh with so many vertices gets levels.
     pub(super) fn uses_levels(&self, n_vertices: usize) -> bool {
-        match self.levels {
-            // Equal steps are those of the paper, each on the mesh itself.
-            Levels::Auto => {
-                n_vertices >= 2 * ENOUGH && (self.movement.is_some() || self.flat_share.is_some())
-            }
-            Levels::Always => n_vertices > ENOUGH,
-            Levels::Never => false,
-        }
+        // Equal steps are those of the paper, each on the mesh itself.
+        let is_suited = self.movement.is_some() || self.flat_share.is_some();
+        self.levels.are_used(n_vertices, ENOUGH, is_suited)
     }
 }
 

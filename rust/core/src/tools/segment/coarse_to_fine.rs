@@ -1,0 +1,133 @@
+//! Segments of a large mesh, found on a coarser one.
+//!
+//! Which faces there are, a mesh of some thousand vertices says as well as one of a million, and with less
+//! noise ([`crate::levels`]). So all passes are done there; on each finer level only the borders move, to
+//! where it has them.
+
+use super::constants::ENOUGH;
+use super::options::SegmentOptions;
+use super::passes::Passes;
+use super::segmentation::{boundary_edges, Segmentation};
+use super::surface::{contiguous, Surface};
+use super::whole;
+use crate::error::MeshError;
+use crate::levels::{face_values, levels, Level};
+use crate::linear::Columns;
+use crate::mesh::vector::Point;
+use crate::mesh::Mesh;
+use crate::progress::Progress;
+use crate::solve::Settings;
+use crate::tools::{Levels, Scale};
+use crate::Result;
+
+/// The segments of `mesh`, a shape whose `surface` has lengths in `unit`; nothing if it has no coarser level.
+pub(super) fn coarse_to_fine(
+    mesh: &Mesh,
+    surface: &Surface<'_>,
+    noise: f64,
+    unit: f64,
+    options: &SegmentOptions,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Option<Segmentation>> {
+    let levels = levels(mesh, None, ENOUGH, progress)?;
+    let Some(coarsest) = levels.last() else { return Ok(None) };
+    let weights = options.face_weights.as_ref().map(|weights| face_values(mesh, &levels, weights));
+    let on_level = |depth: usize| {
+        let level = &levels[depth - 1].mesh;
+        let share = |count: usize| {
+            let n = count as f64 * level.connectivity().n_faces() as f64;
+            (n / mesh.connectivity().n_faces() as f64).round() as usize
+        };
+        SegmentOptions {
+            face_weights: weights.as_ref().map(|weights| weights[depth - 1].clone()),
+            min_faces: options.min_faces.map(share),
+            scale: Scale::Length(unit),
+            levels: Levels::Never,
+            ..options.clone()
+        }
+    };
+    let found = whole(&coarsest.mesh, None, &on_level(levels.len()), settings, progress)?;
+    let mut carried = Carried::of(&found)?;
+    for depth in (1..levels.len()).rev() {
+        let finer = &levels[depth - 1].mesh;
+        carried.go_to(finer, &levels[depth])?;
+        let options = on_level(depth);
+        let points = finer.positions().ok_or(MeshError::NoPositions)?;
+        let surface = Surface::new(finer.connectivity(), points, unit, options.edge_costs(finer));
+        let start = Columns::from_points(&surface.positions)?;
+        let noise = super::noise_level(&surface, &start, 1);
+        let mut labels = carried.labels.clone();
+        carried.passes(&surface, &start, noise, &options, progress).refine(&mut labels)?;
+        carried.labels = labels;
+    }
+    carried.go_to(mesh, &levels[0])?;
+    let start = Columns::from_points(&surface.positions)?;
+    let passes = carried.passes(surface, &start, noise, options, progress);
+    let slopes = passes.slopes();
+    let merging = passes.merging(&slopes);
+    let mut labels = carried.labels.clone();
+    passes.refine(&mut labels)?;
+    passes.settled(&merging, &mut labels)?;
+    let (labels, n_segments) = contiguous(&labels);
+    let hierarchy = passes.hierarchy(&merging, &carried.leaves, &labels)?;
+    let labels = hierarchy.labels_at(n_segments)?;
+    Ok(Some(Segmentation {
+        boundary_edges: boundary_edges(mesh, &labels),
+        labels,
+        n_segments,
+        indicator: carried.indicator,
+        values: Columns::from_points(&carried.points)?,
+        hierarchy,
+        noise: noise * unit,
+        ..found
+    }))
+}
+
+/// What a level leaves to the finer one.
+struct Carried {
+    labels: Vec<u32>,
+    /// The segments of the finest segmentation.
+    leaves: Vec<u32>,
+    indicator: Vec<f64>,
+    /// The shape with borders sharpened.
+    points: Vec<Point>,
+}
+
+impl Carried {
+    fn of(found: &Segmentation) -> Result<Self> {
+        let names = |labels: &[i32]| labels.iter().map(|label| label.cast_unsigned()).collect();
+        let [most, _] = found.hierarchy.range();
+        Ok(Self {
+            labels: names(&found.labels),
+            leaves: names(&found.hierarchy.labels_at(most)?),
+            indicator: found.indicator.clone(),
+            points: found.values.to_points()?,
+        })
+    }
+
+    /// The same on the finer mesh below `level`.
+    fn go_to(&mut self, finer: &Mesh, level: &Level) -> Result<()> {
+        let faces = level.carry.faces(finer, &level.mesh)?;
+        // Nothing is held, so that every face has its place.
+        let at = |f: &Option<u32>| f.map_or(0, |f| f as usize);
+        self.labels = faces.iter().map(|f| self.labels[at(f)]).collect();
+        self.leaves = faces.iter().map(|f| self.leaves[at(f)]).collect();
+        self.indicator = faces.iter().map(|f| self.indicator[at(f)]).collect();
+        self.points = level.carry.points(&self.points, [0.0; 3]);
+        Ok(())
+    }
+
+    fn passes<'a>(
+        &'a self,
+        surface: &'a Surface<'a>,
+        start: &'a Columns,
+        noise: f64,
+        options: &'a SegmentOptions,
+        progress: &'a Progress,
+    ) -> Passes<'a> {
+        let indicator = &self.indicator;
+        let (planes, regions, is_shape) = (None, None, true);
+        Passes { surface, start, is_shape, noise, indicator, planes, regions, options, progress }
+    }
+}
