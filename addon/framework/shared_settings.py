@@ -70,6 +70,7 @@ DELAUNAY = boolean(
     "Compute on the intrinsic Delaunay triangulation. Helps with long, thin triangles",
     section=EXPERT,
 )
+COARSE_TO_FINE = boolean("Coarse First", "", default=True, section=EXPERT)
 SOLVERS = items(
     auto=("Automatic", "Chosen to suit the problem"),
     fast="The specialized first-order solver",

@@ -27,7 +27,14 @@ from ..framework.surface import Surface, painted_ridges, surface_of
 from . import earlier, groups, layers, slots
 from .existing import border_weights
 from .objects import separate
-from .settings import SegmentSettings, by_count, of_parts, parts_options, segment_options
+from .settings import (
+    SegmentSettings,
+    by_count,
+    may_simplify,
+    of_parts,
+    parts_options,
+    segment_options,
+)
 
 SUFFIX = "_sharpened"
 KEY_NAME = "Sharpened"
@@ -108,8 +115,11 @@ class Segmenting(Run):
 
     @property
     def call(self) -> str:
-        """Parts take less than a third of what segments do."""
-        return "parts" if of_parts(self.settings) else "segment"
+        """Parts take less than a third of what segments do, and segments on a simplified mesh still less."""
+        if of_parts(self.settings):
+            return "parts"
+        simplifies = self.settings.coarse_to_fine and may_simplify(self.settings)
+        return "segment_coarse_to_fine" if simplifies else "segment"
 
     def prepare(self, obj: bpy.types.Object) -> SegmentPart:
         """Read shape or attribute, selection and paint of one mesh."""

@@ -171,12 +171,9 @@ class StylizeSettings(Settings):
     coupling: shared.COUPLING
     dual: shared.DUAL
     delaunay: shared.DELAUNAY
-    coarse_to_fine: boolean(
-        "Coarse First",
-        "On large meshes, let the facets form on a simplified mesh first, and do only the last steps on the "
-        "mesh itself. The result is the same at any density",
-        default=True,
-        section=shared.EXPERT,
+    coarse_to_fine: shared.COARSE_TO_FINE.but(
+        description="On large meshes, let the facets form on a simplified mesh first, and do only the last "
+        "steps on the mesh itself. The result is the same at any density",
         active=lambda settings: not settings.use_fidelity,
     )
     solver: shared.SOLVER

@@ -1,12 +1,14 @@
-"""`stylize` by levels: the same as without, at any density, and what is held stays held."""
+"""By levels, `stylize` and `segment` say the same as without, at any density."""
 
+import dataclasses
 import threading
 import time
 
 import numpy as np
 import pytest
 import ridgeform
-from known_shapes import shapes
+from known_shapes import shapes, stepped_shapes
+from known_shapes.segment_shapes import SHAPES, adjusted_rand_index
 
 HALF = {"movement": 0.007, "flat_share": 0.5, "fidelity": 10**6.55, "scale": "area", "sharpness": 0.75}
 """The settings of the add-on at half strength."""
@@ -135,3 +137,62 @@ def test_a_coarse_step_is_shown_on_the_mesh_and_can_be_kept(torus):
     assert result.vertices.shape == mesh.vertices.shape
     assert (result.level_vertices < mesh.n_vertices).all()
     assert 0 < moved(mesh, result) < 0.1
+
+
+def dense(name, noise):
+    """A shape with known parts, 25,000 vertices and more."""
+    return finer(SHAPES[name](2)).noisy(noise, 10).turned(0)
+
+
+def finer(part):
+    """Four faces for each."""
+    vertices, faces = shapes.subdivide(part.vertices, part.faces)
+    return dataclasses.replace(part, vertices=vertices, faces=faces, truth=np.tile(part.truth, 4))
+
+
+def segment(part, **given):
+    """The segments of a shape, and how well they agree with its parts."""
+    result = ridgeform.segment(ridgeform.Mesh(part.vertices, part.faces), **given)
+    return result, adjusted_rand_index(result.labels, part.truth)
+
+
+@pytest.mark.parametrize(
+    ("name", "noise"), [("cube", 0.1), ("dodecahedron", 0.2), ("L-shape", 0.0), ("fan part", 0.1)]
+)
+def test_segments_of_a_dense_shape_are_its_parts(name, noise):
+    part = dense(name, noise)
+    result, agreement = segment(part)
+    assert (result.n_segments, agreement >= 0.99) == (part.n_parts, True)
+    assert result.labels.shape == result.indicator.shape == (len(part.faces),)
+    assert result.values.shape == part.vertices.shape
+    fewer = result.labels_at(part.n_parts - 1)
+    assert all(len(np.unique(fewer[result.labels == k])) == 1 for k in range(part.n_parts))
+
+
+def test_windows_one_edge_deep_are_found_on_a_coarser_mesh():
+    part = stepped_shapes.house(64, 1).noisy(0.05, 3).turned(1)
+    result, agreement = segment(part)
+    assert (result.n_segments, agreement >= 0.98) == (part.n_parts, True)
+
+
+def test_a_pole_of_slivers_under_noise_leaves_the_rest_of_the_shape_its_vertices():
+    part = finer(finer(SHAPES["cylinder with caps"](1))).noisy(0.1, 10)
+    result, agreement = segment(part)
+    assert (result.n_segments, agreement >= 0.99) == (3, True)
+
+
+def test_counts_least_faces_and_weights_hold_on_every_level():
+    part = dense("cube", 0.1)
+    assert segment(part, n_segments=4)[0].n_segments == 4
+    sizes = np.bincount(segment(part, min_faces=7000)[0].labels)
+    assert sizes.min() >= 7000
+    free = np.where(part.vertices[part.faces].mean(axis=1)[:, 0] > 0, 1.0, 1e4)
+    assert segment(part, face_weights=free)[0].n_segments < 6
+
+
+def test_segments_without_levels_are_found_on_the_mesh_itself():
+    part = dense("cube", 0.1)
+    own, agreement = segment(part, coarse_to_fine=False)
+    assert agreement == 1.0
+    weighted = segment(part, edge_weights=np.ones((len(part.faces), 3)))[0]
+    np.testing.assert_array_equal(weighted.indicator, own.indicator)

@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use crate::linear::small::Quadric;
-use crate::mesh::vector::{area_vector, cross, dot, norm, quality, sub, unit, Point};
+use crate::mesh::vector::{add, area_vector, cross, dot, norm, quality, sub, unit, Point};
 use crate::mesh::Connectivity;
 use crate::ordered::Ordered;
 use crate::remesh::EditableMesh;
@@ -17,6 +17,12 @@ use crate::{Progress, Result};
 /// How much a distance along the surface counts beside one away from it, squared: enough that flat regions
 /// get even triangles, too little to draw a vertex from a ridge.
 const ALONG: f64 = 1e-3;
+
+/// A vertex stands for at most so many times the area that the vertices of its level have on average. Where
+/// a part of the surface cannot collapse, as at a pole of a thousand slivers under noise, the level then has
+/// more vertices than wanted; without a limit the rest of the surface would have next to none (a cylinder
+/// became a box). Levels of even meshes have vertices of up to 4 times.
+const MOST_AREA: f64 = 8.0;
 
 /// Collapses between two looks at whether to go on.
 const CHECK_EVERY: usize = 1024;
@@ -30,8 +36,10 @@ pub(super) struct Collapser {
     mesh: EditableMesh,
     quadrics: Vec<Quadric>,
     kinds: Vec<Kind>,
-    /// The edges that may collapse, each with its cost.
-    candidates: Vec<Candidate>,
+    /// The area of all faces, as the weights of the quadrics have it.
+    area: f64,
+    /// The most of it that a vertex of the present level may stand for.
+    most: f64,
     /// Which vertices have changed in the present pass.
     is_changed: Vec<bool>,
     /// What a vertex collapsed into; itself while it is there.
@@ -82,19 +90,17 @@ impl Collapser {
                 kinds[v as usize].is_border = true;
             }
         }
-        let mut collapser = Self {
+        Ok(Self {
             n_left: (0..n as u32).filter(|&v| !mesh.faces_of(v).is_empty()).count(),
+            area: quadrics.iter().map(Quadric::weight).sum(),
             quadrics,
             kinds,
-            candidates: Vec::new(),
-            is_changed: vec![true; n],
+            most: f64::INFINITY,
+            is_changed: vec![false; n],
             into: (0..n as u32).collect(),
             last: (0..n as u32).collect(),
             mesh,
-        };
-        collapser.candidates = collapser.candidates_at(&collapser.into);
-        collapser.is_changed.fill(false);
-        Ok(collapser)
+        })
     }
 
     /// How many vertices have faces.
@@ -104,15 +110,24 @@ impl Collapser {
 
     /// Collapses edges until no more than `wanted` vertices are left, or none can any more.
     pub(super) fn reduce_to(&mut self, wanted: usize, progress: &Progress) -> Result<()> {
-        while self.n_left > wanted && !self.candidates.is_empty() {
-            let count = (self.n_left - wanted).min(self.candidates.len());
-            let mut rest = std::mem::take(&mut self.candidates);
-            if count < rest.len() {
-                rest.select_nth_unstable(count);
+        self.most = MOST_AREA * self.area / wanted.max(1) as f64;
+        let mut changed = self.last.clone();
+        let mut candidates: Vec<Candidate> = Vec::new();
+        loop {
+            changed.iter().for_each(|&v| self.is_changed[v as usize] = true);
+            candidates.retain(|&(_, ends)| ends.iter().all(|&v| !self.is_changed[v as usize]));
+            candidates.extend(self.candidates_at(&changed));
+            changed.iter().for_each(|&v| self.is_changed[v as usize] = false);
+            changed.clear();
+            let count = self.n_left.saturating_sub(wanted).min(candidates.len());
+            if count == 0 {
+                return Ok(());
             }
-            let mut tried: Vec<Candidate> = rest.drain(..count).collect();
+            if count < candidates.len() {
+                candidates.select_nth_unstable(count);
+            }
+            let mut tried: Vec<Candidate> = candidates.drain(..count).collect();
             tried.par_sort_unstable();
-            let mut changed = Vec::new();
             for (i, (_, [a, b])) in tried.into_iter().enumerate() {
                 if i.is_multiple_of(CHECK_EVERY) {
                     progress.check()?;
@@ -121,13 +136,7 @@ impl Collapser {
                     self.collapse(a, b, &mut changed);
                 }
             }
-            rest.retain(|&(_, ends)| ends.iter().all(|&v| !self.is_changed[v as usize]));
-            self.candidates = rest;
-            let found = self.candidates_at(&changed);
-            self.candidates.extend(found);
-            changed.iter().for_each(|&v| self.is_changed[v as usize] = false);
         }
-        Ok(())
     }
 
     /// Which vertices of the last level are held.
@@ -168,8 +177,8 @@ impl Collapser {
     }
 
     fn candidate(&self, [a, b]: [u32; 2]) -> Option<Candidate> {
-        let point = self.place(a, b)?;
-        Some((Ordered(self.sum(a, b).value(point)), [a, b]))
+        let (point, sum) = (self.place(a, b)?, self.sum(a, b));
+        (sum.weight() <= self.most).then(|| (Ordered(sum.value(point)), [a, b]))
     }
 
     fn sum(&self, a: u32, b: u32) -> Quadric {
@@ -216,17 +225,26 @@ impl Collapser {
         noted.iter().for_each(|&v| self.is_changed[v as usize] = true);
     }
 
-    /// Whether no face that stays turns over or becomes a sliver.
+    /// Whether no face that stays turns over, unless it lay folded over, and none becomes a thinner sliver
+    /// than there was: slivers have to go some way.
     fn keeps_shape(&self, from: u32, to: u32, point: Point) -> bool {
-        let moved: &[u32] = if self.stays(to) { &[from] } else { &[from, to] };
-        moved.iter().flat_map(|&v| self.mesh.faces_of(v)).filter_map(|&f| self.mesh.face(f)).all(|face| {
-            if face.contains(&from) && face.contains(&to) {
-                return true;
-            }
-            let old = self.mesh.corners(face);
+        let around = |v: u32| self.mesh.faces_of(v).iter().filter_map(|&f| self.mesh.face(f));
+        let is_gone = |face: &[u32; 3]| face.contains(&from) && face.contains(&to);
+        let moves_to = !self.stays(to);
+        let all = || around(from).chain(around(to).filter(|face| moves_to && !face.contains(&from)));
+        let mut common = [0.0; 3];
+        let mut thinnest = f64::INFINITY;
+        for face in all() {
+            let corners = self.mesh.corners(face);
+            common = add(common, area_vector(corners));
+            thinnest = thinnest.min(quality(corners));
+        }
+        all().filter(|face| !is_gone(face)).all(|face| {
+            let normal = area_vector(self.mesh.corners(face));
             let new = face.map(|v| if v == from || v == to { point } else { self.mesh.position(v) });
-            let normal = area_vector(old);
-            (norm(normal) <= 0.0 || !is_turned(new, normal)) && !is_thinned(quality(new), quality(old))
+            let is_folded = dot(normal, common) < 0.0;
+            let reference = if is_folded { common } else { normal };
+            (norm(normal) <= 0.0 || !is_turned(new, reference)) && !is_thinned(quality(new), thinnest)
         })
     }
 }

@@ -136,3 +136,16 @@ fn levels_end_when_they_are_cancelled() {
     progress.cancel();
     assert!(levels(&mesh, None, 100, &progress).is_err());
 }
+
+#[test]
+fn where_slivers_cannot_collapse_the_rest_keeps_its_vertices() {
+    // A disk whose inner rings are far below the noise.
+    let disk = shapes::cylinder(240, 40, 1.0, 1.0).map(|[x, y, z]| [x * (z + 1e-4), y * (z + 1e-4), 0.0]);
+    let (_, found) = coarser(&disk.noisy(5e-3, 5), None, 150);
+    let coarse = &found.last().unwrap().mesh;
+    let areas = coarse.connectivity().faces().iter();
+    let areas: Vec<f64> =
+        areas.map(|face| norm(area_vector(face.map(|v| points(coarse)[v as usize])))).collect();
+    let (sum, largest) = (areas.iter().sum::<f64>(), areas.iter().copied().fold(0.0, f64::max));
+    assert!(sum > 3.0 && largest < 0.02 * sum, "{largest} of {sum}");
+}

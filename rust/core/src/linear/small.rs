@@ -176,6 +176,12 @@ impl Quadric {
         sum.max(0.0)
     }
 
+    /// The sum of the weights of all planes and points, each of these counted three times.
+    #[must_use]
+    pub fn weight(&self) -> f64 {
+        (0..3).map(|i| self.matrix[i][i]).sum()
+    }
+
     /// The point of least value; `None` where the planes do not determine it.
     #[must_use]
     pub fn minimizer(&self) -> Option<[f64; 3]> {

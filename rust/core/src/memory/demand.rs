@@ -1,6 +1,6 @@
 //! One call and its size: what it needs, and whether that fits.
 
-use super::model::{Cost, CLARABEL, DIVIDED, LOOSE};
+use super::model::{Cost, CLARABEL, COARSER, DIVIDED, LOOSE};
 use super::threads::settle;
 use super::{available, is_granted, share_of, share_of_free, with_margin, Tool, SMALL};
 use crate::{Error, Result};
@@ -38,8 +38,12 @@ impl Demand {
     #[must_use]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     pub fn estimate(&self) -> usize {
+        if self.tool == Tool::SegmentByLevels && self.n_vertices < COARSER.1 {
+            return Self { tool: Tool::Segment, ..*self }.estimate();
+        }
         let is_solved = self.tool.solves();
-        let is_clarabel = is_solved && self.is_clarabel;
+        // Of the solver's work only what the coarser mesh needs.
+        let is_clarabel = is_solved && self.is_clarabel && self.tool != Tool::SegmentByLevels;
         let Cost { face, logarithmic, column } = if is_clarabel { CLARABEL } else { self.tool.cost() };
         let faces = self.n_faces as f64;
         let n_columns = if self.tool == Tool::Stylize && is_clarabel { 3 } else { self.n_columns };
@@ -50,9 +54,13 @@ impl Demand {
         let further = lanes.saturating_sub(1) as f64;
         let loose = self.n_vertices.saturating_sub(self.n_faces.div_ceil(2).saturating_mul(3)) as f64;
         let per_loose = if is_solved { LOOSE[0] } else { LOOSE[1] };
-        let divided = if self.tool == Tool::Parts { DIVIDED.1 * faces.min(DIVIDED.0) } else { 0.0 };
+        let fixed = match self.tool {
+            Tool::Parts => DIVIDED.1 * faces.min(DIVIDED.0),
+            Tool::SegmentByLevels => COARSER.0,
+            _ => 0.0,
+        };
         let per_face = face + logarithmic * faces.max(2.0).log2() + column * further;
-        let bytes = faces * per_face + divided + per_loose * loose;
+        let bytes = faces * per_face + fixed + per_loose * loose;
         bytes.min(1e18) as usize
     }
 

@@ -128,7 +128,7 @@ impl Tool {
             Self::Modes => (1500.0, 68.0, 40.0),
             Self::QuadraticModes => (830.0, 62.0, 30.0),
             Self::Segment => (2400.0, 75.0, 0.0),
-            Self::SegmentByLevels => (700.0, 0.0, 0.0),
+            Self::SegmentByLevels => (380.0, 0.0, 0.0),
             Self::Parts => (520.0, 0.0, 0.0),
             Self::Facet => (820.0, 0.0, 0.0),
             Self::Restore => (2500.0, 77.0, 0.0),
@@ -148,6 +148,9 @@ pub(super) const CLARABEL: Cost = Cost { face: 4600.0, logarithmic: 100.0, colum
 
 /// Parts are divided on so many faces or clusters of them at most, which take so many bytes each.
 pub(super) const DIVIDED: (f64, f64) = (4500.0, 1300.0);
+
+/// What segments on a coarser mesh take beside its faces, and the vertices from which there is one.
+pub(super) const COARSER: (f64, usize) = (46e6, 18_000);
 
 /// Bytes for a vertex without faces, in every array that has an entry for each vertex: where a linear system
 /// is solved, and elsewhere.

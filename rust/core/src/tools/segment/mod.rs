@@ -191,7 +191,11 @@ fn whole(
         Some(signal) => signal.values.copied()?,
         None => Columns::from_points(&surface.positions)?,
     };
-    let exact = if options.is_plain(values.is_some()) { coarse_planes(&surface, BEND * options.length_weight) } else { None };
+    let exact = if options.is_plain(values.is_some()) {
+        coarse_planes(&surface, BEND * options.length_weight)
+    } else {
+        None
+    };
     let is_exact = exact.is_some();
     let degrees = values.map_or(1, |v| v.n_columns);
     let noise = if is_exact { 0.0 } else { noise_level(&surface, &start, degrees) };
