@@ -5,30 +5,30 @@
 //! where it has them.
 
 use super::constants::ENOUGH;
+use super::noise::noise_level;
 use super::options::SegmentOptions;
 use super::passes::Passes;
 use super::segmentation::{boundary_edges, Segmentation};
 use super::surface::{contiguous, Surface};
-use super::whole;
 use crate::error::MeshError;
 use crate::levels::{face_values, levels, Level};
 use crate::linear::Columns;
 use crate::mesh::vector::Point;
 use crate::mesh::Mesh;
 use crate::progress::Progress;
-use crate::solve::Settings;
 use crate::tools::{Levels, Scale};
 use crate::Result;
 
 /// The segments of `mesh`, a shape whose `surface` has lengths in `unit`; nothing if it has no coarser level.
+/// Those of the coarsest are found by `segment`.
 pub(super) fn coarse_to_fine(
     mesh: &Mesh,
     surface: &Surface<'_>,
     noise: f64,
     unit: f64,
     options: &SegmentOptions,
-    settings: &Settings,
     progress: &Progress,
+    segment: impl FnOnce(&Mesh, &SegmentOptions) -> Result<Segmentation>,
 ) -> Result<Option<Segmentation>> {
     let levels = levels(mesh, None, ENOUGH, progress)?;
     let Some(coarsest) = levels.last() else { return Ok(None) };
@@ -47,7 +47,7 @@ pub(super) fn coarse_to_fine(
             ..options.clone()
         }
     };
-    let found = whole(&coarsest.mesh, None, &on_level(levels.len()), settings, progress)?;
+    let found = segment(&coarsest.mesh, &on_level(levels.len()))?;
     let mut carried = Carried::of(&found)?;
     for depth in (1..levels.len()).rev() {
         let finer = &levels[depth - 1].mesh;
@@ -56,7 +56,7 @@ pub(super) fn coarse_to_fine(
         let points = finer.positions().ok_or(MeshError::NoPositions)?;
         let surface = Surface::new(finer.connectivity(), points, unit, options.edge_costs(finer));
         let start = Columns::from_points(&surface.positions)?;
-        let noise = super::noise_level(&surface, &start, 1);
+        let noise = noise_level(&surface, &start, 1);
         let mut labels = carried.labels.clone();
         carried.passes(&surface, &start, noise, &options, progress).refine(&mut labels)?;
         carried.labels = labels;

@@ -201,7 +201,9 @@ fn whole(
     let noise = if is_exact { 0.0 } else { noise_level(&surface, &start, degrees) };
     if options.are_levels_used(positions.len(), values.is_some()) {
         if !is_exact {
-            if let Some(found) = coarse_to_fine(mesh, &surface, noise, unit, options, settings, progress)? {
+            let segment =
+                |mesh: &Mesh, options: &SegmentOptions| whole(mesh, None, options, settings, progress);
+            if let Some(found) = coarse_to_fine(mesh, &surface, noise, unit, options, progress, segment)? {
                 return Ok(found);
             }
         }

@@ -120,8 +120,8 @@ impl SegmentOptions {
         !has_values && self.fidelity.is_none() && self.method == SegmentMethod::Fitted
     }
 
-    /// Whether segments of a mesh with so many vertices are found on a coarser one. Weights of edges say where
-    /// borders run to the edge, which no coarser mesh has.
+    /// Whether segments of a mesh with so many vertices are found on a coarser one. Weights of edges say to
+    /// the edge where borders run, which no coarser mesh does.
     pub(super) fn are_levels_used(&self, n_vertices: usize, has_values: bool) -> bool {
         let is_suited = self.is_plain(has_values) && self.edge_weights.is_none();
         is_suited && self.levels.are_used(n_vertices, ENOUGH, true)
