@@ -53,6 +53,7 @@ def by_weight(settings: object) -> bool:
 EXPERT_OF_FACES = {"section": shared.EXPERT, "shown": of_faces}
 """Where the numbers of the functional are, which only finds faces."""
 
+
 def may_simplify(settings: object) -> bool:
     """Whether the segments of a large mesh may be found on a simplified one."""
     plain = settings.method == "fitted" and not settings.use_fidelity
