@@ -72,6 +72,18 @@ def test_a_noisy_polyhedron_comes_back(name, n, n_corners, noise):
     assert segment_shapes.adjusted_rand_index(found.labels, exact.truth) >= 0.97
 
 
+@pytest.mark.parametrize("name", ["cube", "house"])
+def test_faces_that_noise_has_turned_over_do_not_turn_planes(name):
+    exact = getattr(segment_shapes, name)(2)
+    noisy = exact.noisy(0.3, 2)
+    found = ridgeform.facet(ridgeform.Mesh(noisy.vertices, noisy.faces))
+    edges = exact.vertices[exact.faces[:, 0]] - exact.vertices[exact.faces[:, 1]]
+    sigma = 0.3 * np.linalg.norm(edges, axis=1).mean()
+    corners = np.linalg.norm(found.vertices[:, None] - exact.vertices[None], axis=2).min(1)
+    assert found.n_facets == exact.n_parts
+    assert corners.max() <= sigma
+
+
 @pytest.mark.parametrize("name", ["bust", "spot"])
 @pytest.mark.parametrize("facets", [30, 200])
 def test_what_is_closed_stays_closed_and_near(name, facets):

@@ -35,6 +35,12 @@ pub(super) const FITTING: f64 = 0.2;
 /// stays within a fortieth.
 pub(super) const PULL: f64 = 0.3;
 
+/// Corners nearer to the mesh than this many times the distance of both surfaces (root mean square) are left
+/// to their planes: on a noisy mesh the nearest point is noise, and drawing corners there turns the planes.
+/// In the mean over cubes, houses, and dodecahedra under noise, corners are off by 0.53 of the noise, with 0
+/// by 0.65; 300 facets of Spot are nearer by a sixth, 30 farther by a hundredth.
+pub(super) const NOISE: f64 = 2.0;
+
 /// How much planes resist to being turned, as a part of the spread of their faces: thin facets, whose planes
 /// their faces hardly determine, turned by radians without.
 pub(super) const DAMPING: f64 = 0.03;

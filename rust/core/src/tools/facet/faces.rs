@@ -7,7 +7,7 @@ use super::faults::Inspection;
 use super::moments::Moments;
 use super::shape::Shape;
 use crate::memory;
-use crate::mesh::vector::{area_vector, centroid, dot, Point};
+use crate::mesh::vector::{area_vector, centroid, distance, dot, Point};
 use crate::remesh::closest::ClosestPoint;
 use crate::Result;
 
@@ -67,7 +67,9 @@ impl Faces {
         }
     }
 
-    /// The facet nearest to each face among those that look to the same side, and how far that is.
+    /// The facet nearest to each face among those that look to the same side, and how far the surface is. A
+    /// face that noise has turned over looks at the far side of the shape: where the facet found is farther
+    /// than the surface by more than the face is long, it stays with its own.
     pub(super) fn nearest(&self, shape: &Shape, inspection: &Inspection) -> Result<(Vec<u32>, Distances)> {
         let tree = ClosestPoint::new(inspection.places(shape)?)?;
         let is_like = |k: u32, normal: Point| {
@@ -82,9 +84,12 @@ impl Faces {
             let center = self.centers[f];
             let accept = |t: u32| is_like(inspection.owners[t as usize], normal);
             let near = tree.closest(center, None, accept);
-            let label = near.map_or(self.labels[f], |near| inspection.owners[near.triangle as usize]);
-            let guess = near.map(|near| near.triangle);
-            (label, tree.closest(center, guess, |_| true).map_or(0.0, |nearest| nearest.squared))
+            let guess = near.as_ref().map(|near| near.triangle);
+            let squared = tree.closest(center, guess, |_| true).map_or(0.0, |nearest| nearest.squared);
+            let long = (0..3).map(|i| distance(corners[i], corners[(i + 1) % 3])).fold(0.0, f64::max);
+            let beside = near.filter(|near| near.squared.sqrt() <= squared.sqrt() + long);
+            let label = beside.map_or(self.labels[f], |near| inspection.owners[near.triangle as usize]);
+            (label, squared)
         }))?;
         let squares: f64 = found.iter().zip(&self.moments).map(|((_, squared), m)| squared * m.area).sum();
         let largest = found.iter().map(|(_, squared)| squared.sqrt()).fold(0.0, f64::max);

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::constants::{FITTING, FLAT, IDLE, PULL, REPAIRS, STAY, TRIES};
+use super::constants::{FITTING, FLAT, IDLE, NOISE, PULL, REPAIRS, STAY, TRIES};
 use super::faces::Faces;
 use super::faults::Inspection;
 use super::moments::{Moments, Plane};
@@ -43,7 +43,7 @@ pub(super) fn refine(shape: &mut Shape, faces: &mut Faces, progress: &Progress) 
     while n_idle < IDLE.count && !progress.is_finishing() {
         faces.labels = labels;
         faces.fit(shape);
-        let Some(next) = fitted(shape, faces, &inspection, progress)? else { break };
+        let Some(next) = fitted(shape, faces, &inspection, NOISE * best.0, progress)? else { break };
         *shape = next;
         inspection = Inspection::new(shape, true)?;
         let distance;
@@ -73,14 +73,20 @@ fn measured(shape: &Shape, faces: &Faces, inspection: &Inspection) -> Result<(Ve
     Ok((labels, (distances.rms.powi(2) + squares / f64::max(total, f64::MIN_POSITIVE)).sqrt()))
 }
 
-/// The shape with planes fitted to its faces, if that can be had without facets that cross where none did.
+/// The shape with planes fitted to its faces, and corners drawn back that are farther than `reach` from the
+/// mesh, if that can be had without facets that cross where none did.
 fn fitted(
     shape: &mut Shape,
     faces: &Faces,
     before: &Inspection,
+    reach: f64,
     progress: &Progress,
 ) -> Result<Option<Shape>> {
-    let aim = |corner: &Corner| between(corner.point, faces.on_mesh(corner.point), PULL);
+    let aim = |corner: &Corner| {
+        let near = faces.on_mesh(corner.point);
+        let beyond = 1.0 - reach / distance(near, corner.point).max(f64::MIN_POSITIVE);
+        between(corner.point, near, PULL * beyond.max(0.0))
+    };
     let aims = memory::gathered(shape.corners.iter().map(aim))?;
     for _ in 0..TRIES.count {
         progress.check()?;
