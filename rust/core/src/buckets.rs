@@ -4,7 +4,7 @@ use crate::error::SolveError;
 use crate::memory;
 
 /// Items in buckets `0..n`, each in the order in which it came.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Buckets<T> {
     /// Bucket `i` holds the items `starts[i]..starts[i + 1]`.
     starts: Vec<usize>,

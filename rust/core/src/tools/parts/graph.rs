@@ -5,6 +5,7 @@ use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
 use super::constants::ROUNDING;
+use crate::buckets::Buckets;
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::{add, distance, scale, Point};
 use crate::ordered::Ordered;
@@ -33,9 +34,8 @@ pub(super) struct Graph {
     /// The logarithm of the thickness under each, or nothing where it does not count.
     thickness: Vec<f64>,
     pub edges: Vec<Edge>,
-    /// The edges of node `i` are `arcs[starts[i]..starts[i + 1]]`: the other node, and the edge.
-    starts: Vec<u32>,
-    arcs: Vec<[u32; 2]>,
+    /// The edges of each node: the other node, and the edge.
+    arcs: Buckets<[u32; 2]>,
 }
 
 impl Graph {
@@ -48,23 +48,14 @@ impl Graph {
             edge.cost = edge.cost.max(ROUNDING);
             edge.distance = edge.distance.max(ROUNDING);
         }
-        let mut starts = memory::repeated(0_u32, areas.len() + 1)?;
-        for end in edges.iter().flat_map(|e| e.ends) {
-            starts[end as usize + 1] += 1;
-        }
-        for i in 0..areas.len() {
-            starts[i + 1] += starts[i];
-        }
-        let mut fill = memory::twin(&starts)?;
-        let mut arcs = memory::repeated([0; 2], 2 * edges.len())?;
-        for (i, edge) in (0_u32..).zip(&edges) {
-            for (own, other) in [(0, 1), (1, 0)] {
-                let slot = &mut fill[edge.ends[own] as usize];
-                arcs[*slot as usize] = [edge.ends[other], i];
-                *slot += 1;
+        let arcs = Buckets::try_new(areas.len(), |visit| {
+            for (i, edge) in (0_u32..).zip(&edges) {
+                let [a, b] = edge.ends;
+                visit(a as usize, [b, i]);
+                visit(b as usize, [a, i]);
             }
-        }
-        Ok(Self { areas, centers, thickness: Vec::new(), edges, starts, arcs })
+        })?;
+        Ok(Self { areas, centers, thickness: Vec::new(), edges, arcs })
     }
 
     /// The same with the logarithm of the thickness under each node.
@@ -93,7 +84,7 @@ impl Graph {
 
     /// The nodes next to `i`, each with the edge that leads there.
     pub(super) fn around(&self, i: u32) -> &[[u32; 2]] {
-        &self.arcs[self.starts[i as usize] as usize..self.starts[i as usize + 1] as usize]
+        self.arcs.of(i as usize)
     }
 
     /// The graph of some nodes, renumbered in their order; `place` has a row for every node, all [`NONE`],

@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::constants::LEAST_AREA;
+use crate::buckets::Buckets;
 use crate::error::MeshError;
 use crate::mesh::vector::{add, area_vector, between, centroid, distance, dot, norm, scale, Point};
 use crate::mesh::{Connectivity, EdgeTable, Mesh};
@@ -104,12 +105,13 @@ fn orient(
     opposite: &[bool],
     closed: bool,
 ) -> Result<()> {
-    let mut around: Vec<Vec<(u32, bool)>> = memory::repeated(Vec::new(), normals.len())?;
-    for (joint, &turned) in joints.iter().zip(opposite) {
-        let [f, g] = joint.faces;
-        around[f as usize].push((g, turned));
-        around[g as usize].push((f, turned));
-    }
+    let around = Buckets::try_new(normals.len(), |visit| {
+        for (joint, &turned) in joints.iter().zip(opposite) {
+            let [f, g] = joint.faces;
+            visit(f as usize, (g, turned));
+            visit(g as usize, (f, turned));
+        }
+    })?;
     let mut sign = memory::repeated(0.0, normals.len())?;
     for start in 0..normals.len() {
         if sign[start] != 0.0 {
@@ -120,7 +122,7 @@ fn orient(
         let mut at = 0;
         while let Some(&f) = piece.get(at) {
             at += 1;
-            for &(g, turned) in &around[f] {
+            for &(g, turned) in around.of(f) {
                 if sign[g as usize] == 0.0 {
                     sign[g as usize] = if turned { -sign[f] } else { sign[f] };
                     memory::push(&mut piece, g as usize)?;

@@ -8,7 +8,7 @@
 //! sampled.
 
 use super::flow::{Flow, Legacy, Show};
-use super::options::{StylizeOptions, Stylized, ENOUGH};
+use super::options::{FlowStatus, StylizeOptions, Stylized, ENOUGH};
 use super::Flatness;
 use crate::error::MeshError;
 use crate::levels::{face_values, levels, Level};
@@ -180,10 +180,15 @@ impl Account {
     }
 }
 
-/// What a flow that was stopped on a coarse level leaves on the mesh.
+/// What a flow that was stopped on a coarse level leaves on the mesh. However that level ended, those below
+/// it were not done.
 fn stopped(mesh: &Mesh, result: Stylized, levels: &[Level]) -> Result<Stylized> {
     let vertices = carried(mesh, levels, result.vertices);
     let start = mesh.positions().ok_or(MeshError::NoPositions)?;
     let flatness = [Flatness::of(mesh.connectivity(), start)?, Flatness::of(mesh.connectivity(), &vertices)?];
-    Ok(Stylized { vertices, flatness, ..result })
+    let status = match result.status {
+        failed @ (FlowStatus::Collapsed | FlowStatus::Diverged) => failed,
+        _ => FlowStatus::Stopped,
+    };
+    Ok(Stylized { vertices, flatness, status, ..result })
 }
