@@ -7,6 +7,7 @@ What the wheel says of triangles is said of the faces that they are parts of. No
 import numpy as np
 import ridgeform
 
+from ..framework.far_origin import step_of
 from .arrays import MeshArrays
 
 NOT_PLANAR = np.radians(5.0)
@@ -174,6 +175,10 @@ def uneven_ngons(mesh: MeshArrays) -> np.ndarray:
     means = np.stack([np.bincount(faces, normals[:, k], len(large)) for k in range(3)], axis=1)
     lengths = np.linalg.norm(normals, axis=1) * np.linalg.norm(means, axis=1)[faces]
     along = (normals * means[faces]).sum(axis=1)
-    # Triangles without area face nowhere; the mean of two is half the angle from either.
-    turned = (lengths > 0.0) & (along < np.cos(0.5 * NOT_PLANAR) * lengths)
+    # The mean of two triangles is half the angle from either. Where single precision, which moves a corner
+    # against the edge across from it by up to √3 steps, can turn a sliver as far, its normal says nothing.
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    least = np.sqrt(3.0) * step_of(mesh.places) / np.sin(0.5 * NOT_PLANAR)
+    certain = np.linalg.norm(normals, axis=1) > least * longest
+    turned = certain & (along < np.cos(0.5 * NOT_PLANAR) * lengths)
     return np.unique(faces[turned])
