@@ -97,6 +97,7 @@ def _child(obj: bpy.types.Object, data: bpy.types.Curves) -> bpy.types.Object:
         for collection in obj.users_collection:
             collection.objects.link(child)
         child.parent = obj
+        child.show_in_front = True  # it runs along the edges, half within the surface
     else:
         old = child.data
         child.data = data

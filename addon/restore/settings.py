@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from ..framework import shared_settings as shared
 from ..framework.settings import Range, Settings, angle, boolean, choices, chosen, items, number, vertex_group
 
 OUTPUTS = items(
@@ -41,6 +42,10 @@ class RestoreSettings(Settings):
         OUTPUTS,
         default={"ATTRIBUTES"},
         flag="--make",
+    )
+    marks: shared.MARKS.but(
+        description="Mark the edges where surfaces meet in a crease. Existing marks are kept",
+        default={"SHARP"},
     )
     max_move: number(
         "Maximum Distance",

@@ -15,6 +15,7 @@ from ..blender.stored_numbers import write_numbers
 from ..blender.welding import Weld
 from ..framework.job import Task
 from ..framework.preflight import uneven_scale
+from ..framework.ridges import Edges
 from ..framework.run import Part, Run, counted, meshes_phrase, total
 from ..framework.surface import group_weights, surface_of
 from . import empties
@@ -25,6 +26,10 @@ SURFACE = "ridgeform_surface"
 KIND = "ridgeform_surface_kind"
 KINDS = ("free", "plane", "sphere", "cylinder", "cone", "torus")
 """The kinds by their number in the attribute."""
+
+LEAST_CREASE = {"planes": np.radians(2.0), "curved": np.radians(30.0)}
+"""Two planes that meet at this angle make a crease. Edges on a curved surface are chords, bent by themselves:
+30 degrees there, as Blender's Smooth by Angle has it, so that a fillet stays smooth where it is tangent."""
 
 
 @dataclass(kw_only=True)
@@ -103,10 +108,11 @@ class Restoring(Run):
         found, obj = part.task.result, part.object
         part.warnings += _notes(found)
         moved, labels = part.moved(), part.face_labels()
+        kinds = np.array([KINDS.index(surface["kind"]) for surface in found.surfaces] + [-1], np.int32)
         if found.status != "unsure":
             part.coordinates.write(moved)
+            mesh_io.mark_edges(obj.data, _creases(part, moved, labels, kinds), self.settings.marks)
         if "ATTRIBUTES" in self.settings.outputs:
-            kinds = np.array([KINDS.index(surface["kind"]) for surface in found.surfaces] + [-1], np.int32)
             write_numbers(obj.data, SURFACE, "INT", "FACE", labels)
             write_numbers(obj.data, KIND, "INT", "FACE", kinds[labels])
         if "EMPTIES" in self.settings.outputs:
@@ -149,6 +155,21 @@ def _restored(
     mesh: ridgeform.Mesh, options: dict[str, object], progress: ridgeform.Progress
 ) -> ridgeform.Restored:
     return ridgeform.restore(mesh, progress=progress, **options)
+
+
+def _creases(part: RestorePart, moved: np.ndarray, labels: np.ndarray, kinds: np.ndarray) -> np.ndarray:
+    """The edges (k,) bool where two surfaces meet at an angle, and vertices were free to move.
+
+    Of the mesh with coordinates `moved` (n, 3), the surface of each face (f,), and the number of the kind of
+    each surface, with that of no surface last.
+    """
+    mesh = part.object.data
+    edges = Edges(mesh_io.edges(mesh), mesh_io.face_corners(mesh))
+    sides = edges.sides(labels)
+    are_planes = (kinds[sides] == KINDS.index("plane")).all(axis=1)
+    least = np.where(are_planes, LEAST_CREASE["planes"], LEAST_CREASE["curved"])
+    free = part.moving[edges.ends].any(axis=1)
+    return free & (sides[:, 0] != sides[:, 1]) & edges.ridges(moved, least)
 
 
 def _kinds_phrase(done: Sequence[dict[str, object]]) -> str:

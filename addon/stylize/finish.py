@@ -18,7 +18,7 @@ from ..framework import faceting
 from ..framework.faceting import Facetable
 from ..framework.settings import chosen
 from . import reduction
-from .ridges import Edges
+from ..framework.ridges import Edges
 from .settings import movement_of
 from .volume import keep_volume
 

@@ -19,7 +19,7 @@ from ..framework.run import Part, Run, counted, meshes_phrase, most, total
 from ..framework.surface import group_weights, painted_ridges, welded
 from . import finish, recorded, reduction
 from .finish import Source
-from .ridges import Edges
+from ..framework.ridges import Edges
 from .settings import StylizeSettings, stylize_options
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from bl_ext.user_default.ridgeform.blender import mesh_io
 from bl_ext.user_default.ridgeform.framework import job
-from bl_ext.user_default.ridgeform.stylize.ridges import dividing_angle, edge_angles
+from bl_ext.user_default.ridgeform.framework.ridges import dividing_angle, edge_angles
 from bl_ext.user_default.ridgeform.stylize.volume import is_closed, keep_volume, volume_and_centroid
 
 CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)

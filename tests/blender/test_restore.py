@@ -35,6 +35,26 @@ def test_the_operator_gives_what_the_wheel_gives():
     assert (values_of(obj.data, "ridgeform_surface_kind") == 1).all()
 
 
+def sharp_edges(obj):
+    """Which edges are marked sharp."""
+    marked = np.zeros(len(obj.data.edges), bool)
+    obj.data.edges.foreach_get("use_edge_sharp", marked)
+    return marked
+
+
+def test_creases_between_surfaces_are_seen_on_a_smooth_shaded_mesh():
+    """The edges between two sides of the box are marked, and no other."""
+    obj = kit.bumpy_box()
+    obj.data.shade_smooth()
+    ends = kit.coordinates(obj)[mesh_io.edges(obj.data)]
+    on_sides = ((ends > 0.85).all(axis=1) | (ends < -0.85).all(axis=1)).sum(axis=1)
+    restore(marks=set())
+    assert not sharp_edges(obj).any()
+    restore()
+    np.testing.assert_array_equal(sharp_edges(obj), on_sides == 2)
+    assert sharp_edges(obj).sum() == 60
+
+
 def test_undo_takes_everything_back():
     obj = kit.bumpy_box()
     before = kit.coordinates(obj)

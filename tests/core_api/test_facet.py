@@ -110,6 +110,26 @@ def test_more_facets_are_nearer_and_come_from_the_first_call():
     assert near.n_facets > first.n_facets or first.rms <= 0.004
 
 
+def barn(n):
+    """A box of side 2 cut into (n, n) squares a side, with a roof of three planes: the ridge is a strip, one
+    square wide, that is 0.3 % of the size (root mean square) from the two planes beside it."""
+    vertices, faces = shapes.cube(n)
+    top = vertices[:, 2] > 0.99
+    vertices[top, 2] += 0.8 * (1 - np.abs(vertices[top, 0]))
+    return vertices.astype(np.float32), faces
+
+
+def test_a_mesh_of_planes_keeps_them_all_and_is_not_cut_up():
+    vertices, faces = barn(7)
+    mesh = ridgeform.Mesh(vertices, faces)
+    for asked in (None, 8, 60):
+        found = ridgeform.facet(mesh, facets=asked)
+        assert found.n_facets == len(polygons(found)) == 8
+        assert found.largest < 1e-6
+        check_sound(found, 4)
+    assert ridgeform.facet(mesh, facets=7).n_facets == 7
+
+
 def test_the_result_turns_and_grows_with_the_mesh_and_is_the_same_on_any_threads():
     part = segment_shapes.house(2).noisy(0.1, 5)
     plain = ridgeform.facet(ridgeform.Mesh(part.vertices, part.faces), facets=7, threads=1)

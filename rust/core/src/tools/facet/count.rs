@@ -37,9 +37,14 @@ impl Merges {
         let within = |error: f64| {
             (fewest..=most).find(|&count| self.distance(n, count, area) <= error).unwrap_or(most)
         };
+        // More facets than the mesh has planes would only cut these up.
+        let planes = within(FLAT);
         match wanted {
-            Wanted::Facets(count) => count.clamp(fewest, most),
+            Wanted::Facets(count) => count.clamp(fewest, planes),
             Wanted::Error(error) => within(error),
+            // Fewer parameters than vertices say where all of these are: that is no chance, as it is where
+            // every face is a plane of its own.
+            Wanted::Found if 3 * planes < n_vertices => planes,
             Wanted::Found => {
                 let data = n_vertices as f64;
                 let unlikely = |&count: &usize| {

@@ -223,14 +223,15 @@ impl<'a> Job<'a> {
         let area = self.places().into_iter().map(|p| Moments::of(p).area).sum::<f64>().max(f64::MIN_POSITIVE);
         let [fewest, most] = merges.range(n);
         let mut count = merges.count(wanted, n, self.positions.len(), area);
+        let aim = count as f64;
         let mut best: Option<(f64, Settled)> = None;
         for round in 0..COUNTS {
             let fraction = 0.5 + 0.5 * round as f64 / COUNTS as f64;
             progress.report(Report { fraction, stage: "fitting planes".into(), ..Report::default() });
             let mut settled = self.settled(merges, merges.whole(n, count), progress)?;
             let (miss, next) = match wanted {
-                Wanted::Facets(wanted) => {
-                    let off = wanted.clamp(fewest, most) as f64 - settled.shape.facets.len() as f64;
+                Wanted::Facets(_) => {
+                    let off = aim - settled.shape.facets.len() as f64;
                     let most = CHANGE[0] + CHANGE[1] * count as f64;
                     let further = if off == 0.0 { 1.0 } else { off.clamp(-most, most).round() };
                     (off.abs() + settled.n_crossings()? as f64, count as f64 + further)

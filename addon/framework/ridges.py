@@ -18,10 +18,10 @@ class Edges:
     planes: Sequence[Plane] = ()
     """The planes across which mirrors continue the mesh."""
 
-    def ridges(self, coordinates: np.ndarray, least: float | None = None) -> np.ndarray:
+    def ridges(self, coordinates: np.ndarray, least: float | np.ndarray | None = None) -> np.ndarray:
         """Which edges (k,) bool are bent by at least an angle (radians), or what parts them from the others.
 
-        `coordinates` (n, 3).
+        `coordinates` (n, 3); the angle may be one for each edge.
         """
         angles = edge_angles(coordinates, self.corners, len(self.ends))
         for plane in self.planes:
@@ -30,6 +30,17 @@ class Edges:
             lengths = np.linalg.norm(coordinates[self.ends[:, 0]] - coordinates[self.ends[:, 1]], axis=1)
             least = dividing_angle(angles, lengths.astype(np.float64))
         return (angles >= 0) & (angles >= least)
+
+    def sides(self, of_faces: np.ndarray) -> np.ndarray:
+        """What the two faces of each edge have (k, 2), of what each face has (f,): -1 where there are not two."""
+        starts, vertices, corner_edges = self.corners
+        face = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(vertices))))
+        order = np.argsort(corner_edges, kind="stable")
+        count = np.bincount(corner_edges, minlength=len(self.ends))
+        first = (np.cumsum(count) - count)[count == 2]
+        sides = np.full((len(self.ends), 2), -1, np.int64)
+        sides[count == 2] = of_faces[face[order[np.stack([first, first + 1], axis=1)]]]
+        return sides
 
     def on_planes(self, coordinates: np.ndarray) -> np.ndarray:
         """Which edges (k,) bool are open and lie on the plane of a mirror."""
