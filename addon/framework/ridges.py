@@ -32,7 +32,10 @@ class Edges:
         return (angles >= 0) & (angles >= least)
 
     def sides(self, of_faces: np.ndarray) -> np.ndarray:
-        """What the two faces of each edge have (k, 2), of what each face has (f,): -1 where there are not two."""
+        """What the two faces of each edge have (k, 2), of what each face has (f,).
+
+        -1 where there are not two.
+        """
         starts, vertices, corner_edges = self.corners
         face = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(vertices))))
         order = np.argsort(corner_edges, kind="stable")

@@ -11,8 +11,8 @@ fn editable(shape: &Shape) -> EditableMesh {
     EditableMesh::new(shape.vertices.clone(), shape.faces.clone()).unwrap()
 }
 
-/// The mesh after the edits, checked: clean, with the number of boundary loops given. The edits ask for no guard of
-/// shape, so a face may lose its area and a vertex may come to lie on an open edge by chance.
+/// The mesh after the edits, checked: clean, with the number of boundary loops given. The edits ask for no
+/// guard of shape, so a face may lose its area and a vertex may come to lie on an open edge by chance.
 fn checked(mesh: EditableMesh, n_boundary_loops: usize) -> Mesh {
     let (vertices, faces, _) = mesh.into_parts(|_| false).unwrap();
     let connectivity = Connectivity::new(faces.clone(), vertices.len()).unwrap();

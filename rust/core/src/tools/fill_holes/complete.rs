@@ -2,11 +2,13 @@
 
 use super::completion::{Completion, Watch};
 use super::constants::{COARSE_FACES, FINE_FACES, FINE_ROUNDS, FLIP_SWEEPS, SHARP, SMOOTH_ROUNDS};
-use super::decide::ridges_around;
+use super::decide::{bends_around, Bends};
 use super::fair::fair;
 use super::filled::Completed;
 use super::flips::flip_along_ridges;
+use super::parts::SmoothParts;
 use super::region::Region;
+use super::resample::typical_edge;
 use super::start::smooth;
 use super::{FillHolesOptions, PatchShape, Sharpness};
 use crate::operators::Energy;
@@ -24,16 +26,25 @@ pub(super) fn complete(
 ) -> Result<Completed> {
     smooth(region, Energy::L2Laplacian, SMOOTH_ROUNDS, progress)?;
     watch(region, 0.05, 0, None)?;
-    let ridges = ridges_around(region)?;
+    let bends = bends_around(region)?;
+    let (ridges, segments) = match bends {
+        Bends::Ridges(ridges) => (Some(ridges), None),
+        Bends::Unclear if options.shape != PatchShape::Smooth => {
+            let edge = typical_edge(&region.mesh)?;
+            (None, SmoothParts::segments(region, &options.solve, edge, progress)?)
+        }
+        Bends::Unclear | Bends::Smooth => (None, None),
+    };
+    let is_sharp = ridges.is_some() || segments.is_some();
     let (sharpness, flows) = match (options.shape, options.sharpness) {
         (PatchShape::Smooth, _) => (0.0, false),
         (PatchShape::Sharp, Sharpness::Auto) => (SHARP, true),
-        (_, Sharpness::Auto) => (if ridges.is_some() { SHARP } else { 0.0 }, ridges.is_some()),
+        (_, Sharpness::Auto) => (if is_sharp { SHARP } else { 0.0 }, is_sharp),
         (_, Sharpness::Value(sharpness)) => (sharpness, true),
     };
     let shape = if sharpness > 0.0 { PatchShape::Sharp } else { PatchShape::Smooth };
     let completed = Completed { shape, sharpness, ..Completed::smooth() };
-    let mut completion = Completion { options, progress, watch, ridges, completed };
+    let mut completion = Completion { options, progress, watch, ridges, segments, completed };
     if flows {
         completion.sharpen(region)?;
     }

@@ -3,6 +3,7 @@
 use super::constants::RIDGE_SHARE;
 use super::decide::Ridges;
 use super::filled::Completed;
+use super::parts::SmoothParts;
 use super::region::Region;
 use super::resample::{resample, Kept, Target};
 use super::FillHolesOptions;
@@ -19,6 +20,8 @@ pub(super) struct Completion<'a, 'w> {
     pub watch: &'a mut Watch<'w>,
     /// The ridges around the hole.
     pub ridges: Option<Ridges>,
+    /// The parts around the hole that noise hides the ridges of.
+    pub segments: Option<SmoothParts>,
     pub completed: Completed,
 }
 

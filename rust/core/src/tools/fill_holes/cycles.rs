@@ -3,14 +3,15 @@
 
 use super::completion::Completion;
 use super::constants::{
-    ALIKE, COARSE_FACES, EXTEND_AFTER, FAIR_ROUNDS, FAIR_STEPS, FLIP_SWEEPS, FLOW_STEPS, MOST_BEND,
-    RESAMPLE_EVERY, RESAMPLE_ROUNDS, RIDGE_SHARE, SNAPS, SNAP_FROM, STILL_CYCLE,
+    COARSE_FACES, EXTEND_AFTER, FAIR_ROUNDS, FAIR_STEPS, FLIP_SWEEPS, FLOW_STEPS, MOST_BEND, RESAMPLE_EVERY,
+    RESAMPLE_ROUNDS, RIDGE_SHARE, SNAPS, SNAP_FROM, STILL_CYCLE,
 };
 use super::extend::{extend, Extended};
 use super::fair::fair;
 use super::filled::Completed;
 use super::flips::flip_along_ridges;
 use super::flow::flow;
+use super::parts::SmoothParts;
 use super::region::Region;
 use super::resample::typical_edge;
 use super::snap::{snap, Snapping};
@@ -65,7 +66,9 @@ impl Completion<'_, '_> {
                 break;
             }
             if is_sharp && cycle == EXTEND_AFTER {
-                if let Some(extended) = self.extended(region)?.filter(|extended| last.allows(extended)) {
+                if let Some(extended) =
+                    self.extended(region, &smooth)?.filter(|extended| last.allows(extended))
+                {
                     *region = extended;
                     self.report(region, 1.0)?;
                     self.completed.status = HoleStatus::Converged;
@@ -110,24 +113,43 @@ impl Completion<'_, '_> {
     }
 
     /// The patch in which the parts between the ridges around it have gone on until they meet. Where there
-    /// are folds besides ridges, the parts between ridges alone are tried too.
-    fn extended(&self, region: &Region) -> Result<Option<Region>> {
-        let Some(ridges) = self.ridges else { return Ok(None) };
-        for bend in [ridges.least, ridges.most] {
-            let mut extended = region.twin()?;
-            match extend(&mut extended, RIDGE_SHARE * bend, self.options.edge_length, self.progress)? {
-                Extended::NotMet => {}
-                Extended::Planes => return Ok(Some(extended)),
-                Extended::Bent => {
-                    self.smooth_between(&mut extended, RIDGE_SHARE * bend)?;
-                    return Ok(Some(extended));
-                }
-            }
-            if ridges.most < ALIKE * ridges.least {
-                break;
+    /// are folds besides ridges, the parts between ridges alone are tried too; and where noise hides the
+    /// ridges, segments. These may find parts that are none: their patch may have no more folds than the
+    /// `smooth` one asks for.
+    fn extended(&self, region: &Region, smooth: &Region) -> Result<Option<Region>> {
+        let edge = typical_edge(&region.mesh)?;
+        for bend in self.ridges.iter().flat_map(|ridges| ridges.bends()) {
+            let ridge = RIDGE_SHARE * bend;
+            let Some(parts) = SmoothParts::between_ridges(region, ridge, edge)? else { continue };
+            if let Some(extended) = self.extended_by(region, &parts, ridge)? {
+                return Ok(Some(extended));
             }
         }
-        Ok(None)
+        let found;
+        let segments = if self.segments.is_some() {
+            &self.segments
+        } else {
+            found = SmoothParts::segments(region, &self.options.solve, edge, self.progress)?;
+            &found
+        };
+        let Some(segments) = segments else { return Ok(None) };
+        let most = MOST_BEND * total_bend(smooth)?;
+        match self.extended_by(region, segments, self.ridge())? {
+            Some(extended) if total_bend(&extended)? <= most => Ok(Some(extended)),
+            _ => Ok(None),
+        }
+    }
+
+    /// The patch in which `parts` have gone on until they meet, if they do; edges bent by more than `ridge`
+    /// (radians) part them.
+    fn extended_by(&self, region: &Region, parts: &SmoothParts, ridge: f64) -> Result<Option<Region>> {
+        let mut extended = region.twin()?;
+        match extend(&mut extended, parts, self.options.edge_length, self.progress)? {
+            Extended::NotMet => return Ok(None),
+            Extended::Planes => {}
+            Extended::Bent => self.smooth_between(&mut extended, ridge)?,
+        }
+        Ok(Some(extended))
     }
 
     /// Makes the parts between ridges smooth. Between the rounds the patch is remeshed:

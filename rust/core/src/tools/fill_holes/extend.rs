@@ -34,45 +34,44 @@ pub(super) enum Extended {
 /// Lets the parts around the patch go on in it until they meet.
 pub(super) fn extend(
     region: &mut Region,
-    ridge: f64,
+    parts: &SmoothParts,
     edge_length: Option<f64>,
     progress: &Progress,
 ) -> Result<Extended> {
     let edge = typical_edge(&region.mesh)?;
-    let Some(parts) = SmoothParts::around(region, ridge, edge)? else { return Ok(Extended::NotMet) };
     let target = Target { edge_length, max_faces: COARSE_FACES, rounds: RESAMPLE_ROUNDS };
     let mut labels = Vec::new();
     for round in 0..EXTEND_ROUNDS {
         progress.check()?;
         if round > 0 {
-            let borders = borders(region, &parts, &labels)?;
+            let borders = borders(region, parts, &labels)?;
             let kept = Kept {
                 borders: &borders,
-                merges: &merges(region, &parts, &labels, edge)?,
+                merges: &merges(region, parts, &labels, edge)?,
                 ridge: std::f64::consts::PI,
             };
             resample(region, &kept, &target, progress)?;
         }
-        labels = assign(region, &parts, edge)?;
+        labels = assign(region, parts, edge)?;
         for _ in 0..CUTS {
-            if !cut(region, &parts, &mut labels, edge)? {
+            if !cut(region, parts, &mut labels, edge)? {
                 break;
             }
-            labels = assign(region, &parts, edge)?;
+            labels = assign(region, parts, edge)?;
         }
-        let mut moved = settle(region, &parts, &labels)?;
+        let mut moved = settle(region, parts, &labels)?;
         if flip_along_ridges(region, FLIP_SWEEPS)? > 0 {
-            labels = assign(region, &parts, edge)?;
-            moved = moved.max(settle(region, &parts, &labels)?);
+            labels = assign(region, parts, edge)?;
+            moved = moved.max(settle(region, parts, &labels)?);
         }
         if round >= UNTANGLE_FROM {
-            untangle(region, &parts, &labels);
+            untangle(region, parts, &labels);
         }
-        if moved < STILL_ROUND * edge && has_arrived(region, &parts, &labels, edge) {
+        if moved < STILL_ROUND * edge && has_arrived(region, parts, &labels, edge) {
             break;
         }
     }
-    Ok(match has_arrived(region, &parts, &labels, edge) {
+    Ok(match has_arrived(region, parts, &labels, edge) {
         false => Extended::NotMet,
         true if parts.models.iter().all(|model| model.is_flat) => Extended::Planes,
         true => Extended::Bent,
@@ -208,7 +207,10 @@ mod tests {
     fn extended(shape: &Shape, place: Point, radius: f64) -> (Region, Extended) {
         let mut region = around_hole(shape, place, radius);
         smooth(&mut region, Energy::L2Laplacian, 3, &Progress::new()).unwrap();
-        let found = extend(&mut region, 0.9, None, &Progress::new()).unwrap();
+        let edge = typical_edge(&region.mesh).unwrap();
+        let parts = SmoothParts::between_ridges(&region, 0.9, edge).unwrap();
+        let found = parts
+            .map_or(Extended::NotMet, |parts| extend(&mut region, &parts, None, &Progress::new()).unwrap());
         (region, found)
     }
 

@@ -8,6 +8,11 @@ use super::surface::FaceGeometry;
 use crate::memory;
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::{add, norm, scale, unit, Point};
+use crate::mesh::Mesh;
+use crate::progress::Progress;
+use crate::tools::options::Levels;
+use crate::tools::segment::{segment, SegmentOptions};
+use crate::tools::SolveOptions;
 use crate::Result;
 
 /// No part.
@@ -25,41 +30,80 @@ impl SmoothParts {
     /// The parts around the patch of `region`, between edges bent by more than `ridge` radians. Nothing if a
     /// ridge at the hole has the same part on both sides, or a part is not smooth enough: then they do not
     /// say how the surface goes on.
-    pub(super) fn around(region: &Region, ridge: f64, edge: f64) -> Result<Option<Self>> {
+    pub(super) fn between_ridges(region: &Region, ridge: f64, edge: f64) -> Result<Option<Self>> {
         let mesh = &region.mesh;
         let surface = FaceGeometry::of(region)?;
-        let mut on_rim = memory::repeated(false, mesh.n_vertices())?;
-        region.patch_faces().for_each(|(_, face)| face.into_iter().for_each(|v| on_rim[v as usize] = true));
+        let on_rim = on_rim(region)?;
         let mut pieces = Partition::new(region.n_outer);
         let mut ridges = Vec::new();
-        let mut seeds = Vec::new();
         for [a, b] in mesh.edges()? {
             let Some(wings) = mesh.wings(a, b) else { continue };
             let [f, g] = wings.faces;
-            match [f, g].map(|f| region.is_patch(f)) {
-                [true, true] => {}
-                [true, false] => memory::push(&mut seeds, g)?,
-                [false, true] => memory::push(&mut seeds, f)?,
-                [false, false] if surface.dihedral([f, g]) > ridge => {
-                    if on_rim[a as usize] || on_rim[b as usize] {
-                        memory::push(&mut ridges, [f, g])?;
-                    }
-                }
-                [false, false] => pieces.unite(f, g),
+            if region.is_patch(f) || region.is_patch(g) {
+                continue;
+            }
+            if surface.dihedral([f, g]) <= ridge {
+                pieces.unite(f, g);
+            } else if on_rim[a as usize] || on_rim[b as usize] {
+                memory::push(&mut ridges, [f, g])?;
             }
         }
         let roots = memory::sifted((0..region.n_outer as u32).map(|f| pieces.root(f)))?;
         if ridges.iter().any(|&[f, g]| roots[f as usize] == roots[g as usize]) {
             return Ok(None);
         }
-        let mut reached = memory::gathered(seeds.into_iter().map(|f| roots[f as usize]))?;
+        Self::of_pieces(region, &surface, &on_rim, &roots, edge)
+    }
+
+    /// The parts that the surroundings of the patch are segments of ([`mod@crate::tools::segment`]): these
+    /// are found where noise bends edges as much as ridges do. Nothing where only one reaches the hole.
+    pub(super) fn segments(
+        region: &Region,
+        solve: &SolveOptions,
+        edge: f64,
+        progress: &Progress,
+    ) -> Result<Option<Self>> {
+        let points = memory::gathered(region.mesh.positions()[..region.anchors.len()].iter().copied())?;
+        let around = region.mesh.faces().take(region.n_outer).map(|(_, face)| face);
+        let mesh = Mesh::new(points, memory::sifted(around)?)?;
+        let options = SegmentOptions {
+            levels: Levels::Never,
+            solve: SolveOptions { tolerance: None, threads: None, ..*solve },
+            ..SegmentOptions::default()
+        };
+        let found = segment(&mesh, None, &options, &progress.quiet())?;
+        let pieces =
+            memory::gathered(found.labels.iter().map(|&label| u32::try_from(label).unwrap_or(NONE)))?;
+        let parts = Self::of_pieces(region, &FaceGeometry::of(region)?, &on_rim(region)?, &pieces, edge)?;
+        Ok(parts.filter(|parts| parts.models.len() > 1))
+    }
+
+    /// Those of the pieces of the faces around the patch that reach it.
+    fn of_pieces(
+        region: &Region,
+        surface: &FaceGeometry,
+        on_rim: &[bool],
+        pieces: &[u32],
+        edge: f64,
+    ) -> Result<Option<Self>> {
+        let mut reached = Vec::new();
+        for [a, b] in region.mesh.edges()? {
+            let Some(wings) = region.mesh.wings(a, b) else { continue };
+            let [f, g] = wings.faces;
+            match [f, g].map(|f| region.is_patch(f)) {
+                [true, false] => memory::push(&mut reached, pieces[g as usize])?,
+                [false, true] => memory::push(&mut reached, pieces[f as usize])?,
+                _ => {}
+            }
+        }
         reached.sort_unstable();
         reached.dedup();
-        let part_of = |r: &u32| reached.binary_search(r).map_or(NONE, |part| part as u32);
-        let of_face = memory::gathered(roots.iter().map(part_of))?;
-        let rings = rings(region, &on_rim)?;
+        reached.retain(|&piece| piece != NONE);
+        let part_of = |piece: &u32| reached.binary_search(piece).map_or(NONE, |part| part as u32);
+        let of_face = memory::gathered(pieces.iter().map(part_of))?;
+        let rings = rings(region, on_rim)?;
         let models =
-            (0..reached.len() as u32).map(|part| model(region, &surface, &of_face, &rings, part, edge));
+            (0..reached.len() as u32).map(|part| model(region, surface, &of_face, &rings, part, edge));
         let models = models.collect::<Result<Option<Vec<_>>>>()?;
         Ok(models.map(|models| Self { of_face, models }))
     }
@@ -75,6 +119,13 @@ impl SmoothParts {
         let outer = region.mesh.faces_of(v).iter().filter_map(|&f| self.of_face.get(f as usize));
         outer.copied().filter(|&part| part != NONE).collect()
     }
+}
+
+/// Which vertices the patch has.
+fn on_rim(region: &Region) -> Result<Vec<bool>> {
+    let mut on_rim = memory::repeated(false, region.mesh.n_vertices())?;
+    region.patch_faces().for_each(|(_, face)| face.into_iter().for_each(|v| on_rim[v as usize] = true));
+    Ok(on_rim)
 }
 
 /// The number of edges between every vertex and the hole.
