@@ -16,9 +16,9 @@ from ..blender import blending, kept_normals, mesh_io, rebuilding
 from ..blender.welding import Weld
 from ..framework import faceting
 from ..framework.faceting import Facetable
+from ..framework.ridges import Edges
 from ..framework.settings import chosen
 from . import reduction
-from ..framework.ridges import Edges
 from .settings import movement_of
 from .volume import keep_volume
 

@@ -15,11 +15,11 @@ from ..blender.refusals import RefusedError
 from ..framework import faceting
 from ..framework.job import Task
 from ..framework.preflight import uneven_scale
+from ..framework.ridges import Edges
 from ..framework.run import Part, Run, counted, meshes_phrase, most, total
 from ..framework.surface import group_weights, painted_ridges, welded
 from . import finish, recorded, reduction
 from .finish import Source
-from ..framework.ridges import Edges
 from .settings import StylizeSettings, stylize_options
 
 

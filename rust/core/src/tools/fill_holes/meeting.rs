@@ -47,8 +47,8 @@ fn step(parts: &SmoothParts, own: &[u32], p: Point) -> Point {
     quadric.nearest(DROPPED_EIGENVALUES)
 }
 
-/// Whether all faces lie on their part, and are in order. Noise on the rim turns faces with two vertices on it;
-/// folds are refused where a patch is taken ([`super::cycles`]).
+/// Whether all faces lie on their part, and are in order. Noise on the rim turns faces with two vertices
+/// there; folds are refused where a patch is taken ([`super::cycles`]).
 pub(super) fn has_arrived(region: &Region, parts: &SmoothParts, labels: &[u32], edge: f64) -> bool {
     region.patch_faces().zip(labels).all(|((_, face), &part)| {
         let Some(model) = parts.models.get(part as usize) else { return false };
