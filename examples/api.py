@@ -103,6 +103,11 @@ line = np.column_stack([np.linspace(-0.9, 0.9, 5), np.full(5, 0.2), np.zeros(5)]
 path, starts, places = ridgeform.trace_curves(mesh, line)
 print(len(path))  # vertices along the edges that keep closest to the line
 
+# %% coarsen
+fewer = ridgeform.coarsen(mesh, 100, kept=np.flatnonzero(x == 0))  # the valley's line stays
+at = fewer.vertices[fewer.faces[fewer.places]]  # for every vertex the corners of its place
+print(len(fewer.vertices), np.abs(np.einsum("ij,ijk->ik", fewer.weights, at) - vertices).max() < 1e-9)
+
 # %% remesh
 even = ridgeform.remesh(mesh, edge_length=0.1)
 print(even.vertices.shape, even.faces.shape, even.edge_length)

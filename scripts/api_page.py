@@ -11,6 +11,7 @@ EXAMPLES = ROOT / "examples/api.py"
 GROUPS = {
     "Meshes": (
         "Mesh", "MeshReport", "find_holes", "Hole", "boundary_loops", "weld", "orient", "remesh", "Remeshed",
+        "coarsen", "Coarsened",
     ),
     "Shapes": (
         "stylize", "Stylized", "fill_holes", "Filled", "FilledHole", "segment", "Segmentation",

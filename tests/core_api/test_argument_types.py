@@ -12,6 +12,7 @@ N, M = MESH.n_vertices, MESH.n_faces
 
 # A valid value of every argument without a default.
 VALID = {
+    "n_vertices": 2,
     "mesh": MESH,
     "tool": "stylize",
     "vertices": MESH.vertices,

@@ -1,15 +1,15 @@
 """Ridgeform: the L1 surface Hessian as a modeler's tool.
 
-Make a `Mesh` from arrays, then call a function per problem: `stylize` turns it piecewise flat, `facet` makes
-flat polygons of it, `segment`
-finds the faces that it is made of and `parts` its limbs, `restore` puts noisy parts onto the surfaces that
-they were made of, `fill_holes` closes holes so that the ridges
+Make a `Mesh` from arrays, then call a function per problem: `stylize` turns it piecewise flat, `facet`
+makes flat polygons of it, `segment` finds the faces that it is made of and `parts` its limbs, `restore`
+puts noisy parts onto the surfaces that they were made of, `fill_holes` closes holes so that the ridges
 around them go on, `denoise` and `interpolate` find functions on it with sparse second derivatives,
 `vibration_modes` those of least energy, `diffusion_curves` the few curves that redraw a painted surface,
-and `remesh` evens out its triangles; `hessian` and its companions are the operators behind them. Arrays of
-any numeric dtype and memory order go in; fresh C-contiguous `float64` and `int32` arrays come out. Long
-calls release the interpreter lock, report to a `Progress`, and hear Ctrl-C. Every failure is a
-`RidgeformError`.
+and `remesh` evens out its triangles and `coarsen` leaves fewer of them; `hessian` and its companions are
+the operators behind them. Arrays of any numeric dtype and memory order go in; fresh C-contiguous `float64`
+and `int32` arrays come out. Long calls release the interpreter lock, report to a `Progress`, and hear
+Ctrl-C. Every failure is a `RidgeformError`. `ridgeform.tiles` does the same to meshes that are larger than
+memory.
 
 Source: Rowe, Jacobson and Stein, Sharpening and Sparsifying with Surface Hessians, SIGGRAPH Asia 2024.
 """
@@ -18,6 +18,7 @@ from types import BuiltinFunctionType
 
 from ._arguments import named
 from ._native import (
+    Coarsened,
     DiffusionCurves,
     Faceted,
     Filled,
@@ -36,6 +37,7 @@ from ._native import (
     Stylized,
     __version__,
     boundary_loops,
+    coarsen,
     cotangent_laplacian,
     denoise,
     diffusion_curves,
@@ -67,6 +69,7 @@ from .errors import ArgumentError, Cancelled, MemoryLimitError, MeshError, Ridge
 __all__ = [
     "ArgumentError",
     "Cancelled",
+    "Coarsened",
     "DiffusionCurves",
     "Faceted",
     "Filled",
@@ -89,6 +92,7 @@ __all__ = [
     "Stylized",
     "__version__",
     "boundary_loops",
+    "coarsen",
     "cotangent_laplacian",
     "denoise",
     "diffusion_curves",

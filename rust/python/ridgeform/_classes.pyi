@@ -79,6 +79,14 @@ class Remeshed:
     status: Final[Literal["finished", "stopped"]]
 
 @final
+class Coarsened:
+    vertices: Final[Floats]
+    faces: Final[Indices]
+    parents: Final[Indices]
+    places: Final[Indices]
+    weights: Final[Floats]
+
+@final
 class Restored:
     vertices: Final[Floats]
     labels: Final[Indices]
@@ -139,6 +147,7 @@ class Faceted:
 class Stylized:
     vertices: Final[Floats]
     energy: Final[Floats]
+    fidelities: Final[Floats]
     gap: Final[Floats]
     solver_iterations: Final[Indices]
     iterations: Final[int]

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._classes import (
+    Coarsened as Coarsened,
     DiffusionCurves as DiffusionCurves,
     Faceted as Faceted,
     Filled as Filled,
@@ -147,12 +148,13 @@ def segment(
     inner_tolerance: float = 1e-5,
     cut_threshold: float = 0.6,
     min_faces: int | None = None,
-    scale: Literal["extent", "bounding_box", "area", "max_edge"] = "extent",
+    scale: Literal["extent", "bounding_box", "area", "max_edge"] | float = "extent",
     method: Literal["fitted", "paper"] = "fitted",
     n_segments: int | None = None,
     face_weights: ArrayLike | None = None,
     edge_weights: ArrayLike | None = None,
     faces: ArrayLike | None = None,
+    noise: float | None = None,
     coarse_to_fine: bool | None = None,
     solver: Solver = "auto",
     tolerance: float | None = None,
@@ -191,7 +193,7 @@ def stylize(
     flat_share: float | None = None,
     sharpness: float = 0.5,
     coupling: Coupling = "joint",
-    scale: Scale = "max_edge",
+    scale: Scale | float = "max_edge",
     fixed: ArrayLike | None = None,
     strength: ArrayLike | None = None,
     ridge_weights: ArrayLike | None = None,
@@ -269,6 +271,14 @@ def memory_estimate(
     solver: Solver = "auto",
     longest: int | None = None,
 ) -> int: ...
+def coarsen(
+    mesh: Mesh,
+    n_vertices: int,
+    *,
+    kept: ArrayLike | None = None,
+    held: ArrayLike | None = None,
+    progress: Progress | None = None,
+) -> Coarsened: ...
 def remesh(
     mesh: Mesh,
     *,

@@ -7,6 +7,7 @@
 mod keywords;
 
 mod arrays;
+mod coarsen;
 mod columns;
 mod denoise;
 mod diffusion_curves;
@@ -53,6 +54,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<holes::Hole>()?;
     module.add_class::<stylize::Stylized>()?;
     module.add_class::<remesh::Remeshed>()?;
+    module.add_class::<coarsen::Coarsened>()?;
     module.add_class::<restore::Restored>()?;
     module.add_class::<diffusion_curves::DiffusionCurves>()?;
     module.add_class::<diffusion_curves::Redrawn>()?;
@@ -76,6 +78,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(facet::facet, module)?)?;
     module.add_function(wrap_pyfunction!(stylize::stylize, module)?)?;
     module.add_function(wrap_pyfunction!(remesh::remesh, module)?)?;
+    module.add_function(wrap_pyfunction!(coarsen::coarsen, module)?)?;
     module.add_function(wrap_pyfunction!(restore::restore, module)?)?;
     module.add_function(wrap_pyfunction!(diffusion_curves::diffusion_curves, module)?)?;
     module.add_function(wrap_pyfunction!(diffusion_curves::redraw, module)?)?;

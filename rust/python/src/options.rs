@@ -87,6 +87,30 @@ pub(crate) fn scale(py: Python<'_>, given: &str) -> PyResult<Scale> {
     choice(py, "scale", given, &SCALES)
 }
 
+/// `scale=` of functions that take a length as well; `otherwise` where nothing is given.
+///
+/// # Errors
+/// `ArgumentError` for an unknown word and for a length that is not positive, `TypeError` for another type.
+pub(crate) fn scale_or_length(
+    py: Python<'_>,
+    given: Option<&Bound<'_, PyAny>>,
+    otherwise: Scale,
+) -> PyResult<Scale> {
+    let Some(given) = given else { return Ok(otherwise) };
+    if let Ok(word) = given.extract::<String>() {
+        return scale(py, &word);
+    }
+    let Ok(length) = given.extract::<f64>() else {
+        let kind = given.get_type().name()?;
+        let problem = format!("scale: expected a word or a length, got {kind}");
+        return Err(pyo3::exceptions::PyTypeError::new_err(problem));
+    };
+    if !(length > 0.0 && length.is_finite()) {
+        return Err(argument(py, "scale", format!("is {length}; a length must be positive and finite")));
+    }
+    Ok(Scale::Length(length))
+}
+
 /// `solver=`.
 ///
 /// # Errors

@@ -2,7 +2,7 @@
 
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
-use ridgeform_core::tools::{self, Hierarchy, SegmentMethod};
+use ridgeform_core::tools::{self, Hierarchy, Scale, SegmentMethod};
 
 use crate::columns::{self, Values};
 use crate::mesh::Mesh;
@@ -118,6 +118,8 @@ solver_function! {
     /// edge_weights : (m,3) array ≥ 0, the same for edges, column i opposite corner i;
     ///     the mean of both faces' entries counts
     /// faces : faces to segment, (m,) booleans or (j,) indices; None for all
+    /// noise : standard deviation of the noise in the signal, ≥ 0, in its units, of positions along the
+    ///     normal; None where it is to be found
     /// coarse_to_fine : bool or None. True: segments are found on a mesh of some 9000 vertices, and their
     ///     borders moved to where finer ones have them; False: on the mesh itself; None: on a coarser mesh
     ///     from 18000 vertices on, for shapes by "fitted" without `fidelity` and `edge_weights`
@@ -136,9 +138,14 @@ solver_function! {
     /// ----------
     /// Rowe et al. 2024, eqs. (25) and (41), section 7.5, supplement E.
     signature = (mesh, *, values=None, length_weight=0.5, fidelity=None, epsilon_start=0.1, epsilon_end=0.001,
-        inner_tolerance=1e-5, cut_threshold=0.6, min_faces=None, scale="extent", method="fitted",
-        n_segments=None, face_weights=None, edge_weights=None, faces=None, coarse_to_fine=None),
-        tolerance = None;
+        inner_tolerance=1e-5, cut_threshold=0.6, min_faces=None, scale=None, method="fitted",
+        n_segments=None, face_weights=None, edge_weights=None, faces=None, noise=None, coarse_to_fine=None),
+        tolerance = None,
+        text_signature = "(mesh, *, values=None, length_weight=0.5, fidelity=None, epsilon_start=0.1, \
+    epsilon_end=0.001, inner_tolerance=1e-05, cut_threshold=0.6, min_faces=None, scale='extent', \
+    method='fitted', n_segments=None, face_weights=None, edge_weights=None, faces=None, noise=None, \
+    coarse_to_fine=None, solver='auto', tolerance=None, max_iterations=None, memory_limit=None, \
+    threads=None, progress=None)";
     pub fn segment(py: Python<'_>, solve, progress;
         mesh: &Mesh,
         values: Option<&Bound<'_, PyAny>>,
@@ -149,12 +156,13 @@ solver_function! {
         inner_tolerance: f64,
         cut_threshold: f64,
         min_faces: Option<i64>,
-        scale: &str,
+        scale: Option<&Bound<'_, PyAny>>,
         method: &str,
         n_segments: Option<i64>,
         face_weights: Option<&Bound<'_, PyAny>>,
         edge_weights: Option<&Bound<'_, PyAny>>,
         faces: Option<&Bound<'_, PyAny>>,
+        noise: Option<f64>,
         coarse_to_fine: Option<bool>,
     ) -> PyResult<Segmentation> {
         let (n, m) = (mesh.n_vertices(), mesh.n_faces());
@@ -170,10 +178,11 @@ solver_function! {
             cut_threshold,
             min_faces: at_least_if(py, "min_faces", min_faces, 0)?,
             n_segments: at_least_if(py, "n_segments", n_segments, 1)?,
-            scale: options::scale(py, scale)?,
+            scale: options::scale_or_length(py, scale, Scale::Extent)?,
             face_weights: options::weights("face_weights", face_weights, m, "face")?,
             edge_weights: options::edge_weights(py, edge_weights)?,
             faces: arrays::mask("faces", faces, m, "face")?,
+            noise,
             levels: options::levels(coarse_to_fine),
             solve: solve()?,
         };

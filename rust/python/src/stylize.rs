@@ -2,7 +2,7 @@
 
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
-use ridgeform_core::tools;
+use ridgeform_core::tools::{self, Scale};
 
 use crate::mesh::Mesh;
 use crate::numbers::at_least;
@@ -16,6 +16,8 @@ pub struct Stylized {
     /// The energy of the coordinates before the first and after every step, on the mesh of that step,
     /// (steps + 1,) float64.
     energy: Py<PyArray1<f64>>,
+    /// The fidelity of every step, in the unit that `scale` sets, (steps,) float64.
+    fidelities: Py<PyArray1<f64>>,
     /// The certified relative duality gap of every step's problem, (steps,) float64.
     gap: Py<PyArray1<f64>>,
     /// The solver's iterations in every step, (steps,) int32.
@@ -74,7 +76,8 @@ solver_function! {
     /// coupling : "joint" (one norm for the three coordinates, independent of the axes) or "separate" (the
     ///     paper's)
     /// scale : "max_edge" (the longest edge is 1: the paper's unit), "bounding_box" (the longest side is 1),
-    ///     "area" (the surface is 1) or "extent" (a cube has its side, whatever its rotation)
+    ///     "area" (the surface is 1), "extent" (a cube has its side, whatever its rotation), or a number > 0:
+    ///     the length that is 1, in the units of the mesh
     /// fixed : vertices that stay where they are: (n,) booleans or (j,) indices
     /// strength : (n,) array, 0 (stay) to 1 (full effect)
     /// ridge_weights : (m,) array > 0, 1 is neutral, smaller makes ridges cheaper there
@@ -101,8 +104,13 @@ solver_function! {
     /// Rowe et al. 2024, eq. (24), section 7.3; reweighting: Candès et al. 2008; levels: Garland and
     /// Heckbert 1997.
     signature = (mesh, *, iterations=20, fidelity=500.0, movement=None, flat_share=None, sharpness=0.5,
-        coupling="joint", scale="max_edge", fixed=None, strength=None, ridge_weights=None, delaunay=false,
-        dual="barycentric", coarse_to_fine=None), tolerance = 1e-3;
+        coupling="joint", scale=None, fixed=None, strength=None, ridge_weights=None, delaunay=false,
+        dual="barycentric", coarse_to_fine=None),
+        tolerance = 1e-3,
+        text_signature = "(mesh, *, iterations=20, fidelity=500.0, movement=None, flat_share=None, \
+    sharpness=0.5, coupling='joint', scale='max_edge', fixed=None, strength=None, ridge_weights=None, \
+    delaunay=False, dual='barycentric', coarse_to_fine=None, solver='auto', tolerance=0.001, \
+    max_iterations=None, memory_limit=None, threads=None, progress=None)";
     pub fn stylize(py: Python<'_>, solve, progress;
         mesh: &Mesh,
         iterations: i64,
@@ -111,7 +119,7 @@ solver_function! {
         flat_share: Option<f64>,
         sharpness: f64,
         coupling: &str,
-        scale: &str,
+        scale: Option<&Bound<'_, PyAny>>,
         fixed: Option<&Bound<'_, PyAny>>,
         strength: Option<&Bound<'_, PyAny>>,
         ridge_weights: Option<&Bound<'_, PyAny>>,
@@ -127,7 +135,7 @@ solver_function! {
             flat_share,
             sharpness,
             coupling: options::coupling(py, coupling)?,
-            scale: options::scale(py, scale)?,
+            scale: options::scale_or_length(py, scale, Scale::MaxEdge)?,
             fixed: arrays::mask("fixed", fixed, n, "vertex")?,
             strength: options::weights("strength", strength, n, "vertex")?,
             ridge_weights: options::weights("ridge_weights", ridge_weights, m, "face")?,
@@ -149,6 +157,7 @@ solver_function! {
             iterations: result.iterations,
             level_vertices: level_vertices.collect::<Vec<_>>().into_pyarray(py).unbind(),
             energy: result.energy.into_pyarray(py).unbind(),
+            fidelities: result.fidelities.into_pyarray(py).unbind(),
             gap: result.gap.into_pyarray(py).unbind(),
             factorisations: result.factorisations,
             status: result.status.name(),

@@ -81,6 +81,12 @@ impl Carry {
         Ok(Self { places })
     }
 
+    /// For every vertex the coarse face that its point is on, and the weights of that face's corners; nothing
+    /// where a vertex is held or has no faces.
+    pub fn places(&self) -> impl Iterator<Item = Option<(u32, [f64; 3])>> + '_ {
+        self.places.iter().map(|place| place.map(|place| (place.face, place.weights)))
+    }
+
     /// What `coarse` has at the vertices' points; `none` where a vertex is held or has no faces.
     #[must_use]
     pub fn points(&self, coarse: &[Point], none: Point) -> Vec<Point> {

@@ -53,7 +53,7 @@ pub(super) struct Collapser {
 struct Kind {
     is_held: bool,
     is_border: bool,
-    /// At an edge with three faces, or where two fans meet.
+    /// At an edge with three faces, or where two fans meet, or kept by the caller.
     is_locked: bool,
 }
 
@@ -65,6 +65,7 @@ impl Collapser {
         connectivity: &Connectivity,
         positions: &[Point],
         held: Option<&[bool]>,
+        kept: Option<&[bool]>,
     ) -> Result<Self> {
         let n = positions.len();
         let mesh = EditableMesh::new(positions.to_vec(), connectivity.faces().to_vec())?;
@@ -76,7 +77,7 @@ impl Collapser {
             .map(|(v, is_manifold)| Kind {
                 is_held: held.is_some_and(|held| held[v]),
                 is_border: false,
-                is_locked: !is_manifold,
+                is_locked: !is_manifold || kept.is_some_and(|kept| kept[v]),
             })
             .collect();
         // A border is kept by the planes through its edges across their faces.

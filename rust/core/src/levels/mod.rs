@@ -75,7 +75,7 @@ fn means(n: usize, values: impl Iterator<Item = (u32, f64)>) -> Vec<f64> {
 /// [`MeshError::NoPositions`] and cancellation.
 pub fn levels(mesh: &Mesh, held: Option<&[bool]>, enough: usize, progress: &Progress) -> Result<Vec<Level>> {
     let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
-    let mut collapser = Collapser::new(mesh.connectivity(), positions, held)?;
+    let mut collapser = Collapser::new(mesh.connectivity(), positions, held, None)?;
     let mut found: Vec<Level> = Vec::new();
     loop {
         let finer = found.last().map_or(mesh, |level| &level.mesh);
@@ -90,13 +90,38 @@ pub fn levels(mesh: &Mesh, held: Option<&[bool]>, enough: usize, progress: &Prog
         if collapser.n_left() as f64 > WORTHWHILE * n as f64 {
             return Ok(found);
         }
-        let is_held = collapser.held();
-        let (points, faces, parents) = collapser.level();
-        let fine: &[Point] = finer.positions().ok_or(MeshError::NoPositions)?;
-        let coarse = Mesh::new(points, faces)?;
-        let carry = Carry::new(fine, &parents, &is_held, &coarse)?;
-        found.push(Level { mesh: coarse, carry, parents });
+        let level = made(&mut collapser, finer)?;
+        found.push(level);
     }
+}
+
+/// The level of `mesh` with about `n_vertices` of its vertices, or as near to that as edges collapse; those
+/// that are `held` are as in [`levels`], and those that are `kept` stay as they are, each on its own. So the
+/// levels of adjoining parts of a surface adjoin if what they share is kept.
+///
+/// # Errors
+/// [`MeshError::NoPositions`] and cancellation.
+pub fn level(
+    mesh: &Mesh,
+    held: Option<&[bool]>,
+    kept: Option<&[bool]>,
+    n_vertices: usize,
+    progress: &Progress,
+) -> Result<Level> {
+    let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
+    let mut collapser = Collapser::new(mesh.connectivity(), positions, held, kept)?;
+    collapser.reduce_to(n_vertices, progress)?;
+    made(&mut collapser, mesh)
+}
+
+/// The level that has been reached above the `finer` mesh.
+fn made(collapser: &mut Collapser, finer: &Mesh) -> Result<Level> {
+    let is_held = collapser.held();
+    let (points, faces, parents) = collapser.level();
+    let fine: &[Point] = finer.positions().ok_or(MeshError::NoPositions)?;
+    let coarse = Mesh::new(points, faces)?;
+    let carry = Carry::new(fine, &parents, &is_held, &coarse)?;
+    Ok(Level { mesh: coarse, carry, parents })
 }
 
 #[cfg(test)]

@@ -149,3 +149,23 @@ fn where_slivers_cannot_collapse_the_rest_keeps_its_vertices() {
     let (sum, largest) = (areas.iter().sum::<f64>(), areas.iter().copied().fold(0.0, f64::max));
     assert!(sum > 3.0 && largest < 0.02 * sum, "{largest} of {sum}");
 }
+
+#[test]
+fn kept_vertices_stay_each_on_its_own() {
+    let shape = shapes::grid(20, 20);
+    let mesh = shape.mesh().unwrap();
+    let kept: Vec<bool> = shape.vertices.iter().map(|p| p[0] == shape.vertices[0][0]).collect();
+    let level = level(&mesh, None, Some(&kept), 60, &Progress::new()).unwrap();
+    let points = level.mesh.positions().unwrap();
+    let own: std::collections::BTreeSet<u32> =
+        (0..kept.len()).filter(|&v| kept[v]).map(|v| level.parents[v]).collect();
+    assert_eq!(own.len(), kept.iter().filter(|kept| **kept).count());
+    for v in (0..kept.len()).filter(|&v| kept[v]) {
+        assert_eq!(points[level.parents[v] as usize], shape.vertices[v]);
+    }
+    assert!(points.len() < 100);
+    assert!(level
+        .carry
+        .places()
+        .all(|place| place.is_some_and(|(_, w)| (w.iter().sum::<f64>() - 1.0).abs() < 1e-12)));
+}

@@ -33,6 +33,12 @@ pub(super) fn coarse_to_fine(
     let levels = levels(mesh, None, ENOUGH, progress)?;
     let Some(coarsest) = levels.last() else { return Ok(None) };
     let weights = options.face_weights.as_ref().map(|weights| face_values(mesh, &levels, weights));
+    // What is said of the noise of the mesh is in proportion true of coarser ones.
+    let found_here = noise_level(surface, &Columns::from_points(&surface.positions)?, 1);
+    let doubt = if options.noise.is_some() && found_here > 0.0 { noise / found_here } else { 1.0 };
+    let noise_on = |surface: &Surface<'_>| -> Result<f64> {
+        Ok(doubt * noise_level(surface, &Columns::from_points(&surface.positions)?, 1))
+    };
     let on_level = |depth: usize| {
         let level = &levels[depth - 1].mesh;
         let share = |count: usize| {
@@ -43,11 +49,18 @@ pub(super) fn coarse_to_fine(
             face_weights: weights.as_ref().map(|weights| weights[depth - 1].clone()),
             min_faces: options.min_faces.map(share),
             scale: Scale::Length(unit),
+            noise: None,
             levels: Levels::Never,
             ..options.clone()
         }
     };
-    let found = segment(&coarsest.mesh, &on_level(levels.len()))?;
+    let mut coarsest_options = on_level(levels.len());
+    if options.noise.is_some() {
+        let (mesh, points) = (&coarsest.mesh, coarsest.mesh.positions().ok_or(MeshError::NoPositions)?);
+        let surface = Surface::new(mesh.connectivity(), points, unit, coarsest_options.edge_costs(mesh));
+        coarsest_options.noise = Some(unit * noise_on(&surface)?);
+    }
+    let found = segment(&coarsest.mesh, &coarsest_options)?;
     let mut carried = Carried::of(&found)?;
     for depth in (1..levels.len()).rev() {
         let finer = &levels[depth - 1].mesh;
@@ -56,7 +69,7 @@ pub(super) fn coarse_to_fine(
         let points = finer.positions().ok_or(MeshError::NoPositions)?;
         let surface = Surface::new(finer.connectivity(), points, unit, options.edge_costs(finer));
         let start = Columns::from_points(&surface.positions)?;
-        let noise = noise_level(&surface, &start, 1);
+        let noise = noise_on(&surface)?;
         let mut labels = carried.labels.clone();
         carried.passes(&surface, &start, noise, &options, progress).refine(&mut labels)?;
         carried.labels = labels;

@@ -49,6 +49,7 @@ use crate::mesh::{Mesh, TJunctions, Working};
 use crate::progress::Progress;
 use crate::solve::Settings;
 use crate::tools::answer;
+use crate::tools::Scale;
 use crate::unit::Unit;
 use crate::{memory, Result};
 use coarse_to_fine::coarse_to_fine;
@@ -142,6 +143,12 @@ fn on(
     let value = values.map_or(length, |values| Unit::of(values.data.iter().copied()));
     let mesh = mesh.measured(length)?;
     let values = values.map(|values| values.measured(value));
+    let scale = match options.scale {
+        Scale::Length(given) => Scale::Length(length.measure(given)),
+        relative => relative,
+    };
+    let noise = options.noise.map(|noise| value.measure(noise));
+    let options = &SegmentOptions { scale, noise, ..options.clone() };
     let copies = Copies::among(mesh.connectivity(), options.faces.as_deref());
     let without = copies.as_ref().map(|copies| copies.others(options.faces.as_deref()));
     let mut found = options.solve.run(|| {
@@ -198,7 +205,12 @@ fn whole(
     };
     let is_exact = exact.is_some();
     let degrees = values.map_or(1, |v| v.n_columns);
-    let noise = if is_exact { 0.0 } else { noise_level(&surface, &start, degrees) };
+    let size = signal.as_ref().map_or(unit, |signal| signal.range);
+    let noise = match options.noise {
+        _ if is_exact => 0.0,
+        Some(given) => given / size,
+        None => noise_level(&surface, &start, degrees),
+    };
     if options.are_levels_used(positions.len(), values.is_some()) {
         if !is_exact {
             let segment =
@@ -262,7 +274,7 @@ fn whole(
         indicator: found.indicator,
         values: unscaled(&found.values)?,
         hierarchy,
-        noise: noise * signal.as_ref().map_or(unit, |s| s.range),
+        noise: noise * size,
         fidelity: found.fidelity,
         epsilons,
         alternations: found.alternations,

@@ -52,6 +52,8 @@ pub struct SegmentOptions {
     pub edge_weights: Option<Vec<[f64; 3]>>,
     /// The faces to segment; all where `None`.
     pub faces: Option<Vec<bool>>,
+    /// The standard deviation of the noise in the signal, in its units; found where `None`.
+    pub noise: Option<f64>,
     /// Whether segments are found on a coarser mesh: those of shapes without weights of edges and a given
     /// fidelity, by [`SegmentMethod::Fitted`]; others never are.
     pub levels: Levels,
@@ -75,6 +77,7 @@ impl Default for SegmentOptions {
             face_weights: None,
             edge_weights: None,
             faces: None,
+            noise: None,
             levels: Levels::Auto,
             solve: SolveOptions { tolerance: None, ..SolveOptions::default() },
         }
@@ -97,6 +100,9 @@ impl SegmentOptions {
         if self.epsilon_end > self.epsilon_start {
             let problem = format!("is {}, more than epsilon_start, {}", self.epsilon_end, self.epsilon_start);
             return Err(Error::argument("epsilon_end", problem));
+        }
+        if let Some(noise) = self.noise.filter(|noise| !(*noise >= 0.0 && noise.is_finite())) {
+            return Err(Error::argument("noise", format!("is {noise}; it must be finite and at least 0")));
         }
         check_range("cut_threshold", self.cut_threshold, 0.0, 1.0)?;
         check_weights("face_weights", self.face_weights.as_ref(), m, "face")?;

@@ -156,6 +156,7 @@ fn fractions(mesh: &Mesh, levels: &[Level]) -> Vec<[f64; 2]> {
 #[derive(Default)]
 struct Account {
     energy: Vec<f64>,
+    fidelities: Vec<f64>,
     gap: Vec<f64>,
     solver_iterations: Vec<usize>,
     level_vertices: Vec<usize>,
@@ -167,6 +168,7 @@ impl Account {
     fn add(&mut self, result: &Stylized) {
         // The first is that of what was taken over.
         self.energy.extend(result.energy.iter().skip(1));
+        self.fidelities.extend(&result.fidelities);
         self.gap.extend(&result.gap);
         self.solver_iterations.extend(&result.solver_iterations);
         self.level_vertices.extend(&result.level_vertices);
@@ -175,8 +177,8 @@ impl Account {
 
     /// The result with the account of all.
     fn of(self, result: Stylized) -> Stylized {
-        let Self { energy, gap, solver_iterations, level_vertices, factorisations } = self;
-        Stylized { energy, gap, solver_iterations, level_vertices, factorisations, ..result }
+        let Self { energy, fidelities, gap, solver_iterations, level_vertices, factorisations } = self;
+        Stylized { energy, fidelities, gap, solver_iterations, level_vertices, factorisations, ..result }
     }
 }
 

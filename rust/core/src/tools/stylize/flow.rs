@@ -128,6 +128,7 @@ impl<'a> Flow<'a> {
                 vertices: memory::twin(start)?,
                 iterations: 0,
                 energy: Vec::new(),
+                fidelities: Vec::new(),
                 gap: Vec::new(),
                 solver_iterations: Vec::new(),
                 level_vertices: Vec::new(),
@@ -263,6 +264,7 @@ impl<'a> Flow<'a> {
         self.result.vertices.copy_from_slice(&self.points);
         self.result.iterations = self.done;
         self.result.energy.push(step.energy());
+        self.result.fidelities.push(self.pace.factor() * self.options.fidelity);
         self.result.gap.push(solution.gap);
         self.result.solver_iterations.push(solution.iterations);
         self.result.level_vertices.push(self.points.len());

@@ -133,6 +133,8 @@ pub struct Stylized {
     pub iterations: usize,
     /// `E_H` of the coordinates (18), before the first and after every step, on the mesh of that step.
     pub energy: Vec<f64>,
+    /// The fidelity of every step.
+    pub fidelities: Vec<f64>,
     /// The relative duality gap of every step's convex problem.
     pub gap: Vec<f64>,
     /// The solver's iterations in every step.
