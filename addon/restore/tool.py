@@ -27,9 +27,10 @@ KIND = "ridgeform_surface_kind"
 KINDS = ("free", "plane", "sphere", "cylinder", "cone", "torus")
 """The kinds by their number in the attribute."""
 
-LEAST_CREASE = {"planes": np.radians(2.0), "curved": np.radians(30.0)}
-"""Two planes that meet at this angle make a crease. Edges on a curved surface are chords, bent by themselves:
-30 degrees there, as Blender's Smooth by Angle has it, so that a fillet stays smooth where it is tangent."""
+LEAST_CREASE = np.radians(30.0)
+"""Where a curved surface meets another one at this angle there is a crease. Its own edges are chords, bent by
+themselves: as Blender's Smooth by Angle has it, so that a fillet stays smooth where it is tangent. Two planes
+that meet always make one."""
 
 
 @dataclass(kw_only=True)
@@ -167,9 +168,8 @@ def _creases(part: RestorePart, moved: np.ndarray, labels: np.ndarray, kinds: np
     edges = Edges(mesh_io.edges(mesh), mesh_io.face_corners(mesh))
     sides = edges.sides(labels)
     are_planes = (kinds[sides] == KINDS.index("plane")).all(axis=1)
-    least = np.where(are_planes, LEAST_CREASE["planes"], LEAST_CREASE["curved"])
     free = part.moving[edges.ends].any(axis=1)
-    return free & (sides[:, 0] != sides[:, 1]) & edges.ridges(moved, least)
+    return free & (sides[:, 0] != sides[:, 1]) & (are_planes | edges.ridges(moved, LEAST_CREASE))
 
 
 def _kinds_phrase(done: Sequence[dict[str, object]]) -> str:
