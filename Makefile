@@ -4,14 +4,14 @@ RUN = @$(PYTHON) scripts/setup_env.py
 
 .PHONY: help demo test test-all-blenders test-dask lint workflows notices advisories bench bench-holes bench-segments \
 	bench-memory bench-limits bench-growth bench-latency bench-files bench-parts bench-facets bench-restore \
-	bench-overnight fuzz fuzz-sequences \
+	bench-overnight bench-tiles fuzz fuzz-sequences \
 	extension wheel release sizes docs fixtures pictures gallery
 
 help:
 	@echo "make demo        make facets of a real scan in Blender, without a window: out/demo.png, out/demo.blend"
 	@echo "make test        all tests: Rust, the wheel, the extension in every Blender found"
 	@echo "make test-all-blenders  the extension in Blender 4.2, 4.5, 5.0, and 5.2; ZIP=file takes a built one"
-	@echo "make test-dask   batches on a Dask cluster of two workers, one of which is killed"
+	@echo "make test-dask   batches and tiles on a Dask cluster of two workers, one of which is killed"
 	@echo "make lint        formatting and lints of Rust and Python"
 	@echo "make notices     write the licenses of all dependencies again: rust/THIRD-PARTY-NOTICES.txt"
 	@echo "make advisories  ask the database of known vulnerabilities about the dependencies; needs the network"
@@ -28,6 +28,7 @@ help:
 	@echo "make bench-growth  how time grows with what a file has many of: docs/reliability.md"
 	@echo "make bench-latency   how soon every tool hears a wish to stop: docs/reliability.md"
 	@echo "make bench-files     every format when writing fails: docs/reliability.md"
+	@echo "make bench-tiles   a city of 4 million vertices under a cap on memory; ARGS=--lots 8: a smaller one"
 	@echo "make fuzz        random calls of wheel and core, sequences in Blender, for MINUTES=10"
 	@echo "make fuzz-sequences  sequences in Blender alone: docs/reliability.md"
 	@echo "make bench-parts DATA=folder  divide shapes whose parts people have named: benchmarks/parts.md"
@@ -77,6 +78,9 @@ bench-facets:
 
 bench-restore:
 	$(RUN) benchmarks/restore.py $(ARGS)
+
+bench-tiles: wheel
+	@PYTHONPATH=.ridgeform/wheel-site .ridgeform/py311/bin/python benchmarks/tiles.py $(ARGS)
 
 bench-overnight:
 	$(RUN) benchmarks/overnight.py $(ARGS)

@@ -1,4 +1,4 @@
-"""The tests of batches on a Dask cluster, in an environment of their own: distributed is optional.
+"""The tests of batches and tiles on a Dask cluster, in an environment of their own: distributed is optional.
 
 python scripts/setup_env.py scripts/test_dask.py [PYTEST ARGUMENTS]
 """
@@ -6,8 +6,9 @@ python scripts/setup_env.py scripts/test_dask.py [PYTEST ARGUMENTS]
 import sys
 
 from build_extension import build_extension, extension_here
+from build_wheel import build_wheel
 from setup_env import PYTHONS, environment_python, environments, fill_environment
-from workspace import run
+from workspace import WHEEL_SITE, run
 
 
 def main(arguments: list[str]) -> None:
@@ -20,6 +21,12 @@ def main(arguments: list[str]) -> None:
         [python, "-m", "pytest", "-q", *arguments, "tests/blender/test_dask.py"],
         f"Dask with Blender {PYTHONS[version]}",
         {"RIDGEFORM_EXTENSION": str(extension), "PYTHONPATH": ""},
+    )
+    build_wheel()
+    run(
+        [python, "-m", "pytest", "-q", *arguments, "tests/core_api/test_tiles_dask.py"],
+        "tiles on Dask",
+        {"PYTHONPATH": str(WHEEL_SITE)},
     )
 
 

@@ -6,7 +6,7 @@ from multiprocessing import get_context
 import numpy as np
 import pytest
 import ridgeform
-from known_shapes import shapes
+from known_shapes import shapes, tiled_city
 from known_shapes.segment_shapes import adjusted_rand_index
 from ridgeform import tiles
 
@@ -175,3 +175,14 @@ def test_meshes_that_are_none_are_refused():
         tiles.segment(np.zeros((3, 3)), [[0, 1, 2]])
     with pytest.raises(ridgeform.MeshError, match="no faces"):
         tiles.stylize(triangle, np.zeros((0, 3), int))
+
+
+def test_a_city_of_tiles_is_segmented_as_in_one_piece(tmp_path):
+    made = tiled_city.city(2)
+    tiled_city.write_tiles(made, tmp_path, 2)
+    city = tiles.read(tmp_path)
+    assert len(city.vertices) == len(made.vertices)
+    truth = np.concatenate([np.load(path)["truth"] for path in city.paths])
+    found = tiles.segment(city.vertices, city.faces, scale=30.0, max_vertices=5000)
+    assert found.n_segments == len(np.unique(truth)) == 25
+    assert adjusted_rand_index(found.labels, truth) > 0.99
