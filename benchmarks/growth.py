@@ -1,9 +1,10 @@
 """How the time of every call grows with what a file can have many of: `make bench-growth`.
 
 Each pair of a call and a shape runs at three sizes, each twice as large as the one before, in a process of
-its own; the exponent is that between the last two. Faster than n log n, over at least 0.2 s, is a fault.
+its own; the exponent is that between the last two. Faster than n log n, over at least 0.2 s, is a fault. What
+was measured is kept in `growth.json`, and another run adds what is missing.
 
-    python benchmarks/growth.py [--write] [--only SHAPE] [--call NAME] [--first SIZE]
+    python benchmarks/growth.py [--write] [--only SHAPE] [--call NAME] [--first SIZE] [--again]
 """
 
 from __future__ import annotations
@@ -11,18 +12,21 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import resource
+import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
 
 from growth_shapes import SHAPES
-from reliability_page import write_section
+from reliability_page import Records, write_section
 from tool_calls import CALLS
 
 HERE = Path(__file__).resolve().parent
-SECONDS = 120.0
-"""A call that takes longer is not waited for."""
+RECORDS = HERE / "growth.json"
+SECONDS = 60
+"""A call that takes more processor time is not waited for."""
 
 MOST = 1.35
 """The exponent of n log n between 10 and 40 thousand is 1.1; the rest is noise and caches."""
@@ -50,12 +54,16 @@ print(json.dumps([time.process_time() - begin, outcome]))
 def seconds(shape: str, call: str, size: int) -> tuple[float, str]:
     """Processor time of one call, and how it ended."""
     code = ONE.format(here=str(HERE), shape=shape, call=call, size=size)
-    try:
-        done = subprocess.run(
-            [sys.executable, "-c", code], capture_output=True, text=True, timeout=SECONDS, check=False
-        )
-    except subprocess.TimeoutExpired:
-        return math.inf, f"over {SECONDS:.0f} s"
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=False,
+        # By the clock a machine that does other things as well would make any call slow.
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS)),
+    )
+    if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+        return math.inf, f"over {SECONDS} s"
     if done.returncode:
         return math.nan, f"ended with {done.returncode}: {done.stderr[-200:]}"
     return tuple(json.loads(done.stdout))
@@ -90,15 +98,19 @@ def main() -> None:
     parser.add_argument("--only", action="append", help="a shape")
     parser.add_argument("--call", action="append", help="a call")
     parser.add_argument("--first", type=int, default=5000, help="the smallest count")
+    parser.add_argument("--again", action="store_true", help="also what was measured before")
     options = parser.parse_args()
-    records = []
+    kept = Records(RECORDS)
     for shape in options.only or SHAPES:
         for call in options.call or CALLS:
-            record = measured(shape, call, options.first)
-            records.append(record)
+            record = kept.of.get(shape, {}).get(call)
+            if record is None or options.again:
+                record = measured(shape, call, options.first)
+                kept.keep(shape, call, record)
             mark = "FAULT" if record["fault"] else "ok"
             what = f"{mark:5} {shape:20} {call:22}"
             print(what, record["seconds"], record["exponent"], record["outcome"], flush=True)
+    records = [record for calls in kept.of.values() for record in calls.values()]
     if options.write:
         write_section("growth", table(records))
     sys.exit(any(record["fault"] for record in records))
@@ -115,7 +127,7 @@ def table(records: list[dict[str, object]]) -> str:
         counted = [row for row in rows if row["seconds"][-1] > SLOW and row["exponent"] is not None]
         steepest = max(counted, key=lambda row: row["exponent"], default=None)
         growth = f"{steepest['exponent']:.2f} ({steepest['call']})" if steepest else "-"
-        times = ", ".join(f"{t:.2f}" for t in slowest["seconds"])
+        times = ", ".join(f"{t:.2f}" if math.isfinite(t) else f"over {SECONDS}" for t in slowest["seconds"])
         lines.append(
             f"| {shape} | {len(rows)} | {slowest['sizes'][-1]} | {slowest['call']} | {times} | {growth} |"
         )

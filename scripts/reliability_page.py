@@ -31,7 +31,7 @@ class Records:
         if path.exists():
             self.of = json.loads(path.read_text(encoding="utf-8"))
 
-    def keep(self, call: str, size: int, record: object) -> None:
+    def keep(self, call: str, size: int | str, record: object) -> None:
         """Put a record in the place of the one before, and into the file."""
         self.of.setdefault(call, {})[str(size)] = record
         self.path.write_text(json.dumps(self.of, indent=1) + "\n", encoding="utf-8")

@@ -18,7 +18,7 @@ fn assembly(criterion: &mut Criterion) {
     group.bench_function("connectivity", |bencher| {
         bencher.iter(|| Connectivity::new(shape.faces.clone(), shape.vertices.len()));
     });
-    group.bench_function("report", |bencher| bencher.iter(|| report(&mesh)));
+    group.bench_function("report", |bencher| bencher.iter(|| report(&mesh).unwrap()));
     group.bench_function("pattern", |bencher| bencher.iter(|| HessianPattern::new(connectivity).unwrap()));
     group.bench_function("assemble, barycentric", |bencher| {
         bencher.iter(|| pattern.assemble_into(connectivity, lengths, Dual::Barycentric, &mut rows));

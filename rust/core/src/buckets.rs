@@ -20,17 +20,10 @@ impl<T> Default for Buckets<T> {
 impl<T: Copy + Default> Buckets<T> {
     /// Sorts what `each` visits into `n` buckets: it names a bucket and an item at a time,
     /// and is called twice.
-    pub(crate) fn new(n: usize, each: impl Fn(&mut dyn FnMut(usize, T))) -> Self {
-        let starts = counted(vec![0; n + 1], &each);
-        let (next, items) = (starts.clone(), vec![T::default(); starts[n]]);
-        Self::placed(starts, next, items, &each)
-    }
-
-    /// [`Buckets::new`] for what a linear system takes.
     ///
     /// # Errors
     /// [`SolveError::Memory`] when the system does not give that much.
-    pub(crate) fn try_new(n: usize, each: impl Fn(&mut dyn FnMut(usize, T))) -> Result<Self, SolveError> {
+    pub(crate) fn new(n: usize, each: impl Fn(&mut dyn FnMut(usize, T))) -> Result<Self, SolveError> {
         let starts = counted(memory::repeated(0, n + 1)?, &each);
         let (next, items) = (memory::twin(&starts)?, memory::repeated(T::default(), starts[n])?);
         Ok(Self::placed(starts, next, items, &each))
@@ -76,12 +69,14 @@ fn counted<T>(mut starts: Vec<usize>, each: &impl Fn(&mut dyn FnMut(usize, T))) 
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     #[test]
     fn items_keep_their_order_and_empty_buckets_are_empty() {
         let given = [(2, 'a'), (0, 'b'), (2, 'c'), (0, 'd')];
-        let buckets = Buckets::new(4, |visit| given.iter().for_each(|&(bucket, item)| visit(bucket, item)));
+        let visit = |visit: &mut dyn FnMut(usize, char)| given.iter().for_each(|&(i, item)| visit(i, item));
+        let buckets = Buckets::new(4, visit).unwrap();
         let all: Vec<&[char]> = (0..4).map(|i| buckets.of(i)).collect();
         assert_eq!(all, [&['b', 'd'][..], &[], &['a', 'c'], &[]]);
         assert_eq!(buckets.into_parts(), (vec![0, 2, 2, 4, 4], vec!['b', 'd', 'a', 'c']));

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use crate::error::MeshError;
 use crate::mesh::Mesh;
 pub use crate::random::Random;
+use crate::Result;
 
 /// Vertices and faces.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +20,7 @@ impl Shape {
     ///
     /// # Errors
     /// Those of [`Mesh::new`].
-    pub fn mesh(&self) -> Result<Mesh, MeshError> {
+    pub fn mesh(&self) -> Result<Mesh> {
         Mesh::new(self.vertices.clone(), self.faces.clone())
     }
 

@@ -39,6 +39,7 @@ const ROOM: usize = 8 << 20;
 fn demand(name: &str, mesh: &Mesh) -> Demand {
     match name {
         "stylize" => mesh.demand(Tool::Stylize).with_columns(3, false),
+        "stylize by levels" => mesh.demand(Tool::Stylize).with_columns(3, false),
         "denoise" => mesh.demand(Tool::Denoise),
         "denoise 3 columns" => mesh.demand(Tool::Denoise).with_columns(3, false),
         "denoise quadratic" => mesh.demand(Tool::Quadratic),
@@ -46,10 +47,11 @@ fn demand(name: &str, mesh: &Mesh) -> Demand {
         "interpolate" => mesh.demand(Tool::Interpolate),
         "vibration_modes" => mesh.demand(Tool::Modes),
         "segment" => mesh.demand(Tool::Segment).with_columns(3, false),
+        "segment by levels" => mesh.demand(Tool::SegmentByLevels).with_columns(3, false),
         "parts" => mesh.demand(Tool::Parts),
         "facet" => mesh.demand(Tool::Facet),
         "restore" => mesh.demand(Tool::Restore).with_columns(3, false),
-        "fill_holes" => filling_demand(mesh, None),
+        "fill_holes" => filling_demand(mesh, None).unwrap(),
         "remesh" => mesh.demand(Tool::Remesh),
         "diffusion_curves" => mesh.demand(Tool::DiffusionCurves),
         _ => mesh.demand(Tool::Curves),

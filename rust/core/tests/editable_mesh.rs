@@ -18,7 +18,8 @@ fn checked(mesh: EditableMesh, n_boundary_loops: usize) -> Mesh {
     let connectivity = Connectivity::new(faces.clone(), vertices.len()).unwrap();
     invariants::check(&connectivity).unwrap();
     let mesh = Mesh::new(vertices, faces).unwrap();
-    let found = MeshReport { degenerate_faces: Vec::new(), t_junctions: Vec::new(), ..report(&mesh) };
+    let found =
+        MeshReport { degenerate_faces: Vec::new(), t_junctions: Vec::new(), ..report(&mesh).unwrap() };
     assert_eq!(found, MeshReport { n_components: 1, n_boundary_loops, ..MeshReport::default() });
     mesh
 }

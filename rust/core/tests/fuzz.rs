@@ -82,7 +82,7 @@ fn call(seed: u64) -> (&'static str, &'static str) {
     let (name, tool) = TOOLS[below(&mut random, TOOLS.len() as u64) as usize];
     let mut shape = shape(&mut random);
     sized(&mut shape, &mut random);
-    let ended = match shape.mesh().map_err(Error::from).and_then(|mesh| check(tool, &mesh, &mut random)) {
+    let ended = match shape.mesh().and_then(|mesh| check(tool, &mesh, &mut random)) {
         Ok(()) => "answer",
         Err(error) => {
             assert!(

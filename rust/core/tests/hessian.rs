@@ -144,7 +144,7 @@ fn bending_a_strip_along_its_edges_changes_nothing() {
 fn edge_lengths_rigid_motions_and_scalings_give_the_same_hessian() {
     let shape = shapes::icosphere(2).noisy(0.05, 4);
     let expected = hessian(&shape.mesh().unwrap(), Dual::Barycentric).unwrap();
-    let lengths = edge_lengths(&shape.faces, &shape.vertices);
+    let lengths = edge_lengths(&shape.faces, &shape.vertices).unwrap();
     let by_lengths = Mesh::from_edge_lengths(shape.faces.clone(), lengths, None).unwrap();
     assert!(by_lengths.positions().is_none());
     assert_eq!(hessian(&by_lengths, Dual::Barycentric).unwrap(), expected);

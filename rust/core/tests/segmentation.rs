@@ -30,7 +30,7 @@ fn the_face_laplacian_is_symmetric_knows_constants_and_squares_of_a_lattice() {
     let centroid =
         |f: &[u32; 3]| [0, 1, 2].map(|c| f.iter().map(|&v| positions[v as usize][c]).sum::<f64>() / 3.0);
     let centroids: Vec<[f64; 3]> = connectivity.faces().iter().map(centroid).collect();
-    let weights = face_laplacian_weights(connectivity, mesh.edge_lengths(), &centroids);
+    let weights = face_laplacian_weights(connectivity, mesh.edge_lengths(), &centroids).unwrap();
     // Edges of length 1, centroids two inradii apart.
     let expected = 3.0_f64.sqrt();
     assert!(weights.as_flattened().iter().all(|w| *w == 0.0 || (w - expected).abs() < 1e-12));

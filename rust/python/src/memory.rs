@@ -4,6 +4,7 @@ use pyo3::prelude::*;
 use ridgeform_core::memory::{self, Demand, Tool};
 use ridgeform_core::tools;
 
+use crate::doorway;
 use crate::errors::argument;
 use crate::mesh::Mesh;
 use crate::numbers::{at_least, at_least_if};
@@ -55,7 +56,10 @@ pub(crate) fn memory_estimate(
     let solver = options::solver(py, solver)?;
     let longest = at_least_if(py, "longest", longest, 1)?;
     let demand = match mesh.cast::<Mesh>() {
-        Ok(mesh) if tool == Tool::FillHoles => tools::filling_demand(mesh.get().inner(), longest),
+        Ok(mesh) if tool == Tool::FillHoles => {
+            let mesh = mesh.get().inner();
+            doorway::call_briefly(py, || tools::filling_demand(mesh, longest))?
+        }
         _ => Demand::new(tool, n_vertices, n_faces),
     };
     Ok(demand.with_columns(n_columns, solver.is_clarabel()).estimate())

@@ -57,7 +57,7 @@ impl Mesh {
         };
         let faces = read_faces(faces, Some(vertices.len()))?;
         let demand = making(vertices.len(), faces.len());
-        doorway::call_sized(py, demand, || Ok(core::Mesh::new(vertices, faces)?)).map(Self::new)
+        doorway::call_sized(py, demand, || core::Mesh::new(vertices, faces)).map(Self::new)
     }
 
     /// A mesh known by its edge lengths only: lengths (m,3), column i opposite corner i of the face.
@@ -85,7 +85,7 @@ impl Mesh {
         let lengths = floats("lengths", lengths)?.rows(py, "lengths")?;
         let most = || faces.iter().flatten().max().map_or(0, |&v| v as usize + 1);
         let demand = making(n_vertices.unwrap_or_else(most), faces.len());
-        doorway::call_sized(py, demand, || Ok(core::Mesh::from_edge_lengths(faces, lengths, n_vertices)?))
+        doorway::call_sized(py, demand, || core::Mesh::from_edge_lengths(faces, lengths, n_vertices))
             .map(Self::new)
     }
 
@@ -128,7 +128,7 @@ impl Mesh {
             return MeshReport::new(py, &report);
         }
         let demand = self.inner.demand(Tool::Report);
-        let report = Arc::new(doorway::call_sized(py, demand, || Ok(core::report(&self.inner)))?);
+        let report = Arc::new(doorway::call_sized(py, demand, || core::report(&self.inner))?);
         if let Ok(mut kept) = self.report.try_lock() {
             *kept = Some(Arc::clone(&report));
         }

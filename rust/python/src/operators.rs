@@ -127,9 +127,9 @@ pub(crate) fn intrinsic_delaunay(py: Python<'_>, mesh: &Mesh) -> PyResult<Mesh> 
     let flipped = doorway::call_sized(py, mesh.demand(Tool::Delaunay), || {
         let (unit, connectivity) = (mesh.unit(), mesh.connectivity());
         let (connectivity, mut lengths, _) =
-            intrinsic::delaunay_flips(connectivity, mesh.measured(unit)?.edge_lengths());
+            intrinsic::delaunay_flips(connectivity, mesh.measured(unit)?.edge_lengths())?;
         unit.restore_all(lengths.iter_mut().flatten());
-        Ok(core::Mesh::from_connectivity(connectivity, lengths)?)
+        core::Mesh::from_connectivity(connectivity, lengths)
     })?;
     Ok(Mesh::new(flipped))
 }
@@ -139,6 +139,6 @@ pub(crate) fn intrinsic_delaunay(py: Python<'_>, mesh: &Mesh) -> PyResult<Mesh> 
 #[pyfunction]
 pub(crate) fn boundary_loops<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Vec<Bound<'py, PyArray1<i32>>>> {
     let demand = mesh.inner().demand(Tool::FindHoles);
-    let loops = doorway::call_sized(py, demand, || Ok(core::boundary_loops(mesh.inner().connectivity())))?;
+    let loops = doorway::call_sized(py, demand, || core::boundary_loops(mesh.inner().connectivity()))?;
     loops.iter().map(|vertices| index_array(py, vertices)).collect()
 }

@@ -2,9 +2,7 @@
 
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
-use ridgeform_core::error::MeshError;
 use ridgeform_core::mesh::{orient as orient_faces, Connectivity, Weld};
-use ridgeform_core::Error;
 
 use crate::arrays::{finite_floats, float_rows, index_array, index_rows};
 use crate::doorway;
@@ -52,8 +50,8 @@ pub(crate) fn weld<'py>(
     let faces = read_faces(faces, Some(vertices.len()))?;
     let (vertices, faces, index) = doorway::call_briefly(py, || {
         let connectivity = Connectivity::new(faces, vertices.len())?;
-        Ok(match Weld::of_seams(&connectivity, &vertices, tolerance) {
-            Some(weld) => (weld.firsts(&vertices), weld.faces(connectivity.faces()), weld.vertex),
+        Ok(match Weld::of_seams(&connectivity, &vertices, tolerance)? {
+            Some(weld) => (weld.firsts(&vertices)?, weld.faces(connectivity.faces())?, weld.vertex),
             None => {
                 let index = (0..vertices.len() as u32).collect();
                 (vertices, connectivity.faces().to_vec(), index)
@@ -89,8 +87,6 @@ pub(crate) fn orient<'py>(
 ) -> PyResult<(Bound<'py, PyArray2<i32>>, Bound<'py, PyArray1<bool>>)> {
     let faces = read_faces(faces, None)?;
     let n_vertices = faces.iter().flatten().map(|&v| v as usize + 1).max().unwrap_or(0);
-    let (faces, flipped) = doorway::call_briefly(py, || {
-        orient_faces(faces, n_vertices).map_err(|error: MeshError| Error::from(error))
-    })?;
+    let (faces, flipped) = doorway::call_briefly(py, || orient_faces(faces, n_vertices))?;
     Ok((index_rows(py, &faces)?, flipped.into_pyarray(py)))
 }

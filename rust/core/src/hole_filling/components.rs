@@ -131,7 +131,7 @@ mod tests {
     fn small_holes_are_told_from_borders_by_the_faces_near_them() {
         let shape = pierced(&icosphere(5), &[[0.0, 0.0, 1.0], [0.2, 0.0, 0.98], [0.0, -1.0, 0.0]], 0.05);
         let mesh = shape.mesh().unwrap();
-        let loops = boundary_loops(mesh.connectivity());
+        let loops = boundary_loops(mesh.connectivity()).unwrap();
         assert_eq!(loops.len(), 3);
         let mut components = Components::new(mesh.connectivity(), mesh.positions().unwrap(), &loops);
         for vertices in &loops {
@@ -163,7 +163,7 @@ mod tests {
         let last = shape.faces.len() - 1;
         shape.faces[last].swap(0, 1);
         let mesh = shape.mesh().unwrap();
-        let loops = boundary_loops(mesh.connectivity());
+        let loops = boundary_loops(mesh.connectivity()).unwrap();
         let mut components = Components::new(mesh.connectivity(), mesh.positions().unwrap(), &loops);
         let number = components.of_face(0);
         assert_eq!(components.sheet_normal(number), None);

@@ -235,7 +235,7 @@ fn closed(
     // Nothing but the outline counts in the plane.
     let mut flat = polygon.part(&rim.places, vec![[0.0; 3]; rim.places.len()]);
     flat.points.iter_mut().for_each(|p| *p = plane.project(*p));
-    let coarse = triangulate(&flat, rims, progress);
+    let coarse = triangulate(&flat, rims, progress)?;
     progress.check()?;
     let looks_out = |corners: [Point; 3], least: f64| {
         let area = area_vector(corners);

@@ -4,7 +4,7 @@ use super::polygon::Polygon;
 use super::rims::Rims;
 use super::triangulation::{minimum_weight, TABLE_LIMIT};
 use crate::mesh::vector::{add, area_vector, cross, distance, dot, norm, scale, sub, unit, Point};
-use crate::Progress;
+use crate::{memory, Progress, Result};
 
 /// Vertices of the coarse polygon. Its table takes a quarter of the time of the largest full one.
 const COARSE: usize = 250;
@@ -34,12 +34,15 @@ pub(super) struct Triangulation {
 ///   grows in proportion to the length; 5000 vertices take some 0.5 s. The weight is then not the least
 ///   possible, but no fold across the hole is decided by less than all of it.
 /// - Where every triangulation needs an edge that is taken, a fan around one new point at the middle.
-pub(super) fn triangulate(polygon: &Polygon, rims: &Rims, progress: &Progress) -> Triangulation {
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub(super) fn triangulate(polygon: &Polygon, rims: &Rims, progress: &Progress) -> Result<Triangulation> {
     let mut result = Triangulation { extra: Vec::new(), faces: Vec::new() };
-    let places: Vec<usize> = (0..polygon.len()).collect();
+    let places: Vec<usize> = memory::gathered(0..polygon.len())?;
     let sizes = if polygon.len() <= TABLE_LIMIT { (TABLE_LIMIT, COARSE) } else { (PART_LIMIT, COARSE) };
-    add_part(polygon, &places, polygon.outside.clone(), rims, sizes, progress, &mut result);
-    result
+    add_part(polygon, &places, memory::twin(&polygon.outside)?, rims, sizes, progress, &mut result)?;
+    Ok(result)
 }
 
 /// Adds the triangles of the part of `polygon` at `places`, along a coarse polygon of `n_coarse` vertices if
@@ -52,19 +55,22 @@ fn add_part(
     (limit, n_coarse): (usize, usize),
     progress: &Progress,
     result: &mut Triangulation,
-) {
+) -> Result<()> {
     let part = polygon.part(places, outside);
     let whole = |local: u32| places[local as usize] as u32;
     if part.len() <= limit {
-        match minimum_weight(&part, rims, progress) {
-            Some(faces) => result.faces.extend(faces.into_iter().map(|face| face.map(whole))),
-            None => add_fan(polygon, places, result),
+        match minimum_weight(&part, rims, progress)? {
+            Some(faces) => {
+                memory::extend(&mut result.faces, faces.len())?;
+                result.faces.extend(faces.into_iter().map(|face| face.map(whole)));
+            }
+            None => add_fan(polygon, places, result)?,
         }
-        return;
+        return Ok(());
     }
     let samples = samples(&part, n_coarse);
     let coarse = coarse_polygon(&part, &samples);
-    let Some(faces) = minimum_weight(&coarse, rims, progress) else {
+    let Some(faces) = minimum_weight(&coarse, rims, progress)? else {
         return add_fan(polygon, places, result);
     };
     let normals: Vec<Point> =
@@ -76,15 +82,15 @@ fn add_part(
         .collect();
     for &[a, b, c] in &faces {
         if progress.is_cancelled() {
-            return;
+            return Ok(());
         }
         let (mut run, mut outside) = (Vec::new(), Vec::new());
         for [tail, head] in [[a, b], [b, c], [c, a]] {
             if (tail as usize + 1) % samples.len() == head as usize {
                 let (mut at, end) = (samples[tail as usize], samples[head as usize]);
                 while at != end {
-                    run.push(places[at]);
-                    outside.push(part.outside[at]);
+                    memory::push(&mut run, places[at])?;
+                    memory::push(&mut outside, part.outside[at])?;
                     at = (at + 1) % part.len();
                 }
             } else {
@@ -92,17 +98,20 @@ fn add_part(
                 outside.push(beyond.get(&[head, tail]).map_or([0.0; 3], |&f| normals[f]));
             }
         }
-        add_part(polygon, &run, outside, rims, (PART_LIMIT, PART_COARSE), progress, result);
+        add_part(polygon, &run, outside, rims, (PART_LIMIT, PART_COARSE), progress, result)?;
     }
+    Ok(())
 }
 
 /// Adds a fan around the mean of the part's vertices.
-fn add_fan(polygon: &Polygon, places: &[usize], result: &mut Triangulation) {
+fn add_fan(polygon: &Polygon, places: &[usize], result: &mut Triangulation) -> Result<()> {
     let sum = places.iter().fold([0.0; 3], |sum, &i| add(sum, polygon.points[i]));
     let center = (polygon.len() + result.extra.len()) as u32;
     result.extra.push(scale(sum, 1.0 / places.len() as f64));
     let ends = places.iter().zip(places.iter().cycle().skip(1));
+    memory::extend(&mut result.faces, places.len())?;
     result.faces.extend(ends.map(|(&a, &b)| [a as u32, b as u32, center]));
+    Ok(())
 }
 
 /// So many places of the polygon, equally spaced by a measure that is half length and half turning angle, so
@@ -155,7 +164,7 @@ mod tests {
         let rims = Rims::new(&mesh, &loops, &faces_at(&mesh, &loops).unwrap()).unwrap();
         let polygon = Polygon::new(mesh.positions().unwrap(), &rim, &rims).unwrap_or_else(|_| unreachable!());
         TRIED.set(0);
-        let found = triangulate(&polygon, &rims, &Progress::new());
+        let found = triangulate(&polygon, &rims, &Progress::new()).unwrap();
         assert_eq!((found.faces.len(), found.extra.len()), (n - 2, 0));
         TRIED.get()
     }

@@ -11,7 +11,7 @@ use crate::error::{MeshError, Refusal};
 use crate::mesh::vector::{area_vector, distance, dot, norm, place, unit, Point};
 use crate::mesh::{boundary_walks, cycle, loop_area_vector, Connectivity, Mesh, Working};
 use crate::remesh::closest::closest_on_segment;
-use crate::Result;
+use crate::{memory, Result};
 
 /// A loop is the outer border of its surface if the faces along it lie inside it, seen along its area vector:
 /// if they show more than this part of their area there, with the sign of the side that they show. A sheet's
@@ -46,10 +46,10 @@ pub fn find_holes(mesh: &Mesh) -> Result<Vec<Hole>> {
     let measured = mesh.measured(mesh.unit())?;
     let working = Working::new(&measured)?;
     let mut holes = holes_of(working.mesh())?;
-    let seams = working.seam_edges();
+    let seams = working.seam_edges()?;
     for hole in &mut holes {
         let own = |edge: [u32; 2]| seams.get(&edge).map_or_else(|| working.original(edge[0]), |own| own[0]);
-        hole.vertices = cycle(&hole.vertices).map(own).collect();
+        hole.vertices = memory::sifted(cycle(&hole.vertices).map(own))?;
     }
     Ok(holes)
 }
@@ -58,11 +58,11 @@ pub fn find_holes(mesh: &Mesh) -> Result<Vec<Hole>> {
 pub(crate) fn holes_of(mesh: &Mesh) -> Result<Vec<Hole>> {
     let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
     let connectivity = mesh.connectivity();
-    let halfedges: HashMap<[u32; 2], usize> =
-        connectivity.boundary().map(|h| ([connectivity.tail(h), connectivity.head(h)], h)).collect();
-    let walks = boundary_walks(connectivity, Some(positions));
+    let ends = |h: usize| ([connectivity.tail(h), connectivity.head(h)], h);
+    let halfedges: HashMap<[u32; 2], usize> = memory::mapped(connectivity.boundary().map(ends))?;
+    let walks = boundary_walks(connectivity, Some(positions))?;
     let mut components = Components::new(connectivity, positions, &walks.loops);
-    let mut holes: Vec<Hole> = Vec::with_capacity(walks.loops.len() + walks.chains.len());
+    let mut holes: Vec<Hole> = memory::room(walks.loops.len() + walks.chains.len())?;
     let mut undecided = Vec::new();
     for vertices in walks.loops {
         let refusal = refusal(&vertices, positions, connectivity, &halfedges);
@@ -72,7 +72,7 @@ pub(crate) fn holes_of(mesh: &Mesh) -> Result<Vec<Hole>> {
             Side::Unknown
         };
         if side == Side::Unknown {
-            undecided.push(holes.len());
+            memory::push(&mut undecided, holes.len())?;
         }
         holes.push(Hole { vertices, is_outer_border: side == Side::Inside, refusal });
     }
@@ -82,9 +82,9 @@ pub(crate) fn holes_of(mesh: &Mesh) -> Result<Vec<Hole>> {
     };
     let several = holes.len() > 1;
     let mut owner = |hole: &Hole| face(hole).map(|face| components.of_face(face));
-    let mut owners = vec![None; holes.len()];
+    let mut owners = memory::repeated(None, holes.len())?;
     if !undecided.is_empty() || several && holes.iter().any(|hole| hole.is_outer_border) {
-        owners = holes.iter().map(&mut owner).collect();
+        owners = memory::gathered(holes.iter().map(&mut owner))?;
     }
     let mut outer: BTreeMap<usize, (f64, usize)> = BTreeMap::new();
     let decided: HashSet<Option<usize>> =

@@ -129,7 +129,7 @@ fn fill_one(
             return Ok(Patch { vertices, faces: numbered(faces), is_flat: true, lid_normal });
         }
     }
-    let flat = long_loops::triangulate(&polygon, rims, progress);
+    let flat = long_loops::triangulate(&polygon, rims, progress)?;
     progress.check()?;
     let points: Vec<Point> = polygon.points.iter().chain(&flat.extra).copied().collect();
     let area: f64 = flat.faces.iter().map(|face| norm(area_vector(face.map(|v| points[v as usize])))).sum();

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, SQRT_2};
 
 use crate::memory;
 use crate::mesh::vector::{centroid, distance, dot, norm, quality};
-use crate::mesh::{edge_lengths, triangle};
+use crate::mesh::{lengths_of, triangle};
 use crate::remesh::guard;
 use crate::remesh::{budget, EditableMesh};
 use crate::shape_guard::SLIVER;
@@ -95,7 +95,7 @@ fn flip_to_delaunay(mesh: &mut EditableMesh) -> Result<()> {
 /// By how much the angles opposite the edge exceed π.
 fn excess(mesh: &EditableMesh, a: u32, b: u32) -> f64 {
     let angle = |tip: u32| {
-        let lengths = edge_lengths(&[[0, 1, 2]], &mesh.corners([tip, a, b]))[0];
+        let lengths = lengths_of(&mesh.corners([tip, a, b]));
         triangle::angles(lengths)[0]
     };
     mesh.wings(a, b).map_or(-1.0, |wings| wings.tips.into_iter().map(angle).sum::<f64>() - PI)

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::polygon::Polygon;
 use super::rims::Rims;
 use crate::mesh::vector::{area_vector, distance, dot, norm, scale, Point};
-use crate::Progress;
+use crate::{memory, Progress, Result};
 
 /// Polygons of up to this many vertices are triangulated by the full table, whose time grows with the cube:
 /// some 0.5 s here. Longer ones go through [`super::long_loops`].
@@ -60,37 +60,41 @@ thread_local! {
 /// The weight of a triangulation is its largest dihedral angle, those across the polygon's own edges
 /// included, then its area (Liepa 2003, section 3), with a small share of squared edge lengths. A degenerate
 /// triangle is worse than any fold.
-pub(super) fn minimum_weight(polygon: &Polygon, rims: &Rims, progress: &Progress) -> Option<Vec<[u32; 3]>> {
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub(super) fn minimum_weight(
+    polygon: &Polygon,
+    rims: &Rims,
+    progress: &Progress,
+) -> Result<Option<Vec<[u32; 3]>>> {
     let n = polygon.len();
     #[cfg(test)]
     TRIED.set(TRIED.get() + n * n * n / 6);
     let empty = Cell { weight: IMPOSSIBLE, tip: 0, normal: [0.0; 3] };
-    let mut table = vec![empty; n * n];
+    let mut table = memory::repeated(empty, n * n)?;
     for i in 0..n {
         table[i * n + (i + 1) % n] =
             Cell { weight: Weight { fold: 0, size: 0.0 }, tip: 0, normal: polygon.outside[i] };
     }
     for span in 2..n {
         if progress.is_cancelled() {
-            return None;
+            return Ok(None);
         }
-        let row: Vec<Cell> = (0..n - span)
-            .into_par_iter()
-            .with_min_len(32)
-            .map(|i| {
-                let j = i + span;
-                if span < n - 1 && rims.is_taken(polygon.vertices[i], polygon.vertices[j]) {
-                    empty
-                } else {
-                    best_cell(polygon, &table, i, j)
-                }
-            })
-            .collect();
+        let best = |i: usize| {
+            let j = i + span;
+            if span < n - 1 && rims.is_taken(polygon.vertices[i], polygon.vertices[j]) {
+                empty
+            } else {
+                best_cell(polygon, &table, i, j)
+            }
+        };
+        let row: Vec<Cell> = memory::joined((0..n - span).into_par_iter().with_min_len(32).map(best))?;
         for (i, cell) in row.into_iter().enumerate() {
             table[i * n + i + span] = cell;
         }
     }
-    triangles(&table, n)
+    Ok(triangles(&table, n))
 }
 
 /// The best triangulation from place `i` to place `j`, all shorter ones being known.

@@ -2,6 +2,7 @@
 
 use crate::mesh::triangle::{apex, area, is_degenerate, twice_dot};
 use crate::mesh::{Connectivity, Flip};
+use crate::{memory, Result};
 
 /// An edge is flipped where its opposite angles exceed π by more than this, in radians: above rounding (some
 /// 1e-15 in good triangles, 1e-8 in the worst), so that four points on a circle do not flip forever.
@@ -17,11 +18,13 @@ const FLIPS_PER_FACE: usize = 100;
 /// Edges without a twin stay. An edge stays too, Delaunay or not, if its flip would make a degenerate
 /// triangle ([`is_degenerate`]); mollified lengths make that rare. Faces may come out with a repeated vertex
 /// or glued to a neighbor along two edges; the connectivity carries its twins, so that is no harm.
-#[must_use]
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
 pub fn delaunay_flips(
     connectivity: &Connectivity,
     lengths: &[[f64; 3]],
-) -> (Connectivity, Vec<[f64; 3]>, usize) {
+) -> Result<(Connectivity, Vec<[f64; 3]>, usize)> {
     delaunay_flips_carrying(connectivity, lengths, &mut [])
 }
 
@@ -30,13 +33,17 @@ pub fn delaunay_flips(
 /// their value.
 ///
 /// `face_values` has an entry a face, or none at all.
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
 pub fn delaunay_flips_carrying(
     connectivity: &Connectivity,
     lengths: &[[f64; 3]],
     face_values: &mut [f64],
-) -> (Connectivity, Vec<[f64; 3]>, usize) {
-    let mut surface = Surface { connectivity: connectivity.clone(), lengths: lengths.to_vec() };
-    let mut stack: Vec<usize> = connectivity.edges().filter(|&h| connectivity.twin(h).is_some()).collect();
+) -> Result<(Connectivity, Vec<[f64; 3]>, usize)> {
+    let mut surface = Surface { connectivity: connectivity.copied()?, lengths: memory::twin(lengths)? };
+    let inner = connectivity.edges().filter(|&h| connectivity.twin(h).is_some());
+    let mut stack: Vec<usize> = memory::sifted(inner)?;
     let limit = FLIPS_PER_FACE * connectivity.n_faces();
     let mut n_flips = 0;
     while let Some(h) = stack.pop() {
@@ -48,11 +55,12 @@ pub fn delaunay_flips_carrying(
                 if let (Some(faces), Some(areas), false) = (pair, areas, face_values.is_empty()) {
                     average(face_values, faces, areas);
                 }
+                memory::extend(&mut stack, 4)?;
                 stack.extend(flip.outer.map(|(_, new)| new));
             }
         }
     }
-    (surface.connectivity, surface.lengths, n_flips)
+    Ok((surface.connectivity, surface.lengths, n_flips))
 }
 
 /// Gives two faces the mean of their values by area; equal values stay to the last bit.

@@ -4,6 +4,7 @@ use crate::buckets::Buckets;
 use crate::mesh::vector::{add, area_vector, norm, unit, Point};
 use crate::mesh::{edge_lengths, Connectivity};
 use crate::surfaces::Samples;
+use crate::{memory, Result};
 
 /// A mesh with noise.
 pub struct Domain<'a> {
@@ -28,13 +29,15 @@ pub struct Domain<'a> {
 
 impl<'a> Domain<'a> {
     /// A mesh whose noise has standard deviation `sigma` along the normal, which is not 0.
-    #[must_use]
-    pub fn new(connectivity: &'a Connectivity, positions: &'a [Point], sigma: f64) -> Self {
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing, here and below.
+    pub fn new(connectivity: &'a Connectivity, positions: &'a [Point], sigma: f64) -> Result<Self> {
         let faces = connectivity.faces();
-        let lengths = edge_lengths(faces, positions);
-        let areas: Vec<Point> =
-            faces.iter().map(|face| area_vector(face.map(|v| positions[v as usize]))).collect();
-        let mut around = vec![0.0; positions.len()];
+        let lengths = edge_lengths(faces, positions)?;
+        let area = |face: &[u32; 3]| area_vector(face.map(|v| positions[v as usize]));
+        let areas: Vec<Point> = memory::gathered(faces.iter().map(area))?;
+        let mut around = memory::repeated(0.0, positions.len())?;
         for (face, area) in faces.iter().zip(&areas) {
             face.iter().for_each(|&v| around[v as usize] += norm(*area));
         }
@@ -44,9 +47,9 @@ impl<'a> Domain<'a> {
             for (f, face) in (0_u32..).zip(faces) {
                 face.iter().for_each(|&v| visit(v as usize, f));
             }
-        });
+        })?;
         let used = around.iter().filter(|area| **area > 0.0).count();
-        Self {
+        Ok(Self {
             connectivity,
             positions,
             lengths,
@@ -56,7 +59,7 @@ impl<'a> Domain<'a> {
             kappa: 0.5 * (used.max(2) as f64).ln(),
             around,
             faces_at,
-        }
+        })
     }
 
     /// The part of vertex `v` that is of face `f`, one of its faces.
@@ -83,10 +86,12 @@ impl<'a> Domain<'a> {
 
     /// The vertices of some faces as samples: weights are the faces' shares of them,
     /// normals the faces' mean there.
-    #[must_use]
-    pub fn samples(&self, faces: &[u32]) -> Samples {
-        let mut corners: Vec<(u32, u32)> =
-            faces.iter().flat_map(|&f| self.connectivity.faces()[f as usize].map(|v| (v, f))).collect();
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`].
+    pub fn samples(&self, faces: &[u32]) -> Result<Samples> {
+        let mut corners: Vec<(u32, u32)> = memory::room(3 * faces.len())?;
+        corners.extend(faces.iter().flat_map(|&f| self.connectivity.faces()[f as usize].map(|v| (v, f))));
         corners.sort_unstable();
         let mut samples = Samples::default();
         for same in corners.chunk_by(|a, b| a.0 == b.0) {
@@ -94,9 +99,9 @@ impl<'a> Domain<'a> {
             let weight: f64 = same.iter().map(|&(_, f)| self.share(f as usize, v)).sum();
             let normal = same.iter().fold([0.0; 3], |sum, &(_, f)| add(sum, self.areas[f as usize]));
             if weight > 0.0 {
-                samples.push(self.positions[v as usize], unit(normal), weight);
+                samples.push(self.positions[v as usize], unit(normal), weight)?;
             }
         }
-        samples
+        Ok(samples)
     }
 }

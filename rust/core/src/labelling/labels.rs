@@ -3,6 +3,7 @@
 use super::constants::{BORDER, FREE_MISFIT};
 use super::Domain;
 use crate::surfaces::{misfit, Surface};
+use crate::{memory, Result};
 
 /// No label: the face takes no part.
 pub const NONE: u32 = u32::MAX;
@@ -32,6 +33,18 @@ pub struct Piece {
 }
 
 impl Labelling {
+    /// A copy.
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing.
+    pub(super) fn copied(&self) -> Result<Self> {
+        let mut pieces = memory::room(self.pieces.len())?;
+        for piece in &self.pieces {
+            pieces.push(Piece { faces: memory::twin(&piece.faces)?, ..*piece });
+        }
+        Ok(Self { labels: memory::twin(&self.labels)?, pieces })
+    }
+
     /// `E` of these labels and surfaces.
     #[must_use]
     pub fn energy(&self, domain: &Domain<'_>) -> f64 {

@@ -9,7 +9,7 @@ use super::labels::{Labelling, Piece, NONE};
 use super::pieces::best;
 use super::Domain;
 use crate::progress::Progress;
-use crate::Result;
+use crate::{memory, Result};
 
 /// Merges as long as the energy falls.
 ///
@@ -18,21 +18,18 @@ use crate::Result;
 pub(super) fn merge(domain: &Domain<'_>, state: &mut Labelling, progress: &Progress) -> Result<()> {
     let mut borders = borders(domain, &state.labels);
     let mut gains: BTreeMap<(u32, u32), f64> = BTreeMap::new();
-    let mut asked: Vec<(u32, u32)> = borders.keys().copied().collect();
+    let mut asked: Vec<(u32, u32)> = memory::gathered(borders.keys().copied())?;
     loop {
-        let found: Vec<((u32, u32), f64)> = asked
-            .par_iter()
-            .map(|&pair| {
-                progress.check()?;
-                Ok((pair, judged(domain, state, pair, borders[&pair])))
-            })
-            .collect::<Result<_>>()?;
-        gains.extend(found);
+        let found = asked.par_iter().map(|&pair| {
+            progress.check()?;
+            Ok((pair, judged(domain, state, pair, borders[&pair])?))
+        });
+        gains.extend(memory::all(memory::joined(found)?)?);
         let best = gains.iter().filter(|(_, gain)| **gain > 0.0).max_by(|a, b| a.1.total_cmp(b.1));
         let Some((&(a, b), _)) = best else { break };
         gains.remove(&(a, b));
-        let joined = union(state, (a, b));
-        let piece = Piece::of(domain, joined);
+        let joined = union(state, (a, b))?;
+        let piece = Piece::of(domain, joined)?;
         let parts = state.pieces[a as usize].energy + state.pieces[b as usize].energy;
         let border = borders.get(&(a, b)).copied().unwrap_or(0.0);
         asked = Vec::new();
@@ -74,17 +71,19 @@ fn borders(domain: &Domain<'_>, labels: &[u32]) -> BTreeMap<(u32, u32), f64> {
     borders
 }
 
-fn union(state: &Labelling, (a, b): (u32, u32)) -> Vec<u32> {
-    let mut faces = state.pieces[a as usize].faces.clone();
-    faces.extend_from_slice(&state.pieces[b as usize].faces);
+fn union(state: &Labelling, (a, b): (u32, u32)) -> Result<Vec<u32>> {
+    let [first, second] = [a, b].map(|label| &state.pieces[label as usize].faces);
+    let mut faces = memory::room(first.len() + second.len())?;
+    faces.extend_from_slice(first);
+    faces.extend_from_slice(second);
     faces.sort_unstable();
-    faces
+    Ok(faces)
 }
 
 /// By how much the energy would fall, about: surfaces are fitted to some of the points.
-fn judged(domain: &Domain<'_>, state: &Labelling, pair: (u32, u32), border: f64) -> f64 {
-    let samples = domain.samples(&union(state, pair));
+fn judged(domain: &Domain<'_>, state: &Labelling, pair: (u32, u32), border: f64) -> Result<f64> {
+    let samples = domain.samples(&union(state, pair)?)?;
     let limit = state.pieces[pair.0 as usize].energy + state.pieces[pair.1 as usize].energy + border;
-    let thin = samples.thinned(JUDGED_BY);
-    best(domain, &thin, limit).map_or(0.0, |(_, energy)| limit - energy)
+    let thin = samples.thinned(JUDGED_BY)?;
+    Ok(best(domain, &thin, limit)?.map_or(0.0, |(_, energy)| limit - energy))
 }

@@ -26,7 +26,7 @@ pub use labels::{Labelling, Piece, NONE};
 use constants::MOST_ROUNDS;
 
 use crate::progress::Progress;
-use crate::Result;
+use crate::{memory, Result};
 
 /// The labels of the faces of a `domain` that begin as `start` (negative: takes no part) and follow the
 /// energy downhill.
@@ -34,12 +34,12 @@ use crate::Result;
 /// # Errors
 /// [`crate::Error::Cancelled`].
 pub fn labelling(domain: &Domain<'_>, start: &[i32], progress: &Progress) -> Result<Labelling> {
-    let labels = start.iter().map(|&l| u32::try_from(l).unwrap_or(NONE)).collect();
+    let labels = memory::gathered(start.iter().map(|&l| u32::try_from(l).unwrap_or(NONE)))?;
     let mut state = Labelling { labels, pieces: Vec::new() };
     state.fit_all(domain, progress)?;
     let mut energy = state.energy(domain);
     for _ in 0..MOST_ROUNDS {
-        let before = state.clone();
+        let before = state.copied()?;
         merge::merge(domain, &mut state, progress)?;
         relabel::relabel(domain, &mut state, progress)?;
         state.fit_all(domain, progress)?;

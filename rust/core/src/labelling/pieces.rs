@@ -7,27 +7,30 @@ use super::labels::{Labelling, Piece, NONE};
 use super::Domain;
 use crate::progress::Progress;
 use crate::surfaces::{fit, FittedSurface, Kind, Samples, Surface};
-use crate::Result;
+use crate::{memory, Result};
 
 impl Piece {
     /// The piece of these faces on the surface that costs least, or free.
-    pub(super) fn of(domain: &Domain<'_>, faces: Vec<u32>) -> Self {
-        let samples = domain.samples(&faces);
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing, here and below.
+    pub(super) fn of(domain: &Domain<'_>, faces: Vec<u32>) -> Result<Self> {
+        let samples = domain.samples(&faces)?;
         let free = FREE_MISFIT * samples.total();
-        match best(domain, &samples, free) {
+        Ok(match best(domain, &samples, free)? {
             Some((found, energy)) => {
                 let (side, rms) = (samples.side(&found), samples.rms(&found));
                 Self { faces, surface: Some(found), side, rms, energy }
             }
             None => Self { faces, surface: None, side: 1.0, rms: 0.0, energy: free },
-        }
+        })
     }
 
     /// The same faces with a surface fitted again, where that costs less.
-    fn again(domain: &Domain<'_>, faces: Vec<u32>, old: Option<&Surface>) -> Self {
-        let mut piece = Self::of(domain, faces);
+    fn again(domain: &Domain<'_>, faces: Vec<u32>, old: Option<&Surface>) -> Result<Self> {
+        let mut piece = Self::of(domain, faces)?;
         if let Some(old) = old {
-            let samples = domain.samples(&piece.faces);
+            let samples = domain.samples(&piece.faces)?;
             let kept = samples.cost(old, domain.sigma) + domain.kappa * old.kind().n_parameters() as f64;
             if kept < piece.energy {
                 piece.surface = Some(*old);
@@ -35,13 +38,13 @@ impl Piece {
                 (piece.side, piece.rms) = (samples.side(old), samples.rms(old));
             }
         }
-        piece
+        Ok(piece)
     }
 }
 
 /// The surface with the least energy, and that energy, if it is under `limit`.
-pub(super) fn best(domain: &Domain<'_>, samples: &Samples, limit: f64) -> Option<(Surface, f64)> {
-    let thin = samples.thinned(ENOUGH);
+pub(super) fn best(domain: &Domain<'_>, samples: &Samples, limit: f64) -> Result<Option<(Surface, f64)>> {
+    let thin = samples.thinned(ENOUGH)?;
     let price = |kind: Kind| domain.kappa * kind.n_parameters() as f64;
     let mut found: Option<(Kind, FittedSurface)> = None;
     let mut least = limit;
@@ -50,7 +53,7 @@ pub(super) fn best(domain: &Domain<'_>, samples: &Samples, limit: f64) -> Option
         if price(kind) >= least {
             break;
         }
-        let Some(fitted) = fit(kind, &thin, domain.sigma) else { continue };
+        let Some(fitted) = fit(kind, &thin, domain.sigma)? else { continue };
         let energy = fitted.cost + price(kind);
         if energy < least {
             (found, least) = (Some((kind, fitted)), energy);
@@ -60,12 +63,13 @@ pub(super) fn best(domain: &Domain<'_>, samples: &Samples, limit: f64) -> Option
             break;
         }
     }
-    let (kind, mut fitted) = found?;
+    let Some((kind, mut fitted)) = found else { return Ok(None) };
     if thin.len() < samples.len() {
-        fitted = fit(kind, samples, domain.sigma)?;
+        let Some(whole) = fit(kind, samples, domain.sigma)? else { return Ok(None) };
+        fitted = whole;
         least = fitted.cost + price(kind);
     }
-    (least < limit).then_some((fitted.surface, least))
+    Ok((least < limit).then_some((fitted.surface, least)))
 }
 
 impl Labelling {
@@ -75,27 +79,25 @@ impl Labelling {
     /// [`crate::Error::Cancelled`].
     pub(super) fn fit_all(&mut self, domain: &Domain<'_>, progress: &Progress) -> Result<()> {
         let n = self.labels.iter().filter(|l| **l != NONE).map(|l| *l as usize + 1).max().unwrap_or(0);
-        let mut names = vec![NONE; n];
+        let mut names = memory::repeated(NONE, n)?;
         let mut members: Vec<Vec<u32>> = Vec::new();
         let mut old: Vec<Option<Surface>> = Vec::new();
         for (f, label) in (0_u32..).zip(&mut self.labels).filter(|(_, label)| **label != NONE) {
             let name = &mut names[*label as usize];
             if *name == NONE {
                 *name = members.len() as u32;
-                members.push(Vec::new());
+                memory::push(&mut members, Vec::new())?;
+                memory::extend(&mut old, 1)?;
                 old.push(self.pieces.get(*label as usize).and_then(|piece| piece.surface));
             }
             *label = *name;
-            members[*name as usize].push(f);
+            memory::push(&mut members[*name as usize], f)?;
         }
-        self.pieces = members
-            .into_par_iter()
-            .zip(old)
-            .map(|(faces, old)| {
-                progress.check()?;
-                Ok(Piece::again(domain, faces, old.as_ref()))
-            })
-            .collect::<Result<_>>()?;
+        let again = |(faces, old): (Vec<u32>, Option<Surface>)| {
+            progress.check()?;
+            Piece::again(domain, faces, old.as_ref())
+        };
+        self.pieces = memory::all(memory::joined(members.into_par_iter().zip(old).map(again))?)?;
         Ok(())
     }
 }

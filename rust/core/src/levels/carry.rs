@@ -7,6 +7,7 @@ use crate::error::MeshError;
 use crate::mesh::vector::{add, area_vector, dot, scale, sub, Point};
 use crate::mesh::Mesh;
 use crate::remesh::closest::closest_on_triangle;
+use crate::{memory, Result};
 
 /// For every vertex of a fine mesh that is not held a point of a coarser one: three of its vertices with
 /// weights that sum to one.
@@ -28,20 +29,15 @@ impl Carry {
     /// there to ever closer faces, so that no point is found across a gap or on the other side of a sheet.
     ///
     /// # Errors
-    /// [`MeshError::NoPositions`].
-    pub(super) fn new(
-        fine: &[Point],
-        parents: &[u32],
-        is_held: &[bool],
-        coarse: &Mesh,
-    ) -> Result<Self, MeshError> {
+    /// [`MeshError::NoPositions`]; [`crate::Error::Solve`] where memory is missing, here and below.
+    pub(super) fn new(fine: &[Point], parents: &[u32], is_held: &[bool], coarse: &Mesh) -> Result<Self> {
         let points = coarse.positions().ok_or(MeshError::NoPositions)?;
         let faces = coarse.connectivity().faces();
         let around = Buckets::new(points.len(), |visit| {
             for (f, face) in (0_u32..).zip(faces) {
                 face.iter().for_each(|&v| visit(v as usize, f));
             }
-        });
+        })?;
         let corners = |f: u32| faces[f as usize].map(|v| points[v as usize]);
         let place = |p: Point, parent: u32| {
             let mut best: Option<(f64, u32, Point)> = None;
@@ -64,21 +60,14 @@ impl Carry {
                 from = &faces[f as usize];
             }
         };
-        let places = fine
-            .par_iter()
-            .zip(parents)
-            .zip(is_held)
-            .map(
-                |((&p, &parent), &is_held)| {
-                    if is_held || parent == u32::MAX {
-                        None
-                    } else {
-                        place(p, parent)
-                    }
-                },
-            )
-            .collect();
-        Ok(Self { places })
+        let carried = |((&p, &parent), &is_held): ((&Point, &u32), &bool)| {
+            if is_held || parent == u32::MAX {
+                None
+            } else {
+                place(p, parent)
+            }
+        };
+        Ok(Self { places: memory::joined(fine.par_iter().zip(parents).zip(is_held).map(carried))? })
     }
 
     /// For every vertex the coarse face that its point is on, and the weights of that face's corners; nothing
@@ -88,20 +77,22 @@ impl Carry {
     }
 
     /// What `coarse` has at the vertices' points; `none` where a vertex is held or has no faces.
-    #[must_use]
-    pub fn points(&self, coarse: &[Point], none: Point) -> Vec<Point> {
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`].
+    pub fn points(&self, coarse: &[Point], none: Point) -> Result<Vec<Point>> {
         let value = |Place { corners, weights, .. }: &Place| {
             (0..3).fold([0.0; 3], |sum, k| add(sum, scale(coarse[corners[k] as usize], weights[k])))
         };
-        self.places.par_iter().map(|place| place.as_ref().map_or(none, value)).collect()
+        Ok(memory::joined(self.places.par_iter().map(|place| place.as_ref().map_or(none, value)))?)
     }
 
     /// For each of the `fine` faces, of the coarse ones that its corners lie on the one that is closest to
     /// its middle; `None` where they lie on none.
     ///
     /// # Errors
-    /// [`MeshError::NoPositions`].
-    pub fn faces(&self, fine: &Mesh, coarse: &Mesh) -> Result<Vec<Option<u32>>, MeshError> {
+    /// [`MeshError::NoPositions`]; [`crate::Error::Solve`] where memory is missing, here and below.
+    pub fn faces(&self, fine: &Mesh, coarse: &Mesh) -> Result<Vec<Option<u32>>> {
         let positions = fine.positions().ok_or(MeshError::NoPositions)?;
         let points = coarse.positions().ok_or(MeshError::NoPositions)?;
         let corners = coarse.connectivity().faces();
@@ -115,13 +106,15 @@ impl Carry {
             let found = face.iter().filter_map(|&v| self.places[v as usize]).map(|place| place.face);
             found.min_by(|&f, &g| away(f).total_cmp(&away(g)))
         };
-        Ok(fine.connectivity().faces().par_iter().map(closest).collect())
+        Ok(memory::joined(fine.connectivity().faces().par_iter().map(closest))?)
     }
 
     /// The geometric mean of what the faces have that the corners of each of the `fine` faces lie on; 1 where
     /// none does.
-    #[must_use]
-    pub fn factors(&self, coarse: &[f64], fine: &[[u32; 3]]) -> Vec<f64> {
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`].
+    pub fn factors(&self, coarse: &[f64], fine: &[[u32; 3]]) -> Result<Vec<f64>> {
         let mean = |face: &[u32; 3]| {
             let places = face.iter().filter_map(|&v| self.places[v as usize]);
             let (sum, count) = places.fold((0.0, 0.0), |(sum, count), place| {
@@ -133,7 +126,7 @@ impl Carry {
                 1.0
             }
         };
-        fine.par_iter().map(mean).collect()
+        Ok(memory::joined(fine.par_iter().map(mean))?)
     }
 }
 

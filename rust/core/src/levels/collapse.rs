@@ -12,7 +12,7 @@ use crate::mesh::Connectivity;
 use crate::ordered::Ordered;
 use crate::remesh::EditableMesh;
 use crate::shape_guard::{is_thinned, is_turned};
-use crate::{Progress, Result};
+use crate::{memory, Progress, Result};
 
 /// How much a distance along the surface counts beside one away from it, squared: enough that flat regions
 /// get even triangles, too little to draw a vertex from a ridge.
@@ -68,18 +68,16 @@ impl Collapser {
         kept: Option<&[bool]>,
     ) -> Result<Self> {
         let n = positions.len();
-        let mesh = EditableMesh::new(positions.to_vec(), connectivity.faces().to_vec())?;
-        let mut quadrics: Vec<Quadric> =
-            (0..n as u32).into_par_iter().with_min_len(AT_ONCE).map(|v| quadric(&mesh, v)).collect();
+        let mesh = EditableMesh::new(memory::twin(positions)?, memory::twin(connectivity.faces())?)?;
+        let found = (0..n as u32).into_par_iter().with_min_len(AT_ONCE).map(|v| quadric(&mesh, v));
+        let mut quadrics: Vec<Quadric> = memory::joined(found)?;
         let manifold = (0..n as u32).into_par_iter().with_min_len(AT_ONCE).map(|v| mesh.is_manifold(v));
-        let mut kinds: Vec<Kind> = manifold
-            .enumerate()
-            .map(|(v, is_manifold)| Kind {
-                is_held: held.is_some_and(|held| held[v]),
-                is_border: false,
-                is_locked: !is_manifold || kept.is_some_and(|kept| kept[v]),
-            })
-            .collect();
+        let kind = |(v, is_manifold): (usize, bool)| Kind {
+            is_held: held.is_some_and(|held| held[v]),
+            is_border: false,
+            is_locked: !is_manifold || kept.is_some_and(|kept| kept[v]),
+        };
+        let mut kinds: Vec<Kind> = memory::joined(manifold.enumerate().map(kind))?;
         // A border is kept by the planes through its edges across their faces.
         for h in connectivity.boundary() {
             let [tail, head, tip] = [connectivity.tail(h), connectivity.head(h), connectivity.opposite(h)];
@@ -97,9 +95,9 @@ impl Collapser {
             quadrics,
             kinds,
             most: f64::INFINITY,
-            is_changed: vec![false; n],
-            into: (0..n as u32).collect(),
-            last: (0..n as u32).collect(),
+            is_changed: memory::repeated(false, n)?,
+            into: memory::numbers(n)?,
+            last: memory::numbers(n)?,
             mesh,
         })
     }
@@ -112,12 +110,12 @@ impl Collapser {
     /// Collapses edges until no more than `wanted` vertices are left, or none can any more.
     pub(super) fn reduce_to(&mut self, wanted: usize, progress: &Progress) -> Result<()> {
         self.most = MOST_AREA * self.area / wanted.max(1) as f64;
-        let mut changed = self.last.clone();
+        let mut changed = memory::twin(&self.last)?;
         let mut candidates: Vec<Candidate> = Vec::new();
         loop {
             changed.iter().for_each(|&v| self.is_changed[v as usize] = true);
             candidates.retain(|&(_, ends)| ends.iter().all(|&v| !self.is_changed[v as usize]));
-            candidates.extend(self.candidates_at(&changed));
+            self.add_candidates(&changed, &mut candidates)?;
             changed.iter().for_each(|&v| self.is_changed[v as usize] = false);
             changed.clear();
             let count = self.n_left.saturating_sub(wanted).min(candidates.len());
@@ -127,35 +125,41 @@ impl Collapser {
             if count < candidates.len() {
                 candidates.select_nth_unstable(count);
             }
-            let mut tried: Vec<Candidate> = candidates.drain(..count).collect();
+            let mut tried = memory::twin(&candidates[..count])?;
+            candidates.drain(..count);
             tried.par_sort_unstable();
             for (i, (_, [a, b])) in tried.into_iter().enumerate() {
                 if i.is_multiple_of(CHECK_EVERY) {
                     progress.check()?;
                 }
                 if !self.is_changed[a as usize] && !self.is_changed[b as usize] {
-                    self.collapse(a, b, &mut changed);
+                    self.collapse(a, b, &mut changed)?;
                 }
             }
         }
     }
 
     /// Which vertices of the last level are held.
-    pub(super) fn held(&self) -> Vec<bool> {
-        self.last.iter().map(|&v| self.kinds[v as usize].is_held).collect()
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing, here and below.
+    pub(super) fn held(&self) -> Result<Vec<bool>> {
+        Ok(memory::gathered(self.last.iter().map(|&v| self.kinds[v as usize].is_held))?)
     }
 
     /// Points and faces as they are now, and which of the points stands for each vertex of the last level.
-    pub(super) fn level(&mut self) -> (Vec<Point>, Vec<[u32; 3]>, Vec<u32>) {
-        let kept: Vec<u32> =
-            (0..self.mesh.n_vertices() as u32).filter(|&v| !self.mesh.faces_of(v).is_empty()).collect();
-        let mut number = vec![u32::MAX; self.mesh.n_vertices()];
+    #[allow(clippy::type_complexity)]
+    pub(super) fn level(&mut self) -> Result<(Vec<Point>, Vec<[u32; 3]>, Vec<u32>)> {
+        let used = (0..self.mesh.n_vertices() as u32).filter(|&v| !self.mesh.faces_of(v).is_empty());
+        let kept: Vec<u32> = memory::sifted(used)?;
+        let mut number = memory::repeated(u32::MAX, self.mesh.n_vertices())?;
         kept.iter().zip(0..).for_each(|(&v, new)| number[v as usize] = new);
-        let parents = self.last.iter().map(|&v| number[self.root(v) as usize]).collect();
-        let points = kept.iter().map(|&v| self.mesh.position(v)).collect();
-        let faces = self.mesh.faces().map(|(_, face)| face.map(|v| number[v as usize])).collect();
+        let parents = memory::gathered(self.last.iter().map(|&v| number[self.root(v) as usize]))?;
+        let points = memory::gathered(kept.iter().map(|&v| self.mesh.position(v)))?;
+        let faces = self.mesh.faces().map(|(_, face)| face.map(|v| number[v as usize]));
+        let faces = memory::sifted(faces)?;
         self.last = kept;
-        (points, faces, parents)
+        Ok((points, faces, parents))
     }
 
     fn root(&self, mut v: u32) -> u32 {
@@ -165,8 +169,8 @@ impl Collapser {
         v
     }
 
-    /// The edges at the vertices that have changed, each once.
-    fn candidates_at(&self, vertices: &[u32]) -> Vec<Candidate> {
+    /// Adds the edges at the vertices that have changed, each once.
+    fn add_candidates(&self, vertices: &[u32], candidates: &mut Vec<Candidate>) -> Result<()> {
         let at = |&v: &u32| {
             let others = self.mesh.neighbors(v).into_iter();
             others.filter(move |&w| v < w || !self.is_changed[w as usize]).filter_map(move |w| {
@@ -174,7 +178,14 @@ impl Collapser {
                 self.candidate(ends)
             })
         };
-        vertices.par_iter().with_min_len(AT_ONCE).flat_map_iter(at).collect()
+        // Parts that are small, and then all of them in order: a whole in one piece cannot be refused.
+        for many in vertices.chunks(AT_ONCE * AT_ONCE) {
+            let found = many.par_chunks(AT_ONCE).map(|few| few.iter().flat_map(at).collect());
+            let found: Vec<Vec<Candidate>> = memory::joined(found)?;
+            memory::extend(candidates, found.iter().map(Vec::len).sum())?;
+            candidates.extend(found.into_iter().flatten());
+        }
+        Ok(())
     }
 
     fn candidate(&self, [a, b]: [u32; 2]) -> Option<Candidate> {
@@ -210,20 +221,22 @@ impl Collapser {
 
     /// Makes two vertices one if that keeps the surface, and notes which have changed. A hub has not, it only
     /// has more faces.
-    fn collapse(&mut self, a: u32, b: u32, changed: &mut Vec<u32>) {
-        let Some(point) = self.place(a, b) else { return };
+    fn collapse(&mut self, a: u32, b: u32, changed: &mut Vec<u32>) -> Result<()> {
+        let Some(point) = self.place(a, b) else { return Ok(()) };
         // Into the one that stays, or that is on the border.
         let goes_to_a = self.stays(a) || !self.stays(b) && self.kinds[a as usize].is_border;
         let (from, to) = if goes_to_a { (b, a) } else { (a, b) };
         if !self.keeps_shape(from, to, point) || !self.mesh.collapse(from, to, point) {
-            return;
+            return Ok(());
         }
         self.quadrics[to as usize] = self.sum(from, to);
         self.into[from as usize] = to;
         self.n_left -= 1;
         let noted: &[u32] = if self.stays(to) { &[from] } else { &[from, to] };
+        memory::extend(changed, 2)?;
         changed.extend(noted);
         noted.iter().for_each(|&v| self.is_changed[v as usize] = true);
+        Ok(())
     }
 
     /// Whether no face that stays turns over, unless it lay folded over, and none becomes a thinner sliver

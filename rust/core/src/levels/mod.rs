@@ -14,7 +14,7 @@ use collapse::Collapser;
 use crate::error::MeshError;
 use crate::mesh::vector::Point;
 use crate::mesh::Mesh;
-use crate::{Progress, Result};
+use crate::{memory, Progress, Result};
 
 /// A level has this part of the vertices of the finer one: edges twice as long.
 const PART: f64 = 0.25;
@@ -36,8 +36,10 @@ pub struct Level {
 
 impl Level {
     /// The mean of what the vertices have that a vertex stands for.
-    #[must_use]
-    pub fn mean_of(&self, fine: &[f64]) -> Vec<f64> {
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing.
+    pub fn mean_of(&self, fine: &[f64]) -> Result<Vec<f64>> {
         let values = self.parents.iter().copied().zip(fine.iter().copied());
         means(self.mesh.connectivity().n_vertices(), values.filter(|(parent, _)| *parent != u32::MAX))
     }
@@ -45,26 +47,29 @@ impl Level {
 
 /// What faces have, as each level has it: the mean at a vertex of what it stands for, at a face of its
 /// corners.
-pub(crate) fn face_values(mesh: &Mesh, levels: &[Level], values: &[f64]) -> Vec<Vec<f64>> {
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub(crate) fn face_values(mesh: &Mesh, levels: &[Level], values: &[f64]) -> Result<Vec<Vec<f64>>> {
     let faces = mesh.connectivity().faces().iter().zip(values);
     let at_corners = faces.flat_map(|(face, &value)| face.map(|v| (v, value)));
-    let mut at_vertices = means(mesh.connectivity().n_vertices(), at_corners);
+    let mut at_vertices = means(mesh.connectivity().n_vertices(), at_corners)?;
     let on_level = |level: &Level| {
-        at_vertices = level.mean_of(&at_vertices);
+        at_vertices = level.mean_of(&at_vertices)?;
         let mean = |face: &[u32; 3]| face.iter().map(|&v| at_vertices[v as usize]).sum::<f64>() / 3.0;
-        level.mesh.connectivity().faces().iter().map(mean).collect()
+        Ok(memory::gathered(level.mesh.connectivity().faces().iter().map(mean))?)
     };
     levels.iter().map(on_level).collect()
 }
 
 /// The mean of the values of each of `n` vertices; 0 where one has none.
-fn means(n: usize, values: impl Iterator<Item = (u32, f64)>) -> Vec<f64> {
-    let (mut sums, mut counts) = (vec![0.0; n], vec![0_u32; n]);
+fn means(n: usize, values: impl Iterator<Item = (u32, f64)>) -> Result<Vec<f64>> {
+    let (mut sums, mut counts) = (memory::repeated(0.0, n)?, memory::repeated(0_u32, n)?);
     for (v, value) in values {
         sums[v as usize] += value;
         counts[v as usize] += 1;
     }
-    sums.iter().zip(counts).map(|(sum, count)| sum / f64::from(count.max(1))).collect()
+    Ok(memory::gathered(sums.iter().zip(counts).map(|(sum, count)| sum / f64::from(count.max(1))))?)
 }
 
 /// The levels of `mesh` above it, each coarser than the one before, down to the first with no more than
@@ -116,8 +121,8 @@ pub fn level(
 
 /// The level that has been reached above the `finer` mesh.
 fn made(collapser: &mut Collapser, finer: &Mesh) -> Result<Level> {
-    let is_held = collapser.held();
-    let (points, faces, parents) = collapser.level();
+    let is_held = collapser.held()?;
+    let (points, faces, parents) = collapser.level()?;
     let fine: &[Point] = finer.positions().ok_or(MeshError::NoPositions)?;
     let coarse = Mesh::new(points, faces)?;
     let carry = Carry::new(fine, &parents, &is_held, &coarse)?;

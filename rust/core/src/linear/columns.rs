@@ -23,6 +23,14 @@ impl Columns {
         Self { n_rows, n_columns, data: vec![0.0; n_rows * n_columns] }
     }
 
+    /// [`Columns::zeros`], refused where memory is missing.
+    ///
+    /// # Errors
+    /// [`crate::error::SolveError::Memory`].
+    pub(crate) fn try_zeros(n_rows: usize, n_columns: usize) -> Result<Self> {
+        Ok(Self { n_rows, n_columns, data: memory::repeated(0.0, n_rows * n_columns)? })
+    }
+
     /// One column.
     #[must_use]
     pub fn from_column(data: Vec<f64>) -> Self {

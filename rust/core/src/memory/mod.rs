@@ -18,7 +18,7 @@ pub use model::Tool;
 pub use threads::processors;
 pub(crate) use threads::room_for_threads;
 
-use std::collections::{BinaryHeap, HashMap, HashSet};
+use std::collections::{BinaryHeap, HashMap, HashSet, VecDeque};
 use std::hash::Hash;
 
 use rayon::prelude::*;
@@ -156,6 +156,16 @@ pub(crate) fn sifted<T>(values: impl IntoIterator<Item = T>) -> std::result::Res
     Ok(array)
 }
 
+/// The numbers from 0 to `n`, as [`room`].
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn numbers(n: usize) -> std::result::Result<Vec<u32>, SolveError> {
+    let mut array = room(n)?;
+    array.extend(0..n as u32);
+    Ok(array)
+}
+
 /// The values of a parallel iterator, as [`room`].
 ///
 /// # Errors
@@ -211,6 +221,21 @@ pub(crate) fn extend_map<K: Eq + Hash, V>(
     map.try_reserve(n_further).map_err(|_| SolveError::Memory { needed, limit: None })
 }
 
+/// The entries of a map that grows as it must.
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn mapped<K: Eq + Hash, V>(
+    entries: impl IntoIterator<Item = (K, V)>,
+) -> std::result::Result<HashMap<K, V>, SolveError> {
+    let mut map = HashMap::new();
+    for (key, value) in entries {
+        extend_map(&mut map, 1)?;
+        map.insert(key, value);
+    }
+    Ok(map)
+}
+
 /// Makes a heap have room for so many further entries.
 ///
 /// # Errors
@@ -233,6 +258,17 @@ pub(crate) fn extend_set<K: Eq + Hash>(
 ) -> std::result::Result<(), SolveError> {
     let needed = set.len().saturating_add(n_further).saturating_mul(size_of::<K>());
     set.try_reserve(n_further).map_err(|_| SolveError::Memory { needed, limit: None })
+}
+
+/// Puts a value at the end of a queue, which grows by halves at least.
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn push_back<T>(queue: &mut VecDeque<T>, value: T) -> std::result::Result<(), SolveError> {
+    let needed = queue.len().saturating_add(1).saturating_mul(size_of::<T>());
+    queue.try_reserve(1).map_err(|_| SolveError::Memory { needed, limit: None })?;
+    queue.push_back(value);
+    Ok(())
 }
 
 /// Makes an array have room for `n` entries, as many as it has included.

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use crate::mesh::connectivity::{next, previous};
 use crate::mesh::vector::{add, centroid, cross, dot, scale, sub, unit, Point};
 use crate::mesh::{Connectivity, EdgeKind};
+use crate::{memory, Result};
 
 /// The walks along the edges with exactly one face.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -26,21 +27,26 @@ pub struct Walks {
 /// - At a vertex that two fans of faces share, the walk goes on along the other side of the gap that it runs
 ///   around: holes that touch at their corners are loops of their own. Loops that still visit a vertex twice
 ///   are split there: two triangles that touch at a vertex have two loops.
-#[must_use]
-pub fn boundary_loops(connectivity: &Connectivity) -> Vec<Vec<u32>> {
-    boundary_walks(connectivity, None).loops
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub fn boundary_loops(connectivity: &Connectivity) -> Result<Vec<Vec<u32>>> {
+    Ok(boundary_walks(connectivity, None)?.loops)
 }
 
 /// All walks along the boundary: see [`boundary_loops`]. With `positions`, gaps between more than two fans at
 /// a vertex are told apart as well, by the order of the fans around it; without, the walk stays at its fan
 /// there.
-#[must_use]
-pub fn boundary_walks(connectivity: &Connectivity, positions: Option<&[Point]>) -> Walks {
-    let mut visited = vec![false; connectivity.n_halfedges()];
-    let gaps = Gaps::new(connectivity, positions);
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub fn boundary_walks(connectivity: &Connectivity, positions: Option<&[Point]>) -> Result<Walks> {
+    let mut visited = memory::repeated(false, connectivity.n_halfedges())?;
+    let gaps = Gaps::new(connectivity, positions)?;
     let step =
         |(h, forward): (usize, bool)| gaps.across(h, forward).or_else(|| own_fan(connectivity, h, forward));
-    let mut splitter = Splitter { loops: Vec::new(), place: vec![0; connectivity.n_vertices()] };
+    let place = memory::repeated(0, connectivity.n_vertices())?;
+    let mut splitter = Splitter { loops: Vec::new(), place };
     let mut chains = Vec::new();
     for start in connectivity.boundary() {
         if visited[start] {
@@ -55,14 +61,17 @@ pub fn boundary_walks(connectivity: &Connectivity, positions: Option<&[Point]>) 
                 Some((h, _)) if visited[h] => break false,
                 Some((h, forward)) => {
                     visited[h] = true;
-                    walk.push(if forward { connectivity.tail(h) } else { connectivity.head(h) });
+                    memory::push(
+                        &mut walk,
+                        if forward { connectivity.tail(h) } else { connectivity.head(h) },
+                    )?;
                     at = (h, forward);
                 }
                 None => break false,
             }
         };
         if is_closed {
-            splitter.push(&walk);
+            splitter.push(&walk)?;
             continue;
         }
         walk.push(if at.1 { connectivity.head(at.0) } else { connectivity.tail(at.0) });
@@ -75,9 +84,9 @@ pub fn boundary_walks(connectivity: &Connectivity, positions: Option<&[Point]>) 
             at = (h, forward);
         }
         walk.reverse();
-        chains.push(walk);
+        memory::push(&mut chains, walk)?;
     }
-    Walks { loops: splitter.loops, chains }
+    Ok(Walks { loops: splitter.loops, chains })
 }
 
 /// The boundary halfedge after `h`, found by turning about the vertex where `h` (run backward unless
@@ -103,13 +112,13 @@ struct Gaps {
 }
 
 impl Gaps {
-    fn new(connectivity: &Connectivity, positions: Option<&[Point]>) -> Self {
+    fn new(connectivity: &Connectivity, positions: Option<&[Point]>) -> Result<Self> {
         let mut gaps = Self::default();
         // Where faces disagree there is no order around a vertex.
         if connectivity.has_any(&[EdgeKind::Inconsistent]) {
-            return gaps;
+            return Ok(gaps);
         }
-        let mut n_fans = vec![0_u8; connectivity.n_vertices()];
+        let mut n_fans = memory::repeated(0_u8, connectivity.n_vertices())?;
         connectivity.boundary().for_each(|h| {
             let count = &mut n_fans[connectivity.head(h) as usize];
             *count = count.saturating_add(1);
@@ -117,6 +126,7 @@ impl Gaps {
         let mut fans: HashMap<u32, Vec<[usize; 2]>> = HashMap::new();
         for h in connectivity.boundary().filter(|&h| n_fans[connectivity.head(h) as usize] > 1) {
             if let Some((leaving, _)) = own_fan(connectivity, h, true) {
+                memory::extend_map(&mut fans, 1)?;
                 fans.entry(connectivity.head(h)).or_default().push([h, leaving]);
             }
         }
@@ -127,13 +137,15 @@ impl Gaps {
                 (_, None) => continue,
                 (_, Some(positions)) => order_around(connectivity, positions, vertex, &mut fans),
             }
+            memory::extend_map(&mut gaps.leaving, fans.len())?;
+            memory::extend_map(&mut gaps.arriving, fans.len())?;
             for (i, &[arriving, _]) in fans.iter().enumerate() {
                 let [_, leaving] = fans[(i + 1) % fans.len()];
                 gaps.leaving.insert(arriving, leaving);
                 gaps.arriving.insert(leaving, arriving);
             }
         }
-        gaps
+        Ok(gaps)
     }
 
     fn across(&self, h: usize, forward: bool) -> Option<(usize, bool)> {
@@ -174,29 +186,30 @@ fn order_around(connectivity: &Connectivity, positions: &[Point], vertex: u32, f
 struct Splitter {
     loops: Vec<Vec<u32>>,
     /// Where each vertex is in the walk so far, from 1 on; 0 if it is not.
-    /// Memory of zeros costs nothing where it is not read.
     place: Vec<u32>,
 }
 
 impl Splitter {
-    fn push(&mut self, walk: &[u32]) {
-        let mut open: Vec<u32> = Vec::with_capacity(walk.len());
+    fn push(&mut self, walk: &[u32]) -> Result<()> {
+        let mut open: Vec<u32> = memory::room(walk.len())?;
         for &vertex in walk {
             let place = self.place[vertex as usize] as usize;
             if place > 0 {
-                self.close(open.split_off(place - 1));
+                let closed = memory::twin(&open[place - 1..])?;
+                open.truncate(place - 1);
+                self.close(closed)?;
             }
             open.push(vertex);
             self.place[vertex as usize] = open.len() as u32;
         }
-        self.close(open);
+        self.close(open)
     }
 
-    fn close(&mut self, vertices: Vec<u32>) {
+    fn close(&mut self, vertices: Vec<u32>) -> Result<()> {
         for &vertex in &vertices {
             self.place[vertex as usize] = 0;
         }
-        self.loops.push(vertices);
+        Ok(memory::push(&mut self.loops, vertices)?)
     }
 }
 
@@ -226,8 +239,12 @@ mod tests {
 
     fn lengths(shape: &Shape) -> Vec<usize> {
         let mesh = shape.mesh().unwrap();
-        let mut lengths: Vec<usize> =
-            boundary_walks(mesh.connectivity(), mesh.positions()).loops.iter().map(Vec::len).collect();
+        let mut lengths: Vec<usize> = boundary_walks(mesh.connectivity(), mesh.positions())
+            .unwrap()
+            .loops
+            .iter()
+            .map(Vec::len)
+            .collect();
         lengths.sort_unstable();
         lengths
     }
@@ -273,7 +290,7 @@ mod tests {
             shape.faces.extend(turned.faces.iter().map(|face| face.map(number)));
         }
         let mesh = shape.mesh().unwrap();
-        let walks = boundary_walks(mesh.connectivity(), mesh.positions());
+        let walks = boundary_walks(mesh.connectivity(), mesh.positions()).unwrap();
         assert!(walks.loops.is_empty());
         assert_eq!(walks.chains.len(), 3);
         for chain in &walks.chains {

@@ -2,7 +2,8 @@
 //! what is not manifold gets no twin and is told apart.
 
 use crate::buckets::Buckets;
-use crate::error::MeshError;
+use crate::error::{MeshError, SolveError};
+use crate::{memory, Result};
 
 /// No halfedge.
 const NONE: u32 = u32::MAX;
@@ -64,33 +65,34 @@ impl Connectivity {
     ///
     /// # Errors
     /// [`MeshError::VertexOutOfRange`] if a face names a vertex `>= n_vertices`, [`MeshError::TooManyFaces`]
-    /// if the halfedges cannot be counted in 32 bits.
-    pub fn new(faces: Vec<[u32; 3]>, n_vertices: usize) -> Result<Self, MeshError> {
+    /// if the halfedges cannot be counted in 32 bits, [`crate::Error::Solve`] where memory is missing.
+    pub fn new(faces: Vec<[u32; 3]>, n_vertices: usize) -> Result<Self> {
         if faces.len() >= NONE as usize / 3 {
-            return Err(MeshError::TooManyFaces { n_faces: faces.len() });
+            return Err(MeshError::TooManyFaces { n_faces: faces.len() }.into());
         }
         if n_vertices > i32::MAX as usize {
-            return Err(MeshError::TooManyVertices { n_vertices });
+            return Err(MeshError::TooManyVertices { n_vertices }.into());
         }
         for (face, corners) in faces.iter().enumerate() {
             if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= n_vertices) {
-                return Err(MeshError::VertexOutOfRange { face, vertex: i64::from(vertex), n_vertices });
+                let vertex = i64::from(vertex);
+                return Err(MeshError::VertexOutOfRange { face, vertex, n_vertices }.into());
             }
         }
         let n_halfedges = 3 * faces.len();
         let mut connectivity = Self {
             faces,
             n_vertices,
-            mates: vec![NONE; n_halfedges],
-            kinds: vec![EdgeKind::Degenerate; n_halfedges],
+            mates: memory::repeated(NONE, n_halfedges)?,
+            kinds: memory::repeated(EdgeKind::Degenerate, n_halfedges)?,
         };
-        connectivity.match_halfedges();
+        connectivity.match_halfedges()?;
         Ok(connectivity)
     }
 
     /// Finds the halfedges of every edge: bucketed by the edge's smaller vertex,
     /// then sorted by its larger one.
-    fn match_halfedges(&mut self) {
+    fn match_halfedges(&mut self) -> std::result::Result<(), SolveError> {
         let sound = |f: &[u32; 3]| f[0] != f[1] && f[1] != f[2] && f[2] != f[0];
         let mut at_smaller = Buckets::new(self.n_vertices, |visit| {
             for (f, corners) in (0_u32..).zip(&self.faces).filter(|(_, f)| sound(f)) {
@@ -99,7 +101,7 @@ impl Connectivity {
                     visit(tail.min(head) as usize, (tail.max(head), 3 * f + i as u32));
                 }
             }
-        });
+        })?;
         for v in 0..self.n_vertices {
             let bucket = at_smaller.of_mut(v);
             bucket.sort_unstable();
@@ -107,6 +109,20 @@ impl Connectivity {
                 self.set_edge(group);
             }
         }
+        Ok(())
+    }
+
+    /// A copy.
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`] when the system does not give that much.
+    pub(crate) fn copied(&self) -> std::result::Result<Self, SolveError> {
+        Ok(Self {
+            faces: memory::twin(&self.faces)?,
+            n_vertices: self.n_vertices,
+            mates: memory::twin(&self.mates)?,
+            kinds: memory::twin(&self.kinds)?,
+        })
     }
 
     /// Records what the halfedges `(_, h)` of one edge are to each other.

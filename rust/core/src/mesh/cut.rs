@@ -25,7 +25,7 @@ impl CutMesh {
     /// # Errors
     /// [`crate::error::SolveError::Memory`].
     pub fn new(connectivity: &Connectivity, table: &EdgeTable, cut: &[bool]) -> Result<Self> {
-        let mut corners = Partition::try_new(connectivity.n_halfedges())?;
+        let mut corners = Partition::new(connectivity.n_halfedges())?;
         // The corner where a halfedge starts is the index of the next halfedge,
         // that where it ends of the previous.
         let corner_at = |h: usize, vertex: u32| {

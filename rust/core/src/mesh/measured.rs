@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::Mesh;
-use crate::memory::Tool;
+use crate::memory::{self, Tool};
 use crate::unit::Unit;
 use crate::Result;
 
@@ -33,13 +33,13 @@ impl Mesh {
         self.demand(Tool::Mesh).admit(None)?;
         let measured = |row: &[f64; 3]| row.map(|x| unit.measure(x));
         let Some(positions) = self.positions() else {
-            let lengths = self.edge_lengths().iter().map(measured).collect();
-            return Ok(Cow::Owned(Self::from_connectivity(self.connectivity().clone(), lengths)?));
+            let lengths = memory::gathered(self.edge_lengths().iter().map(measured))?;
+            return Ok(Cow::Owned(Self::from_connectivity(self.connectivity().copied()?, lengths)?));
         };
         let place =
             |p: &[f64; 3]| Some(measured(p)).filter(|p| p.iter().all(|x| x.is_finite())).unwrap_or_default();
-        let faces = self.connectivity().faces().to_vec();
-        Ok(Cow::Owned(Self::new(positions.iter().map(place).collect(), faces)?))
+        let faces = memory::twin(self.connectivity().faces())?;
+        Ok(Cow::Owned(Self::new(memory::gathered(positions.iter().map(place))?, faces)?))
     }
 }
 

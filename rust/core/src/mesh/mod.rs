@@ -28,9 +28,10 @@ pub use t_junctions::{SplitFaces, TJunctions};
 pub use welding::Weld;
 pub use working::Working;
 
-use crate::error::MeshError;
-use crate::memory::{Demand, Tool};
+use crate::error::{MeshError, SolveError};
+use crate::memory::{self, Demand, Tool};
 use crate::unit::Unit;
+use crate::Result;
 
 /// Two lengths of one edge may differ by this part of the longer one;
 /// lengths that were stored in single precision do.
@@ -45,9 +46,20 @@ pub struct Mesh {
 }
 
 /// The edge lengths of `faces`, one row a face, column `i` opposite corner `i`.
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub fn edge_lengths(
+    faces: &[[u32; 3]],
+    positions: &[[f64; 3]],
+) -> std::result::Result<Vec<[f64; 3]>, SolveError> {
+    memory::gathered(rows_of_lengths(faces, positions))
+}
+
+/// The edge lengths of one triangle, entry `i` opposite corner `i`.
 #[must_use]
-pub fn edge_lengths(faces: &[[u32; 3]], positions: &[[f64; 3]]) -> Vec<[f64; 3]> {
-    rows_of_lengths(faces, positions).collect()
+pub(crate) fn lengths_of(corners: &[[f64; 3]; 3]) -> [f64; 3] {
+    rows_of_lengths(&[[0, 1, 2]], corners).next().unwrap_or_default()
 }
 
 /// The rows of [`edge_lengths`], one after the other.
@@ -80,14 +92,14 @@ impl Mesh {
     /// # Errors
     /// [`MeshError::NonFiniteVertex`], [`MeshError::VertexOutOfRange`], [`MeshError::TooLarge`] and the
     /// errors of [`Connectivity::new`].
-    pub fn new(vertices: Vec<[f64; 3]>, faces: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+    pub fn new(vertices: Vec<[f64; 3]>, faces: Vec<[u32; 3]>) -> Result<Self> {
         if let Some(vertex) = vertices.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
-            return Err(MeshError::NonFiniteVertex { vertex });
+            return Err(MeshError::NonFiniteVertex { vertex }.into());
         }
         let connectivity = Connectivity::new(faces, vertices.len())?;
-        let edge_lengths = edge_lengths(connectivity.faces(), &vertices);
+        let edge_lengths = edge_lengths(connectivity.faces(), &vertices)?;
         if let Some(face) = edge_lengths.iter().position(|l| !l.iter().all(|x| x.is_finite())) {
-            return Err(MeshError::TooLarge { face });
+            return Err(MeshError::TooLarge { face }.into());
         }
         Ok(Self { connectivity, edge_lengths, positions: Some(vertices) })
     }
@@ -102,7 +114,7 @@ impl Mesh {
         faces: Vec<[u32; 3]>,
         lengths: Vec<[f64; 3]>,
         n_vertices: Option<usize>,
-    ) -> Result<Self, MeshError> {
+    ) -> Result<Self> {
         let named = faces.iter().flatten().map(|&v| v as usize + 1).max().unwrap_or(0);
         Self::from_connectivity(Connectivity::new(faces, n_vertices.unwrap_or(named))?, lengths)
     }
@@ -120,23 +132,25 @@ impl Mesh {
     /// [`MeshError::LengthRows`], [`MeshError::BadEdgeLength`], [`MeshError::TriangleInequality`] (violated
     /// by more than rounding), [`MeshError::UnequalEdgeLengths`] (the two faces of an edge differ by more
     /// than 1e-6 of it).
-    pub fn from_connectivity(connectivity: Connectivity, lengths: Vec<[f64; 3]>) -> Result<Self, MeshError> {
+    pub fn from_connectivity(connectivity: Connectivity, lengths: Vec<[f64; 3]>) -> Result<Self> {
         if lengths.len() != connectivity.n_faces() {
-            return Err(MeshError::LengthRows { rows: lengths.len(), n_faces: connectivity.n_faces() });
+            let n_faces = connectivity.n_faces();
+            return Err(MeshError::LengthRows { rows: lengths.len(), n_faces }.into());
         }
         for (face, &l) in lengths.iter().enumerate() {
             if !l.iter().all(|x| x.is_finite() && *x >= 0.0) {
-                return Err(MeshError::BadEdgeLength { face });
+                return Err(MeshError::BadEdgeLength { face }.into());
             }
             if triangle::slack(l) < -LENGTH_TOLERANCE * l[0].max(l[1]).max(l[2]) {
-                return Err(MeshError::TriangleInequality { face });
+                return Err(MeshError::TriangleInequality { face }.into());
             }
         }
         for h in connectivity.edges() {
             if let Some(mate) = connectivity.mate(h) {
                 let (a, b) = (lengths[h / 3][h % 3], lengths[mate / 3][mate % 3]);
                 if (a - b).abs() > LENGTH_TOLERANCE * a.max(b) {
-                    return Err(MeshError::UnequalEdgeLengths { first: h / 3, second: mate / 3 });
+                    let (first, second) = (h / 3, mate / 3);
+                    return Err(MeshError::UnequalEdgeLengths { first, second }.into());
                 }
             }
         }

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 
 use crate::mesh::{Connectivity, EdgeKind};
+use crate::{memory, Result};
 
 /// For every face whether it is turned against the faces around it,
 /// so that turning these over makes neighbors agree.
@@ -10,18 +11,22 @@ use crate::mesh::{Connectivity, EdgeKind};
 /// Within each edge-connected component the smaller number of faces counts as turned, of two equal numbers
 /// those that do not agree with its first face. Across edges with three faces or more nothing is compared. On
 /// a surface with one side only, as a Möbius strip, some neighbors disagree after that as before.
-#[must_use]
-pub fn flipped_faces(connectivity: &Connectivity) -> Vec<bool> {
-    let mut flipped = vec![false; connectivity.n_faces()];
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub fn flipped_faces(connectivity: &Connectivity) -> Result<Vec<bool>> {
+    let mut flipped = memory::repeated(false, connectivity.n_faces())?;
     if !connectivity.has_any(&[EdgeKind::Inconsistent]) {
-        return flipped;
+        return Ok(flipped);
     }
-    let mut seen = vec![false; connectivity.n_faces()];
+    let mut seen = memory::repeated(false, connectivity.n_faces())?;
+    let mut component = Vec::new();
     for seed in 0..connectivity.n_faces() {
         if std::mem::replace(&mut seen[seed], true) {
             continue;
         }
-        let mut component = vec![seed];
+        component.clear();
+        memory::push(&mut component, seed)?;
         // Across edges where faces disagree only when no other way is left:
         // so few are turned on surfaces with one side.
         let mut disagreeing = VecDeque::new();
@@ -32,24 +37,24 @@ pub fn flipped_faces(connectivity: &Connectivity) -> Vec<bool> {
                 for h in 3 * f..3 * f + 3 {
                     let Some(mate) = connectivity.mate(h) else { continue };
                     if connectivity.kind(h) == EdgeKind::Inconsistent {
-                        disagreeing.push_back([f, mate / 3]);
+                        memory::push_back(&mut disagreeing, [f, mate / 3])?;
                     } else if !std::mem::replace(&mut seen[mate / 3], true) {
                         flipped[mate / 3] = flipped[f];
-                        component.push(mate / 3);
+                        memory::push(&mut component, mate / 3)?;
                     }
                 }
             }
             let Some([f, g]) = disagreeing.pop_front() else { break };
             if !std::mem::replace(&mut seen[g], true) {
                 flipped[g] = !flipped[f];
-                component.push(g);
+                memory::push(&mut component, g)?;
             }
         }
         if 2 * component.iter().filter(|&&f| flipped[f]).count() > component.len() {
             component.iter().for_each(|&f| flipped[f] = !flipped[f]);
         }
     }
-    flipped
+    Ok(flipped)
 }
 
 /// The faces with those turned over that [`flipped_faces`] names, their first corner kept,
@@ -57,18 +62,20 @@ pub fn flipped_faces(connectivity: &Connectivity) -> Vec<bool> {
 ///
 /// # Errors
 /// Those of [`Connectivity::new`].
-pub fn orient(
-    faces: Vec<[u32; 3]>,
-    n_vertices: usize,
-) -> Result<(Vec<[u32; 3]>, Vec<bool>), crate::error::MeshError> {
+pub fn orient(faces: Vec<[u32; 3]>, n_vertices: usize) -> Result<(Vec<[u32; 3]>, Vec<bool>)> {
     let connectivity = Connectivity::new(faces, n_vertices)?;
-    let flipped = flipped_faces(&connectivity);
-    Ok((turned_over(connectivity.faces(), &flipped), flipped))
+    let flipped = flipped_faces(&connectivity)?;
+    Ok((turned_over(connectivity.faces(), &flipped)?, flipped))
 }
 
 /// The faces, those of `flipped` with their last two corners swapped: halfedges 1 and 2 change places.
-pub(crate) fn turned_over(faces: &[[u32; 3]], flipped: &[bool]) -> Vec<[u32; 3]> {
-    faces.iter().zip(flipped).map(|(&[a, b, c], &flip)| if flip { [a, c, b] } else { [a, b, c] }).collect()
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub(crate) fn turned_over(faces: &[[u32; 3]], flipped: &[bool]) -> Result<Vec<[u32; 3]>> {
+    let turned =
+        faces.iter().zip(flipped).map(|(&[a, b, c], &flip)| if flip { [a, c, b] } else { [a, b, c] });
+    Ok(memory::gathered(turned)?)
 }
 
 #[cfg(test)]
@@ -80,7 +87,7 @@ mod tests {
     fn turned(faces: &[[u32; 3]], share: f64, seed: u64) -> (Vec<[u32; 3]>, Vec<bool>) {
         let mut random = Random::new(seed);
         let flip: Vec<bool> = faces.iter().map(|_| random.uniform() < share).collect();
-        (turned_over(faces, &flip), flip)
+        (turned_over(faces, &flip).unwrap(), flip)
     }
 
     #[test]

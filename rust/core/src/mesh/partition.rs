@@ -10,16 +10,11 @@ pub(crate) struct Partition(Vec<u32>);
 
 impl Partition {
     /// `n` sets of one element each.
-    pub(crate) fn new(n: usize) -> Self {
-        Self((0..n as u32).collect())
-    }
-
-    /// The same, refused where the system does not give that much.
     ///
     /// # Errors
-    /// [`SolveError::Memory`].
-    pub(crate) fn try_new(n: usize) -> Result<Self, SolveError> {
-        memory::sifted(0..n as u32).map(Self)
+    /// [`SolveError::Memory`] when the system does not give that much.
+    pub(crate) fn new(n: usize) -> Result<Self, SolveError> {
+        memory::numbers(n).map(Self)
     }
 
     /// The least element of the set of `x`.

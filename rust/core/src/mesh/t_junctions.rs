@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use crate::mesh::vector::{add, between, distance, dot, norm, scale, sub, Point};
 use crate::mesh::welding::{rounding, OF_EDGE};
 use crate::mesh::{Connectivity, Mesh};
-use crate::Result;
+use crate::{memory, Result};
 
 /// A segment of a cell, with a tenth of one on either side, begins and ends so many cells apart at most.
 const MOST_CELLS: i64 = 2;
@@ -21,9 +21,11 @@ impl TJunctions {
     /// Finds the border vertices that lie on border edges (those with one face), up to the rounding of
     /// coordinates, where the two sides would share an edge if both were split there. Vertices in one place
     /// should be one ([`crate::mesh::Weld::of_seams`]). Nothing where there are none.
-    #[must_use]
-    pub fn find(connectivity: &Connectivity, positions: &[Point]) -> Option<Self> {
-        let border: Vec<usize> = connectivity.boundary().collect();
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing.
+    pub fn find(connectivity: &Connectivity, positions: &[Point]) -> Result<Option<Self>> {
+        let border: Vec<usize> = memory::sifted(connectivity.boundary())?;
         let ends = |h: usize| [connectivity.tail(h), connectivity.head(h)];
         let length = |h: usize| {
             let [a, b] = ends(h).map(|v| positions[v as usize]);
@@ -31,11 +33,11 @@ impl TJunctions {
         };
         let cell = border.iter().map(|&h| length(h)).sum::<f64>() / border.len().max(1) as f64;
         if !(cell > 0.0 && cell.is_finite()) {
-            return None;
+            return Ok(None);
         }
         let vertices: BTreeSet<u32> = border.iter().flat_map(|&h| ends(h)).collect();
         let tolerance = rounding(vertices.iter().map(|&v| positions[v as usize]));
-        let grid = Grid::new(positions, &vertices, cell);
+        let grid = Grid::new(positions, &vertices, cell)?;
         let mut on = BTreeMap::new();
         for &h in &border {
             let [a, b] = ends(h).map(|v| positions[v as usize]);
@@ -59,9 +61,9 @@ impl TJunctions {
     }
 
     /// Those at edges of which a part is a part of just one other edge.
-    fn matched(mut self, connectivity: &Connectivity, border: &[usize]) -> Option<Self> {
+    fn matched(mut self, connectivity: &Connectivity, border: &[usize]) -> Result<Option<Self>> {
         if self.on.is_empty() {
-            return None;
+            return Ok(None);
         }
         let mut faces_at: HashMap<[u32; 2], u32> = HashMap::new();
         let parts = |h: usize, inside: &[u32]| -> Vec<[u32; 2]> {
@@ -74,11 +76,12 @@ impl TJunctions {
         };
         for &h in border {
             for part in parts(h, self.on.get(&h).map_or(&[], Vec::as_slice)) {
+                memory::extend_map(&mut faces_at, 1)?;
                 *faces_at.entry(part).or_default() += 1;
             }
         }
         self.on.retain(|&h, inside| parts(h, inside).iter().any(|part| faces_at[part] == 2));
-        (!self.on.is_empty()).then_some(self)
+        Ok((!self.on.is_empty()).then_some(self))
     }
 
     /// The vertices in the middle of edges, ascending.
@@ -101,14 +104,14 @@ impl TJunctions {
                 match piece.halves() {
                     Some(halves) => left.extend(halves),
                     None => {
-                        faces.push(piece.corners);
-                        parent.push(f as u32);
-                        edge.push(piece.edge);
+                        memory::push(&mut faces, piece.corners)?;
+                        memory::push(&mut parent, f as u32)?;
+                        memory::push(&mut edge, piece.edge)?;
                     }
                 }
             }
         }
-        Ok(SplitFaces { mesh: Mesh::new(positions.to_vec(), faces)?, parent, edge })
+        Ok(SplitFaces { mesh: Mesh::new(memory::twin(positions)?, faces)?, parent, edge })
     }
 }
 
@@ -161,13 +164,14 @@ struct Grid {
 }
 
 impl Grid {
-    fn new(positions: &[Point], vertices: &BTreeSet<u32>, cell: f64) -> Self {
+    fn new(positions: &[Point], vertices: &BTreeSet<u32>, cell: f64) -> Result<Self> {
         let origin = vertices.first().map_or([0.0; 3], |&v| positions[v as usize]);
         let mut grid = Self { cells: HashMap::new(), origin, cell };
         for &v in vertices {
+            memory::extend_map(&mut grid.cells, 1)?;
             grid.cells.entry(grid.key(positions[v as usize])).or_default().push(v);
         }
-        grid
+        Ok(grid)
     }
 
     #[allow(clippy::cast_possible_truncation)]
@@ -218,13 +222,13 @@ mod tests {
 
     fn welded(shape: &Shape) -> Mesh {
         let mesh = shape.mesh().unwrap();
-        let weld = Weld::of_seams(mesh.connectivity(), &shape.vertices, None).unwrap();
-        Mesh::new(weld.firsts(&shape.vertices), weld.faces(&shape.faces)).unwrap()
+        let weld = Weld::of_seams(mesh.connectivity(), &shape.vertices, None).unwrap().unwrap();
+        Mesh::new(weld.firsts(&shape.vertices).unwrap(), weld.faces(&shape.faces).unwrap()).unwrap()
     }
 
     fn split(mesh: &Mesh) -> Option<(usize, SplitFaces)> {
         let positions = mesh.positions().unwrap();
-        let found = TJunctions::find(mesh.connectivity(), positions)?;
+        let found = TJunctions::find(mesh.connectivity(), positions).unwrap()?;
         Some((found.vertices().len(), found.split(mesh, positions).unwrap()))
     }
 

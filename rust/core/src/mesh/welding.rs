@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::{distance, place, sub, Point};
 use crate::mesh::Connectivity;
+use crate::{memory, Result};
 
 /// The sides of a seam differ by the rounding of its coordinates:
 /// files of six digits lose this part of the shape's size.
@@ -31,16 +32,19 @@ impl Weld {
     /// hundred-thousandth of the shape's size, as files of six digits have it, or four units in the last
     /// place (of single precision, where all coordinates have it), but a tenth of the shortest border edge
     /// there at most. All others stay as they are. Nothing where none are welded.
-    #[must_use]
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing, here and below.
     pub fn of_seams(
         connectivity: &Connectivity,
         positions: &[Point],
         tolerance: Option<f64>,
-    ) -> Option<Self> {
+    ) -> Result<Option<Self>> {
         let mut reach: HashMap<u32, f64> = HashMap::new();
         for h in connectivity.boundary() {
             let (tail, head) = (connectivity.tail(h), connectivity.head(h));
             let length = distance(positions[tail as usize], positions[head as usize]);
+            memory::extend_map(&mut reach, 2)?;
             for v in [tail, head] {
                 reach
                     .entry(v)
@@ -49,7 +53,7 @@ impl Weld {
             }
         }
         if reach.is_empty() {
-            return None;
+            return Ok(None);
         }
         let tolerance = match tolerance {
             Some(tolerance) => {
@@ -59,36 +63,40 @@ impl Weld {
             None => rounding(reach.keys().map(|&v| positions[v as usize])),
         };
         let mut border: Vec<(u32, f64)> =
-            reach.into_iter().map(|(v, least)| (v, least.min(tolerance))).collect();
+            memory::gathered(reach.into_iter().map(|(v, least)| (v, least.min(tolerance))))?;
         border.sort_unstable_by_key(|&(v, _)| v);
-        let mut partition = Partition::new(positions.len());
-        if !unite_near(&border, positions, tolerance, &mut partition) {
-            return None;
+        let mut partition = Partition::new(positions.len())?;
+        if !unite_near(&border, positions, tolerance, &mut partition)? {
+            return Ok(None);
         }
-        let mut weld = Self { vertex: Vec::with_capacity(positions.len()), first: Vec::new() };
+        let mut weld = Self { vertex: memory::room(positions.len())?, first: Vec::new() };
         for v in 0..positions.len() as u32 {
             let root = partition.root(v);
             if root == v {
                 weld.vertex.push(weld.first.len() as u32);
-                weld.first.push(v);
+                memory::push(&mut weld.first, v)?;
             } else {
                 // Roots are least elements: theirs is known.
                 weld.vertex.push(weld.vertex[root as usize]);
             }
         }
-        Some(weld)
+        Ok(Some(weld))
     }
 
     /// The faces in welded vertices. One whose corners became one names a vertex twice.
-    #[must_use]
-    pub fn faces(&self, faces: &[[u32; 3]]) -> Vec<[u32; 3]> {
-        faces.iter().map(|face| face.map(|v| self.vertex[v as usize])).collect()
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`].
+    pub fn faces(&self, faces: &[[u32; 3]]) -> Result<Vec<[u32; 3]>> {
+        Ok(memory::gathered(faces.iter().map(|face| face.map(|v| self.vertex[v as usize])))?)
     }
 
     /// The entries of the first vertices.
-    #[must_use]
-    pub fn firsts<T: Copy>(&self, entries: &[T]) -> Vec<T> {
-        self.first.iter().map(|&v| entries[v as usize]).collect()
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`].
+    pub fn firsts<T: Copy>(&self, entries: &[T]) -> Result<Vec<T>> {
+        Ok(memory::gathered(self.first.iter().map(|&v| entries[v as usize]))?)
     }
 }
 
@@ -114,13 +122,19 @@ pub(super) fn rounding(points: impl Iterator<Item = Point>) -> f64 {
 
 /// Unites vertices, each with its own reach, that are no farther apart in any coordinate;
 /// returns whether there were any.
-fn unite_near(border: &[(u32, f64)], positions: &[Point], tolerance: f64, partition: &mut Partition) -> bool {
+fn unite_near(
+    border: &[(u32, f64)],
+    positions: &[Point],
+    tolerance: f64,
+    partition: &mut Partition,
+) -> Result<bool> {
     let origin = positions[border[0].0 as usize];
     let width = tolerance.max(f64::MIN_POSITIVE);
     // Cells as wide as the tolerance: what is near lies in the next one at most. Beyond 2^53 of them cells
     // are not neighbors, but then coordinates are not told apart either.
     let cell = |v: u32| sub(positions[v as usize], origin).map(|x| (x / width).floor());
-    let mut cells: HashMap<[u64; 3], Vec<(u32, f64)>> = HashMap::with_capacity(border.len());
+    let mut cells: HashMap<[u64; 3], Vec<(u32, f64)>> = HashMap::new();
+    memory::extend_map(&mut cells, border.len())?;
     let mut any = false;
     for &(v, reach) in border {
         let at = cell(v);
@@ -142,7 +156,7 @@ fn unite_near(border: &[(u32, f64)], positions: &[Point], tolerance: f64, partit
         }
         cells.entry(place(at)).or_default().push((v, reach));
     }
-    any
+    Ok(any)
 }
 
 #[cfg(test)]
@@ -162,7 +176,7 @@ mod tests {
 
     fn welded(shape: &Shape, tolerance: Option<f64>) -> Option<Weld> {
         let mesh = shape.mesh().unwrap();
-        Weld::of_seams(mesh.connectivity(), mesh.positions().unwrap(), tolerance)
+        Weld::of_seams(mesh.connectivity(), mesh.positions().unwrap(), tolerance).unwrap()
     }
 
     #[test]
@@ -174,7 +188,7 @@ mod tests {
                 let weld = welded(&soup, None).unwrap();
                 assert_eq!(weld.first.len(), shape.vertices.len(), "{rounding} {shift}");
                 assert!(weld.first.is_sorted());
-                let closed = Connectivity::new(weld.faces(&soup.faces), weld.first.len()).unwrap();
+                let closed = Connectivity::new(weld.faces(&soup.faces).unwrap(), weld.first.len()).unwrap();
                 assert_eq!(closed.boundary().count(), 0);
             }
         }

@@ -4,11 +4,11 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-use crate::memory::Tool;
+use crate::error::SolveError;
+use crate::memory::{self, Tool};
 use crate::mesh::orientation::turned_over;
 use crate::mesh::vector::{add, sub, Point};
 use crate::mesh::{flipped_faces, EdgeKind, Mesh, Weld};
-use crate::Result;
 
 /// A coordinate of all vertices that is so many times as large as the range that they take is measured from
 /// one of them: below, subtracting squares of it loses no more than the last digits.
@@ -31,10 +31,12 @@ impl<'a> Working<'a> {
     ///
     /// # Errors
     /// [`crate::Error::Memory`] where a copy does not fit.
-    pub fn new(mesh: &'a Mesh) -> Result<Self> {
+    pub fn new(mesh: &'a Mesh) -> crate::Result<Self> {
         mesh.demand(Tool::Mesh).admit(None)?;
-        let weld =
-            mesh.positions().and_then(|positions| Weld::of_seams(mesh.connectivity(), positions, None));
+        let weld = match mesh.positions() {
+            Some(positions) => Weld::of_seams(mesh.connectivity(), positions, None)?,
+            None => None,
+        };
         Self::of(mesh, weld)
     }
 
@@ -43,12 +45,12 @@ impl<'a> Working<'a> {
     ///
     /// # Errors
     /// [`crate::Error::Memory`] where a copy does not fit.
-    pub fn unwelded(mesh: &'a Mesh) -> Result<Self> {
+    pub fn unwelded(mesh: &'a Mesh) -> crate::Result<Self> {
         mesh.demand(Tool::Mesh).admit(None)?;
         Self::of(mesh, None)
     }
 
-    fn of(mesh: &'a Mesh, weld: Option<Weld>) -> Result<Self> {
+    fn of(mesh: &'a Mesh, weld: Option<Weld>) -> crate::Result<Self> {
         let origin = mesh.positions().map_or([0.0; 3], far_origin);
         let mut working = Self { mesh: Cow::Borrowed(mesh), original: mesh, weld, flipped: None, origin };
         if let (true, Some(positions)) = (working.weld.is_some() || origin != [0.0; 3], mesh.positions()) {
@@ -56,14 +58,15 @@ impl<'a> Working<'a> {
             let faces = mesh.connectivity().faces();
             let (positions, faces): (Vec<Point>, _) = match &working.weld {
                 Some(weld) => {
-                    (weld.first.iter().map(|&v| near(&positions[v as usize])).collect(), weld.faces(faces))
+                    let firsts = weld.first.iter().map(|&v| near(&positions[v as usize]));
+                    (memory::gathered(firsts)?, weld.faces(faces)?)
                 }
-                None => (positions.iter().map(near).collect(), faces.to_vec()),
+                None => (memory::gathered(positions.iter().map(near))?, memory::twin(faces)?),
             };
             working.mesh = Cow::Owned(Mesh::new(positions, faces)?);
         }
         if working.mesh.connectivity().has_any(&[EdgeKind::Inconsistent]) {
-            let flipped = flipped_faces(working.mesh.connectivity());
+            let flipped = flipped_faces(working.mesh.connectivity())?;
             working.mesh = Cow::Owned(turned(&working.mesh, &flipped)?);
             working.flipped = Some(flipped);
         }
@@ -107,37 +110,46 @@ impl<'a> Working<'a> {
     }
 
     /// Whether a mask over the mesh's vertices holds for one of those that each vertex here is.
-    #[must_use]
-    pub fn any_of(&self, mask: &[bool]) -> Vec<bool> {
-        let mut any = vec![false; self.mesh.connectivity().n_vertices()];
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`] when the system does not give that much, here and below.
+    pub fn any_of(&self, mask: &[bool]) -> Result<Vec<bool>, SolveError> {
+        let mut any = memory::repeated(false, self.mesh.connectivity().n_vertices())?;
         (0..).zip(mask).for_each(|(v, &set)| any[self.vertex(v) as usize] |= set);
-        any
+        Ok(any)
     }
 
     /// The least of the values of the mesh's vertices that each vertex here is.
-    #[must_use]
-    pub fn least_of(&self, values: &[f64]) -> Vec<f64> {
-        let mut least = vec![f64::INFINITY; self.mesh.connectivity().n_vertices()];
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub fn least_of(&self, values: &[f64]) -> Result<Vec<f64>, SolveError> {
+        let mut least = memory::repeated(f64::INFINITY, self.mesh.connectivity().n_vertices())?;
         (0..).zip(values).for_each(|(v, &x)| {
             let entry = &mut least[self.vertex(v) as usize];
             *entry = entry.min(x);
         });
-        least
+        Ok(least)
     }
 
     /// One row a face, column `i` of the edge opposite corner `i`, for the faces here.
-    #[must_use]
-    pub fn corner_rows(&self, rows: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub fn corner_rows(&self, rows: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, SolveError> {
         let flip = |f: usize| self.flipped.as_ref().is_some_and(|flipped| flipped[f]);
-        rows.iter().enumerate().map(|(f, &[a, b, c])| if flip(f) { [a, c, b] } else { [a, b, c] }).collect()
+        let row = |(f, &[a, b, c]): (usize, &[f64; 3])| if flip(f) { [a, c, b] } else { [a, b, c] };
+        memory::gathered(rows.iter().enumerate().map(row))
     }
 
     /// Values of the mesh's vertices from those here.
-    #[must_use]
-    pub fn spread<T: Copy>(&self, values: &[T]) -> Vec<T> {
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub fn spread<T: Copy>(&self, values: &[T]) -> Result<Vec<T>, SolveError> {
         match &self.weld {
-            Some(weld) => weld.vertex.iter().map(|&v| values[v as usize]).collect(),
-            None => values.to_vec(),
+            Some(weld) => memory::gathered(weld.vertex.iter().map(|&v| values[v as usize])),
+            None => memory::twin(values),
         }
     }
 
@@ -152,10 +164,12 @@ impl<'a> Working<'a> {
     }
 
     /// Positions of the mesh's vertices from those here: vertices that did not move keep their bits.
-    #[must_use]
-    pub fn positions(&self, points: &[Point]) -> Vec<Point> {
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub fn positions(&self, points: &[Point]) -> Result<Vec<Point>, SolveError> {
         let (Some(before), Some(here)) = (self.original.positions(), self.mesh.positions()) else {
-            return points.to_vec();
+            return memory::twin(points);
         };
         let position = |(v, &old): (u32, &Point)| {
             let w = self.vertex(v) as usize;
@@ -165,16 +179,18 @@ impl<'a> Working<'a> {
                 self.place(points[w])
             }
         };
-        (0..).zip(before).map(position).collect()
+        memory::gathered((0..before.len() as u32).zip(before).map(position))
     }
 
     /// The vertices of the mesh at the border edges here whose vertices are several of the mesh:
     /// by tail and head here.
-    #[must_use]
-    pub fn seam_edges(&self) -> HashMap<[u32; 2], [u32; 2]> {
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub fn seam_edges(&self) -> Result<HashMap<[u32; 2], [u32; 2]>, SolveError> {
         let (connectivity, faces) = (self.mesh.connectivity(), self.original.connectivity().faces());
         if self.weld.is_none() {
-            return HashMap::new();
+            return Ok(HashMap::new());
         }
         let own = |h: usize, v: u32| {
             faces[h / 3].into_iter().find(|&w| self.vertex(w) == v).unwrap_or_else(|| self.original(v))
@@ -183,7 +199,7 @@ impl<'a> Working<'a> {
             let here = [connectivity.tail(h), connectivity.head(h)];
             (here, here.map(|v| own(h, v)))
         };
-        connectivity.boundary().map(edge).collect()
+        memory::mapped(connectivity.boundary().map(edge))
     }
 }
 
@@ -206,14 +222,14 @@ fn far_origin(positions: &[Point]) -> Point {
 }
 
 /// The mesh with some faces turned over.
-fn turned(mesh: &Mesh, flipped: &[bool]) -> Result<Mesh> {
-    let faces = turned_over(mesh.connectivity().faces(), flipped);
+fn turned(mesh: &Mesh, flipped: &[bool]) -> crate::Result<Mesh> {
+    let faces = turned_over(mesh.connectivity().faces(), flipped)?;
     match mesh.positions() {
-        Some(positions) => Ok(Mesh::new(positions.to_vec(), faces)?),
+        Some(positions) => Mesh::new(memory::twin(positions)?, faces),
         None => {
             let swap = |(&[a, b, c], &flip): (&[f64; 3], &bool)| if flip { [a, c, b] } else { [a, b, c] };
-            let lengths = mesh.edge_lengths().iter().zip(flipped).map(swap).collect();
-            Ok(Mesh::from_edge_lengths(faces, lengths, Some(mesh.connectivity().n_vertices()))?)
+            let lengths = memory::gathered(mesh.edge_lengths().iter().zip(flipped).map(swap))?;
+            Mesh::from_edge_lengths(faces, lengths, Some(mesh.connectivity().n_vertices()))
         }
     }
 }
@@ -243,7 +259,7 @@ mod tests {
         assert!(here.iter().zip(&shape.vertices).all(|(p, q)| p[2] == q[2]));
         let back: Vec<Point> = here.iter().map(|&p| working.place(p)).collect();
         assert_eq!(back, shape.vertices);
-        assert_eq!(working.positions(here), shape.vertices);
+        assert_eq!(working.positions(here).unwrap(), shape.vertices);
     }
 
     #[test]
@@ -259,6 +275,7 @@ mod tests {
         let connectivity = working.mesh().connectivity();
         assert!(!connectivity.has_any(&[EdgeKind::Boundary, EdgeKind::Inconsistent]));
         assert_eq!(connectivity.n_vertices(), shape.vertices.len());
-        assert_eq!(working.positions(working.mesh().positions().unwrap()), split.vertices);
+        let positions = working.mesh().positions().unwrap();
+        assert_eq!(working.positions(positions).unwrap(), split.vertices);
     }
 }

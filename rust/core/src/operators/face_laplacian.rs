@@ -1,5 +1,7 @@
 //! The Laplacian of functions with one value a face: discrete exterior calculus on the dual mesh.
 
+use crate::error::SolveError;
+use crate::memory;
 use crate::mesh::{triangle, Connectivity};
 
 /// Distances between centroids below this part of their edge's length count as that much: two faces folded
@@ -11,13 +13,15 @@ const LEAST_DISTANCE: f64 = 1e-3;
 ///
 /// With them the Dirichlet energy of a function `v` on the faces is `Σ weight (v_f − v_g)²` over the interior
 /// edges: the face Laplacian `L` of Rowe et al. 2024, supplement E (Desbrun et al. 2005).
-#[must_use]
+///
+/// # Errors
+/// [`crate::error::SolveError::Memory`] when the system does not give that much.
 pub fn face_laplacian_weights(
     connectivity: &Connectivity,
     lengths: &[[f64; 3]],
     centroids: &[[f64; 3]],
-) -> Vec<[f64; 3]> {
-    let mut weights = vec![[0.0; 3]; connectivity.n_faces()];
+) -> Result<Vec<[f64; 3]>, SolveError> {
+    let mut weights = memory::repeated([0.0; 3], connectivity.n_faces())?;
     for h in connectivity.edges() {
         let Some(twin) = connectivity.twin(h) else { continue };
         let (f, g) = (h / 3, twin / 3);
@@ -30,5 +34,5 @@ pub fn face_laplacian_weights(
         weights[f][h % 3] = weight;
         weights[g][twin % 3] = weight;
     }
-    weights
+    Ok(weights)
 }

@@ -24,7 +24,7 @@ pub fn cotangent_laplacian(connectivity: &Connectivity, lengths: &[[f64; 3]]) ->
         }
     };
     let weights: Vec<[f64; 3]> = memory::gathered(lengths.iter().map(halves))?;
-    let mut neighbors = Buckets::try_new(n, |visit| {
+    let mut neighbors = Buckets::new(n, |visit| {
         for (h, &weight) in weights.as_flattened().iter().enumerate() {
             let (tail, head) = (connectivity.tail(h), connectivity.head(h));
             visit(tail as usize, (head, weight));

@@ -68,7 +68,7 @@ fn rings(mesh: &Mesh) -> Result<Vec<(u32, Ring)>> {
     let connectivity = mesh.connectivity();
     let areas = usable_areas(mesh.edge_lengths());
     let boundary = is_boundary(connectivity, &areas);
-    let corners = Buckets::try_new(connectivity.n_vertices(), |visit| {
+    let corners = Buckets::new(connectivity.n_vertices(), |visit| {
         for (f, face) in connectivity.faces().iter().enumerate() {
             face.iter().enumerate().for_each(|(c, &v)| visit(v as usize, (f, c)));
         }

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_3;
 
 use crate::memory;
-use crate::mesh::edge_lengths;
+use crate::mesh::lengths_of;
 use crate::mesh::triangle;
 use crate::mesh::vector::{dot, norm, quality};
 use crate::remesh::curves::Role;
@@ -84,7 +84,7 @@ fn target_valences(remesher: &Remesher, borders: &[bool]) -> Result<Vec<i32>> {
             .filter_map(|&f| mesh.face(f))
             .map(|face| {
                 let corner = face.iter().position(|&w| w == v).unwrap_or(0);
-                triangle::angles(edge_lengths(&[[0, 1, 2]], &mesh.corners(face))[0])[corner]
+                triangle::angles(lengths_of(&mesh.corners(face)))[corner]
             })
             .sum();
         #[allow(clippy::cast_possible_truncation)]

@@ -16,7 +16,7 @@ pub(super) fn pattern_of(
     is_taken: impl Fn(usize) -> bool,
 ) -> Result<LowerPattern, SolveError> {
     let n = operator.n_columns;
-    let mut gathered = Buckets::try_new(n, |visit| {
+    let mut gathered = Buckets::new(n, |visit| {
         (0..n).for_each(|j| visit(j, j as u32));
         for b in (0..operator.n_blocks()).filter(|&b| is_taken(b)) {
             let (columns, _) = operator.block(b);

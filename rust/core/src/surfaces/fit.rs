@@ -8,6 +8,7 @@ use super::motion::COUNT;
 use super::samples::Samples;
 use super::starts::starts;
 use super::{Kind, Surface};
+use crate::error::SolveError;
 use crate::linear::small::solved;
 use crate::mesh::vector::norm;
 
@@ -26,11 +27,13 @@ pub struct FittedSurface {
 /// Distances, not algebraic residuals, are minimized: radii have no bias to speak of. Several starts are made
 /// of points and normals, the best followed with weights of Geman and McClure, whose scale falls from what
 /// the start leaves to the noise.
-#[must_use]
-pub fn fit(kind: Kind, samples: &Samples, sigma: f64) -> Option<FittedSurface> {
-    let (here, center, size) = samples.normalized()?;
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub fn fit(kind: Kind, samples: &Samples, sigma: f64) -> Result<Option<FittedSurface>, SolveError> {
+    let Some((here, center, size)) = samples.normalized()? else { return Ok(None) };
     let sigma = sigma / size;
-    let mut begun: Vec<(f64, Surface)> = starts(kind, &here)
+    let mut begun: Vec<(f64, Surface)> = starts(kind, &here)?
         .into_iter()
         .filter(is_sound)
         .map(|surface| (here.spread(&surface), surface))
@@ -39,8 +42,8 @@ pub fn fit(kind: Kind, samples: &Samples, sigma: f64) -> Option<FittedSurface> {
     begun.sort_by(|a, b| a.0.total_cmp(&b.0));
     begun.truncate(FOLLOWED);
     let ends = begun.into_iter().map(|(_, start)| refined(start, &here, sigma)).filter(|(s, _)| is_sound(s));
-    let (surface, cost) = ends.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    Some(FittedSurface { surface: surface.placed(size, center), cost })
+    let best = ends.min_by(|a, b| a.1.total_cmp(&b.1));
+    Ok(best.map(|(surface, cost)| FittedSurface { surface: surface.placed(size, center), cost }))
 }
 
 fn is_sound(surface: &Surface) -> bool {

@@ -2,6 +2,8 @@
 
 use super::constants::{ENOUGH, MOST_MISFIT};
 use super::Surface;
+use crate::error::SolveError;
+use crate::memory;
 use crate::mesh::vector::{add, dot, scale, sub, Point};
 
 /// Points with normals, to which surfaces are fitted.
@@ -43,26 +45,35 @@ impl Samples {
     }
 
     /// Adds a point.
-    pub fn push(&mut self, point: Point, normal: Point, weight: f64) {
-        self.points.push(point);
-        self.normals.push(normal);
-        self.weights.push(weight);
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`] when the system does not give that much.
+    pub fn push(&mut self, point: Point, normal: Point, weight: f64) -> Result<(), SolveError> {
+        memory::push(&mut self.points, point)?;
+        memory::push(&mut self.normals, normal)?;
+        memory::push(&mut self.weights, weight)
     }
 
     /// Every k-th point so that at most `most` are left, with the others' weight.
-    #[must_use]
-    pub fn thinned(&self, most: usize) -> Self {
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub fn thinned(&self, most: usize) -> Result<Self, SolveError> {
         let step = self.len().div_ceil(most.max(1)).max(1);
         if step == 1 {
-            return self.clone();
+            return Ok(Self {
+                points: memory::twin(&self.points)?,
+                normals: memory::twin(&self.normals)?,
+                weights: memory::twin(&self.weights)?,
+            });
         }
         let mut thin = Self::default();
         for i in (0..self.len()).step_by(step) {
-            thin.push(self.points[i], self.normals[i], self.weights[i]);
+            thin.push(self.points[i], self.normals[i], self.weights[i])?;
         }
         let factor = self.total() / thin.total().max(f64::MIN_POSITIVE);
         thin.weights.iter_mut().for_each(|w| *w *= factor);
-        thin
+        Ok(thin)
     }
 
     /// What the points cost on a surface.
@@ -93,20 +104,24 @@ impl Samples {
     }
 
     /// The same about their center, in the unit of their size; with both.
-    pub(super) fn normalized(&self) -> Option<(Self, Point, f64)> {
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`], here and below.
+    pub(super) fn normalized(&self) -> Result<Option<(Self, Point, f64)>, SolveError> {
         let total = self.total();
         if total.is_nan() || total <= 0.0 {
-            return None;
+            return Ok(None);
         }
         let each = || self.points.iter().zip(&self.weights);
         let center = scale(each().fold([0.0; 3], |sum, (&p, &w)| add(sum, scale(p, w))), 1.0 / total);
         let square: f64 = each().map(|(&p, w)| w * dot(sub(p, center), sub(p, center))).sum();
         let size = (square / total).sqrt();
         if !(size > 0.0 && size.is_finite()) {
-            return None;
+            return Ok(None);
         }
-        let points = self.points.iter().map(|&p| scale(sub(p, center), 1.0 / size)).collect();
-        Some((Self { points, normals: self.normals.clone(), weights: self.weights.clone() }, center, size))
+        let points = memory::gathered(self.points.iter().map(|&p| scale(sub(p, center), 1.0 / size)))?;
+        let (normals, weights) = (memory::twin(&self.normals)?, memory::twin(&self.weights)?);
+        Ok(Some((Self { points, normals, weights }, center, size)))
     }
 
     /// The median distance from a surface, of so many points that it is good enough for choosing and scaling.

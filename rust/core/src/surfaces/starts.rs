@@ -1,17 +1,28 @@
 //! Surfaces to begin a fit with, from points and normals.
 
 use super::{beside, perpendicular, Kind, Surface};
+use crate::error::SolveError;
 use crate::linear::small::{eigen3, scatter, solved, symmetric_eigen};
+use crate::memory;
 use crate::mesh::vector::{add, cross, dot, norm, scale, sub, unit, Point};
 use crate::surfaces::Samples;
 
+type Result<T> = std::result::Result<T, SolveError>;
+
 /// Surfaces of a `kind` near points that lie about the origin, with the size 1.
-pub(super) fn starts(kind: Kind, samples: &Samples) -> Vec<Surface> {
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much, here and below.
+pub(super) fn starts(kind: Kind, samples: &Samples) -> Result<Vec<Surface>> {
     match kind {
         Kind::Plane => planes(samples),
-        Kind::Sphere => spheres(samples),
+        Kind::Sphere => Ok(spheres(samples)),
         Kind::Cylinder | Kind::Cone | Kind::Torus => {
-            axes(samples).into_iter().flat_map(|(axis, point)| about(kind, samples, axis, point)).collect()
+            let mut found = Vec::new();
+            for (axis, point) in axes(samples) {
+                found.extend(about(kind, samples, axis, point)?);
+            }
+            Ok(found)
         }
     }
 }
@@ -31,14 +42,14 @@ fn principal(matrix: [[f64; 3]; 3]) -> [Point; 3] {
     pairs.map(|pair| pair.1)
 }
 
-fn planes(samples: &Samples) -> Vec<Surface> {
+fn planes(samples: &Samples) -> Result<Vec<Surface>> {
     let [.., thin] = principal(spread(&samples.points, &samples.weights, true));
     let sum =
         samples.normals.iter().zip(&samples.weights).fold([0.0; 3], |sum, (&n, &w)| add(sum, scale(n, w)));
     let through = |normal: Point| {
-        let mut offsets: Vec<f64> = samples.points.iter().map(|&p| dot(p, normal)).collect();
+        let mut offsets: Vec<f64> = memory::gathered(samples.points.iter().map(|&p| dot(p, normal)))?;
         let middle = offsets.len() / 2;
-        Surface::Plane { normal, offset: *offsets.select_nth_unstable_by(middle, f64::total_cmp).1 }
+        Ok(Surface::Plane { normal, offset: *offsets.select_nth_unstable_by(middle, f64::total_cmp).1 })
     };
     [thin, unit(sum)].into_iter().filter(|n| norm(*n) > 0.5).map(through).collect()
 }
@@ -111,11 +122,12 @@ fn complex(samples: &Samples) -> Option<(Point, Point)> {
 }
 
 /// Surfaces of a kind about an axis in a direction, through `point` where that is known.
-fn about(kind: Kind, samples: &Samples, axis: Point, point: Option<Point>) -> Vec<Surface> {
+fn about(kind: Kind, samples: &Samples, axis: Point, point: Option<Point>) -> Result<Vec<Surface>> {
     let first = perpendicular(axis);
     let second = cross(axis, first);
     let place = |x: f64, y: f64| add(scale(first, x), scale(second, y));
-    let flat: Vec<[f64; 2]> = samples.points.iter().map(|&p| [dot(p, first), dot(p, second)]).collect();
+    let flat: Vec<[f64; 2]> =
+        memory::gathered(samples.points.iter().map(|&p| [dot(p, first), dot(p, second)]))?;
     let meeting = || {
         let rows = samples.normals.iter().zip(&flat).zip(&samples.weights).map(|((&n, p), &w)| {
             let n = [dot(n, first), dot(n, second)];
@@ -128,7 +140,7 @@ fn about(kind: Kind, samples: &Samples, axis: Point, point: Option<Point>) -> Ve
     if let Some([x, y, _]) = circle(flat.iter().copied().zip(samples.weights.iter().copied())) {
         through.push(place(x, y));
     }
-    through.into_iter().filter_map(|point| turned(kind, samples, axis, point)).collect()
+    through.into_iter().filter_map(|point| turned(kind, samples, axis, point).transpose()).collect()
 }
 
 /// The circle through points in a plane: center and radius, by algebraic least squares.
@@ -140,23 +152,20 @@ fn circle(points: impl Iterator<Item = ([f64; 2], f64)>) -> Option<[f64; 3]> {
 }
 
 /// The surface of a kind about an axis, by the heights of the points along it and their distances from it.
-fn turned(kind: Kind, samples: &Samples, axis: Point, point: Point) -> Option<Surface> {
-    let profile: Vec<[f64; 2]> = samples
-        .points
-        .iter()
-        .map(|&p| {
-            let (height, rho, _) = beside(p, point, axis);
-            [rho, height]
-        })
-        .collect();
+fn turned(kind: Kind, samples: &Samples, axis: Point, point: Point) -> Result<Option<Surface>> {
+    let places = samples.points.iter().map(|&p| {
+        let (height, rho, _) = beside(p, point, axis);
+        [rho, height]
+    });
+    let profile: Vec<[f64; 2]> = memory::gathered(places)?;
     let total = samples.total();
     let mean = |k: usize| profile.iter().zip(&samples.weights).map(|(p, w)| w * p[k]).sum::<f64>() / total;
     let (rho, height) = (mean(0), mean(1));
-    match kind {
+    Ok(match kind {
         Kind::Cylinder => Some(Surface::Cylinder { point, axis, radius: rho }),
         Kind::Cone => {
             // The line through the profile, by its direction of most spread.
-            let rows: Vec<Point> = profile.iter().map(|p| [p[0], p[1], 0.0]).collect();
+            let rows: Vec<Point> = memory::gathered(profile.iter().map(|p| [p[0], p[1], 0.0]))?;
             let [mut along, ..] = principal(spread(&rows, &samples.weights, true));
             if along[1] < 0.0 {
                 along = scale(along, -1.0);
@@ -165,9 +174,12 @@ fn turned(kind: Kind, samples: &Samples, axis: Point, point: Point) -> Option<Su
             Some(Surface::Cone { point, axis, radius: rho, slope: along[0].atan2(along[1]) })
         }
         Kind::Torus => {
-            let [major, center, minor] = circle(profile.into_iter().zip(samples.weights.iter().copied()))?;
-            Some(Surface::Torus { center: add(point, scale(axis, center)), axis, major: major.abs(), minor })
+            let found = circle(profile.into_iter().zip(samples.weights.iter().copied()));
+            found.map(|[major, center, minor]| {
+                let center = add(point, scale(axis, center));
+                Surface::Torus { center, axis, major: major.abs(), minor }
+            })
         }
         Kind::Plane | Kind::Sphere => None,
-    }
+    })
 }

@@ -45,7 +45,7 @@ impl EnergyOptions {
             let mut weights = self.face_weights.clone();
             let carried = weights.as_deref_mut().unwrap_or_default();
             let (connectivity, lengths, _) =
-                delaunay_flips_carrying(mesh.connectivity(), mesh.edge_lengths(), carried);
+                delaunay_flips_carrying(mesh.connectivity(), mesh.edge_lengths(), carried)?;
             (Cow::Owned(Mesh::from_connectivity(connectivity, lengths)?), weights.map(Cow::Owned))
         } else {
             (mesh, self.face_weights.as_ref().map(Cow::Borrowed))

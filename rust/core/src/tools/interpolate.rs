@@ -7,7 +7,7 @@ use crate::mesh::{Connectivity, Mesh};
 use crate::progress::Progress;
 use crate::solve::Solution;
 use crate::unit::Unit;
-use crate::{Error, Result};
+use crate::{memory, Error, Result};
 
 /// `min_u E(u)` with `u` given at the vertices `indices`: row `r` of `values` belongs to `indices[r]`, `E` is
 /// the energy of the options. Vertices that no face uses get the mean of the given values.
@@ -32,7 +32,7 @@ pub fn interpolate(
     values.check("values", indices.len())?;
     let mut fixed = vec![false; n];
     let k = values.n_columns;
-    let mut target = Columns::zeros(n, k);
+    let mut target = Columns::try_zeros(n, k)?;
     for c in 0..k {
         // In the values' own unit: a sum of the largest numbers is none.
         let unit = Unit::of(values.column(c).iter().copied());
@@ -62,12 +62,12 @@ pub fn interpolate(
 
 /// Refuses a connected part with faces but without a known vertex: nothing would determine its values.
 fn refuse_unknown_component(connectivity: &Connectivity, known: &[bool]) -> Result<()> {
-    let mut parts = Partition::new(connectivity.n_vertices());
+    let mut parts = Partition::new(connectivity.n_vertices())?;
     for &[a, b, c] in connectivity.faces() {
         parts.unite(a, b);
         parts.unite(a, c);
     }
-    let mut has_value = vec![false; connectivity.n_vertices()];
+    let mut has_value = memory::repeated(false, connectivity.n_vertices())?;
     for (v, _) in known.iter().enumerate().filter(|(_, known)| **known) {
         has_value[parts.root(v as u32) as usize] = true;
     }

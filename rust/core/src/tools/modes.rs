@@ -281,7 +281,7 @@ impl Sequence<'_> {
         let energies: Vec<f64> = modes.iter().map(|u| self.form.evaluate(u)).collect::<Result<_>>()?;
         let mut order: Vec<usize> = (0..modes.len()).collect();
         order.sort_by(|&a, &b| energies[a].total_cmp(&energies[b]));
-        let mut values = Columns::zeros(self.mass.len(), modes.len());
+        let mut values = Columns::try_zeros(self.mass.len(), modes.len())?;
         for (c, &j) in order.iter().enumerate() {
             let largest = modes[j].iter().fold(0.0_f64, |a, x| a.max(x.abs()));
             let first = modes[j].iter().find(|x| x.abs() >= (1.0 - 1e-6) * largest);

@@ -14,15 +14,16 @@ use ridgeform_core::solve::Solver;
 use ridgeform_core::tools::{
     denoise, diffusion_curves, facet, fill_holes, interpolate, parts, restore, segment, smooth_curves,
     stylize, trace_curves, vibration_modes, DenoiseOptions, DiffusionCurvesOptions, EnergyOptions,
-    FacetOptions, FillHolesOptions, ModeOptions, PartsOptions, RestoreOptions, ScalarOptions, SegmentOptions,
-    SolveOptions, StylizeOptions,
+    FacetOptions, FillHolesOptions, Levels, ModeOptions, PartsOptions, RestoreOptions, ScalarOptions,
+    SegmentOptions, SolveOptions, StylizeOptions,
 };
 use ridgeform_core::{Progress, Result};
 
 /// Each call, and how many vertices a side of its mesh has:
 /// those that take little are asked for on large meshes only.
-pub const CALLS: [(&str, usize); 15] = [
+pub const CALLS: [(&str, usize); 17] = [
     ("stylize", 75),
+    ("stylize by levels", 124),
     ("denoise", 75),
     ("denoise 3 columns", 75),
     ("denoise quadratic", 75),
@@ -30,6 +31,7 @@ pub const CALLS: [(&str, usize); 15] = [
     ("interpolate", 75),
     ("vibration_modes", 75),
     ("segment", 60),
+    ("segment by levels", 124),
     ("parts", 115),
     ("facet", 110),
     ("restore", 60),
@@ -95,6 +97,13 @@ impl Given {
                 let options = StylizeOptions { iterations: 1, solve, ..StylizeOptions::default() };
                 stylize(&self.mesh, &options, &progress).map(drop)
             }
+            "stylize by levels" => {
+                let solve = few(2, Solver::Auto);
+                let (levels, movement) = (Levels::Always, Some(1e-3));
+                let options =
+                    StylizeOptions { iterations: 2, solve, levels, movement, ..StylizeOptions::default() };
+                stylize(&self.mesh, &options, &progress).map(drop)
+            }
             "denoise" => denoised(&self.heights, scalar(Solver::Auto)),
             "denoise 3 columns" => denoised(&self.points, scalar(Solver::Auto)),
             "denoise quadratic" => {
@@ -110,6 +119,10 @@ impl Given {
                 vibration_modes(&self.mesh, 2, &options, &progress).map(drop)
             }
             "segment" => segment(&self.mesh, None, &SegmentOptions::default(), &progress).map(drop),
+            "segment by levels" => {
+                let options = SegmentOptions { levels: Levels::Always, ..SegmentOptions::default() };
+                segment(&self.mesh, None, &options, &progress).map(drop)
+            }
             "parts" => parts(&self.mesh, &PartsOptions::default(), &progress).map(drop),
             "facet" => {
                 let options = FacetOptions { facets: Some(2000), ..FacetOptions::default() };

@@ -19,7 +19,7 @@ pub(crate) fn patched(mesh: &Mesh, patches: &[Patch]) -> Result<Mesh, String> {
     }
     let filled = Mesh::new(vertices, faces).unwrap();
     invariants::check(filled.connectivity())?;
-    let (before, after) = (report(mesh), report(&filled));
+    let (before, after) = (report(mesh).unwrap(), report(&filled).unwrap());
     let expected = MeshReport {
         n_components: after.n_components,
         n_boundary_loops: after.n_boundary_loops,

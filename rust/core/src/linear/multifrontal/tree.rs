@@ -89,7 +89,7 @@ impl Tree {
     fn find_children(&mut self, parents: &[u32]) -> Result<(), SolveError> {
         let count = parents.len();
         let of = |parent: u32| if parent == NONE { count } else { parent as usize };
-        self.children = Buckets::try_new(count + 1, |visit| {
+        self.children = Buckets::new(count + 1, |visit| {
             (0..).zip(parents).for_each(|(s, &parent)| visit(of(parent), s));
         })?;
         Ok(())
@@ -174,7 +174,7 @@ impl Tree {
             place[i as usize] = k as u32;
         }
         let count = panels.count();
-        let in_panels = Buckets::try_new(count, |visit| {
+        let in_panels = Buckets::new(count, |visit| {
             for j in 0..pattern.n {
                 for e in pattern.starts[j]..pattern.starts[j + 1] {
                     let (a, b) = (place[pattern.rows[e]], place[j]);

@@ -28,7 +28,7 @@ impl Graph {
     /// # Errors
     /// [`SolveError::Memory`].
     pub(super) fn new(pattern: &LowerPattern) -> Result<Self, SolveError> {
-        let (starts, neighbors) = Buckets::try_new(pattern.n, |visit| {
+        let (starts, neighbors) = Buckets::new(pattern.n, |visit| {
             for j in 0..pattern.n {
                 for &i in pattern.rows[pattern.starts[j]..pattern.starts[j + 1]].iter().filter(|&&i| i != j) {
                     visit(i, j as u32);

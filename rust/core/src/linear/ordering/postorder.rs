@@ -46,7 +46,7 @@ fn parents(pattern: &LowerPattern, order: &[u32]) -> Result<Vec<u32>, SolveError
         place[i as usize] = k as u32;
     }
     // The columns of each row of the lower triangle, in the new order.
-    let columns = Buckets::try_new(n, |visit| {
+    let columns = Buckets::new(n, |visit| {
         for j in 0..n {
             for &i in &pattern.rows[pattern.starts[j] + 1..pattern.starts[j + 1]] {
                 let (a, b) = (place[i], place[j]);

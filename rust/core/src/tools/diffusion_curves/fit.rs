@@ -7,7 +7,7 @@ use crate::linear::Columns;
 use crate::mesh::partition::Partition;
 use crate::mesh::CutMesh;
 use crate::progress::Progress;
-use crate::Result;
+use crate::{memory, Result};
 
 /// What is fitted to.
 pub(super) struct Task<'a> {
@@ -36,17 +36,17 @@ impl Task<'_> {
     /// fit leaves such vertices out and tells, by the nearest color, which it is; the next uses it on its
     /// side and nowhere else.
     pub(super) fn screened(&self, progress: &Progress) -> Result<CopyColors> {
-        let copies = self.copies();
-        let mut roots = pieces(self.cut);
+        let copies = self.copies()?;
+        let mut roots = pieces(self.cut)?;
         let single = |copy: usize| copies[self.cut.vertices[copy] as usize].len() == 1;
-        let target = self.target();
-        let mut weights = self.weights(&mut roots, single);
+        let target = self.target()?;
+        let mut weights = self.weights(&mut roots, single)?;
         let mut values = self.solve(&weights, &target, progress)?;
         let mut owners = Vec::new();
         for _ in 0..MOST_FITS {
-            owners = copies.iter().map(|copies| owner(copies, &values, &target)).collect();
+            owners = memory::gathered(copies.iter().map(|copies| owner(copies, &values, &target)))?;
             let owned = |copy: usize| owners[self.cut.vertices[copy] as usize] == Some(copy as u32);
-            let next = self.weights(&mut roots, owned);
+            let next = self.weights(&mut roots, owned)?;
             if next == weights {
                 break;
             }
@@ -57,7 +57,7 @@ impl Task<'_> {
     }
 
     fn solve(&self, weights: &[f64], target: &Columns, progress: &Progress) -> Result<Columns> {
-        let scaled: Vec<f64> = weights.iter().map(|w| self.fidelity * w).collect();
+        let scaled: Vec<f64> = memory::gathered(weights.iter().map(|w| self.fidelity * w))?;
         let mut values = self.membrane.screened(&scaled, target, progress)?;
         // The maximum principle, to the last bit.
         for c in 0..values.n_columns {
@@ -76,17 +76,17 @@ impl Task<'_> {
         harmonic: &mut Harmonic<'_>,
         progress: &Progress,
     ) -> Result<()> {
-        let reading = Reading::new(self, &fit.owners);
-        let mut rebuilt = fit.values.clone();
+        let reading = Reading::new(self, &fit.owners)?;
+        let mut rebuilt = fit.values.copied()?;
         harmonic.extend(&mut rebuilt, progress)?;
-        let taken = reading.taken(&rebuilt);
-        let data = self.colors.data.iter().zip(&taken.data).map(|(t, u)| t - u).collect();
-        let mut descent = reading.given_back(Columns { data, ..taken });
+        let taken = reading.taken(&rebuilt)?;
+        let data = memory::gathered(self.colors.data.iter().zip(&taken.data).map(|(t, u)| t - u))?;
+        let mut descent = reading.given_back(Columns { data, ..taken })?;
         harmonic.transposed(&mut descent, progress)?;
         let bounds: Vec<[f64; 2]> = (0..taken.n_columns).map(|c| self.range(c)).collect();
         bounded::minimize(&mut fit.values, &descent, &bounds, FIT_LIMITS, |columns| {
             harmonic.extend(columns, progress)?;
-            *columns = reading.given_back(reading.taken(columns));
+            *columns = reading.given_back(reading.taken(columns)?)?;
             harmonic.transposed(columns, progress)
         })
     }
@@ -98,12 +98,15 @@ impl Task<'_> {
     }
 
     /// The mean of the data of every piece, in the row of its root.
-    pub(super) fn means(&self, fit: &CopyColors, roots: &mut Partition) -> Columns {
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing, here and below.
+    pub(super) fn means(&self, fit: &CopyColors, roots: &mut Partition) -> Result<Columns> {
         let n = self.cut.n_copies();
-        let root: Vec<usize> = (0..n).map(|i| roots.root(i as u32) as usize).collect();
-        let mut totals = vec![0.0; n];
+        let root: Vec<usize> = memory::gathered((0..n).map(|i| roots.root(i as u32) as usize))?;
+        let mut totals = memory::repeated(0.0, n)?;
         root.iter().zip(&fit.weights).for_each(|(&r, w)| totals[r] += w);
-        let mut means = Columns::zeros(n, self.colors.n_columns);
+        let mut means = Columns::try_zeros(n, self.colors.n_columns)?;
         for c in 0..self.colors.n_columns {
             let data = self.colors.column(c);
             let [least, most] = self.range(c);
@@ -113,34 +116,37 @@ impl Task<'_> {
             }
             sums.iter_mut().zip(&totals).for_each(|(x, total)| *x = (*x / total).clamp(least, most));
         }
-        means
+        Ok(means)
     }
 
     /// The area of every copy that counts; all of a piece where none of it would.
-    fn weights(&self, roots: &mut Partition, counts: impl Fn(usize) -> bool) -> Vec<f64> {
+    fn weights(&self, roots: &mut Partition, counts: impl Fn(usize) -> bool) -> Result<Vec<f64>> {
         let mass = &self.membrane.mass;
-        let mut weights: Vec<f64> = (0..mass.len()).map(|i| if counts(i) { mass[i] } else { 0.0 }).collect();
+        let counted = (0..mass.len()).map(|i| if counts(i) { mass[i] } else { 0.0 });
+        let mut weights: Vec<f64> = memory::gathered(counted)?;
         for fallback in [|area: f64| area, |_| 1.0] {
-            let mut sums = vec![0.0; mass.len()];
+            let mut sums = memory::repeated(0.0, mass.len())?;
             (0..mass.len()).for_each(|i| sums[roots.root(i as u32) as usize] += weights[i]);
             let empty = |i: usize, roots: &mut Partition| sums[roots.root(i as u32) as usize] <= 0.0;
             (0..mass.len()).filter(|&i| empty(i, roots)).for_each(|i| weights[i] = fallback(mass[i]));
         }
-        weights
+        Ok(weights)
     }
 
-    fn target(&self) -> Columns {
+    fn target(&self) -> Result<Columns> {
         let vertices = &self.cut.vertices;
-        let copied = |c: usize| vertices.iter().map(move |&v| self.colors.column(c)[v as usize]);
-        let data = (0..self.colors.n_columns).flat_map(copied).collect();
-        Columns { n_rows: vertices.len(), n_columns: self.colors.n_columns, data }
+        let mut data = memory::room(vertices.len() * self.colors.n_columns)?;
+        for c in 0..self.colors.n_columns {
+            data.extend(vertices.iter().map(|&v| self.colors.column(c)[v as usize]));
+        }
+        Ok(Columns { n_rows: vertices.len(), n_columns: self.colors.n_columns, data })
     }
 
     /// The copies of every vertex.
-    pub(super) fn copies(&self) -> Vec<Vec<u32>> {
-        let mut copies = vec![Vec::new(); self.colors.n_rows];
+    pub(super) fn copies(&self) -> Result<Vec<Vec<u32>>> {
+        let mut copies = memory::repeated(Vec::new(), self.colors.n_rows)?;
         (0..).zip(&self.cut.vertices).for_each(|(copy, &v)| copies[v as usize].push(copy));
-        copies
+        Ok(copies)
     }
 }
 
@@ -154,9 +160,10 @@ struct Reading<'a> {
 }
 
 impl<'a> Reading<'a> {
-    fn new(task: &Task<'a>, owners: &[Option<u32>]) -> Self {
+    fn new(task: &Task<'a>, owners: &[Option<u32>]) -> Result<Self> {
         let vertices = &task.cut.vertices;
-        let (mut mass, mut counts) = (vec![0.0; owners.len()], vec![0.0; owners.len()]);
+        let (mut mass, mut counts) =
+            (memory::repeated(0.0, owners.len())?, memory::repeated(0.0, owners.len())?);
         for (&v, m) in vertices.iter().zip(&task.membrane.mass) {
             mass[v as usize] += m;
             counts[v as usize] += 1.0;
@@ -165,22 +172,23 @@ impl<'a> Reading<'a> {
             Some(owner) => f64::from(u8::from(owner == copy)),
             None => 1.0 / counts[v as usize],
         };
-        Self { vertices, parts: (0..).zip(vertices).map(part).collect(), mass }
+        let parts = memory::gathered((0..vertices.len() as u32).zip(vertices).map(part))?;
+        Ok(Self { vertices, parts, mass })
     }
 
     /// The colors of the vertices.
-    fn taken(&self, values: &Columns) -> Columns {
-        let mut taken = Columns::zeros(self.mass.len(), values.n_columns);
+    fn taken(&self, values: &Columns) -> Result<Columns> {
+        let mut taken = Columns::try_zeros(self.mass.len(), values.n_columns)?;
         for c in 0..values.n_columns {
             let out = taken.column_mut(c);
             let copies = self.vertices.iter().zip(&self.parts).zip(values.column(c));
             copies.for_each(|((&v, part), x)| out[v as usize] += part * x);
         }
-        taken
+        Ok(taken)
     }
 
     /// The transpose of [`Reading::taken`] times the areas.
-    fn given_back(&self, values: Columns) -> Columns {
+    fn given_back(&self, values: Columns) -> Result<Columns> {
         let copy = |c: usize| {
             let column = values.column(c);
             self.vertices
@@ -188,8 +196,9 @@ impl<'a> Reading<'a> {
                 .zip(&self.parts)
                 .map(|(&v, part)| part * self.mass[v as usize] * column[v as usize])
         };
-        let data = (0..values.n_columns).flat_map(|c| copy(c).collect::<Vec<_>>()).collect();
-        Columns { n_rows: self.vertices.len(), n_columns: values.n_columns, data }
+        let mut data = memory::room(self.vertices.len() * values.n_columns)?;
+        (0..values.n_columns).for_each(|c| data.extend(copy(c)));
+        Ok(Columns { n_rows: self.vertices.len(), n_columns: values.n_columns, data })
     }
 }
 
@@ -208,13 +217,16 @@ fn owner(copies: &[u32], values: &Columns, target: &Columns) -> Option<u32> {
 }
 
 /// The pieces of a cut surface: copies that faces connect.
-pub(super) fn pieces(cut: &CutMesh) -> Partition {
-    let mut roots = Partition::new(cut.n_copies());
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub(super) fn pieces(cut: &CutMesh) -> Result<Partition> {
+    let mut roots = Partition::new(cut.n_copies())?;
     for &[a, b, c] in &cut.faces {
         roots.unite(a, b);
         roots.unite(b, c);
     }
-    roots
+    Ok(roots)
 }
 
 fn range<'x>(column: impl IntoIterator<Item = &'x f64>) -> [f64; 2] {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::constants::LEAST_ISLAND;
 use crate::mesh::partition::Partition;
 use crate::mesh::Connectivity;
-use crate::{Error, Result};
+use crate::{memory, Error, Result};
 
 /// Faces that stay together.
 pub(super) struct Groups {
@@ -18,22 +18,20 @@ pub(super) struct Groups {
 impl Groups {
     /// Groups by number; each face by itself where there are none.
     pub(super) fn new(numbers: Option<&[u32]>, n_faces: usize) -> Result<Self> {
-        let mut order: Vec<u32> = (0..n_faces as u32).collect();
+        let mut order = memory::numbers(n_faces)?;
         let members: Vec<Vec<u32>> = match numbers {
-            None => order.iter().map(|&f| vec![f]).collect(),
+            None => memory::gathered(order.iter().map(|&f| vec![f]))?,
             Some(numbers) if numbers.len() != n_faces => {
                 let problem = format!("has {} entries, expected one per face: {n_faces}", numbers.len());
                 return Err(Error::argument("face_groups", problem));
             }
             Some(numbers) => {
-                order.sort_by_key(|&f| numbers[f as usize]);
-                order
-                    .chunk_by(|&a, &b| numbers[a as usize] == numbers[b as usize])
-                    .map(<[u32]>::to_vec)
-                    .collect()
+                order.sort_unstable_by_key(|&f| (numbers[f as usize], f));
+                let same = order.chunk_by(|&a, &b| numbers[a as usize] == numbers[b as usize]);
+                memory::sifted(same.map(<[u32]>::to_vec))?
             }
         };
-        let mut of = vec![0; n_faces];
+        let mut of = memory::repeated(0, n_faces)?;
         for (g, group) in (0..).zip(&members) {
             group.iter().for_each(|&f| of[f as usize] = g);
         }
@@ -54,28 +52,32 @@ impl Groups {
     }
 
     /// The groups that edges connect within their regions.
-    fn pieces(&self, connectivity: &Connectivity, labels: &[i32]) -> Partition {
-        let mut pieces = Partition::new(self.members.len());
+    fn pieces(&self, connectivity: &Connectivity, labels: &[i32]) -> Result<Partition> {
+        let mut pieces = Partition::new(self.members.len())?;
         for (f, g) in neighbors(connectivity).filter(|&(f, g)| labels[f] == labels[g]) {
             pieces.unite(self.of[f], self.of[g]);
         }
-        pieces
+        Ok(pieces)
     }
 
     /// Makes a region of its own of each part of a region that no edge joins to the rest.
-    pub(super) fn split(&self, connectivity: &Connectivity, labels: &mut [i32]) {
-        let mut pieces = self.pieces(connectivity, labels);
+    ///
+    /// # Errors
+    /// [`Error::Solve`] where memory is missing, here and below.
+    pub(super) fn split(&self, connectivity: &Connectivity, labels: &mut [i32]) -> Result<()> {
+        let mut pieces = self.pieces(connectivity, labels)?;
         for (label, group) in labels.iter_mut().zip(&self.of) {
             *label = pieces.root(*group) as i32;
         }
+        Ok(())
     }
 
     /// Gives islands of fewer than [`LEAST_ISLAND`] groups, cut off from the rest of their region,
     /// to the region around them.
-    pub(super) fn absorb_islands(&self, connectivity: &Connectivity, labels: &mut [i32]) {
-        let mut pieces = self.pieces(connectivity, labels);
+    pub(super) fn absorb_islands(&self, connectivity: &Connectivity, labels: &mut [i32]) -> Result<()> {
+        let mut pieces = self.pieces(connectivity, labels)?;
         let label_of = |piece: u32| labels[self.members[piece as usize][0] as usize];
-        let mut sizes = vec![0; self.members.len()];
+        let mut sizes = memory::repeated(0, self.members.len())?;
         (0..sizes.len()).for_each(|g| sizes[pieces.root(g as u32) as usize] += 1);
         let mut largest = BTreeMap::new();
         for (piece, &size) in (0..).zip(&sizes) {
@@ -101,6 +103,7 @@ impl Groups {
                 members.iter().for_each(|&f| labels[f as usize] = label);
             }
         }
+        Ok(())
     }
 }
 

@@ -33,7 +33,7 @@ impl Membrane {
         let mass = voronoi_mass(&connectivity, lengths)?;
         let mut lengths = memory::twin(lengths)?;
         mollify(&connectivity, &mut lengths);
-        let (connectivity, lengths, _) = delaunay_flips(&connectivity, &lengths);
+        let (connectivity, lengths, _) = delaunay_flips(&connectivity, &lengths)?;
         let mut laplacian = cotangent_laplacian(&connectivity, &lengths)?;
         for v in 0..n {
             let range = laplacian.indptr().outer_inds_sz(v);
@@ -89,7 +89,7 @@ impl Membrane {
     pub(super) fn screened(&self, weights: &[f64], target: &Columns, progress: &Progress) -> Result<Columns> {
         let all = memory::sifted(0..weights.len() as u32)?;
         let mut cholesky = self.factorize(&all, &all, |v| weights[v])?;
-        let mut values = target.clone();
+        let mut values = target.copied()?;
         for c in 0..values.n_columns {
             values.column_mut(c).iter_mut().zip(weights).for_each(|(x, a)| *x *= a);
         }
@@ -126,7 +126,7 @@ impl<'a> Harmonic<'a> {
         for c in 0..values.n_columns {
             self.free.iter().for_each(|&v| values.column_mut(c)[v as usize] = 0.0);
         }
-        let mut right = Columns::zeros(self.free.len(), values.n_columns);
+        let mut right = Columns::try_zeros(self.free.len(), values.n_columns)?;
         for c in 0..values.n_columns {
             let column = values.column(c);
             for (x, &v) in right.column_mut(c).iter_mut().zip(&self.free) {
@@ -146,7 +146,7 @@ impl<'a> Harmonic<'a> {
     /// 0 at the free copies.
     pub(super) fn transposed(&mut self, residual: &mut Columns, progress: &Progress) -> Result<()> {
         let Some(cholesky) = &mut self.cholesky else { return Ok(()) };
-        let mut inner = Columns::zeros(self.free.len(), residual.n_columns);
+        let mut inner = Columns::try_zeros(self.free.len(), residual.n_columns)?;
         for c in 0..residual.n_columns {
             for (x, &v) in inner.column_mut(c).iter_mut().zip(&self.free) {
                 *x = std::mem::take(&mut residual.column_mut(c)[v as usize]);

@@ -154,10 +154,10 @@ fn in_their_unit(
     let mut fit = task.screened(progress)?;
     let borders = Borders { connectivity, table: &table, cut: &cut, edges: &edges, starts: &starts };
     let mut curves = borders.colored(&fit.values);
-    let on_curves = Conditions::new(connectivity, &table, &cut, &curves).fixed;
-    let (points, point_colors) = points(&task, &fit, &on_curves);
+    let on_curves = Conditions::new(connectivity, &table, &cut, &curves)?.fixed;
+    let (points, point_colors) = points(&task, &fit, &on_curves)?;
     (curves.points, curves.point_colors) = (points.clone(), point_colors.clone());
-    let fixed = Conditions::new(connectivity, &table, &cut, &curves).fixed;
+    let fixed = Conditions::new(connectivity, &table, &cut, &curves)?.fixed;
     let mut harmonic = Harmonic::new(&membrane, &fixed)?;
     if options.refine {
         report("improving colors", 0.4)?;
@@ -169,7 +169,7 @@ fn in_their_unit(
 
     report("diffusing", 0.9)?;
     let sides = borders.sides(&fit);
-    let conditions = Conditions::new(connectivity, &table, &cut, &curves);
+    let conditions = Conditions::new(connectivity, &table, &cut, &curves)?;
     let redrawn = conditions.solve(connectivity, &cut, &mut harmonic, Some(&sides), progress)?;
     let mass = voronoi_mass(connectivity, mesh.edge_lengths())?;
     let error = mean_squared_error(&redrawn.colors, colors, &mass);
@@ -194,18 +194,19 @@ fn check_paint(mesh: &Mesh, colors: &Columns, fidelity: f64) -> Result<()> {
 }
 
 /// A vertex for every piece of surface without a curve, and the mean color of the piece.
-fn points(task: &Task<'_>, fit: &CopyColors, on_curves: &[bool]) -> (Vec<u32>, Vec<f64>) {
-    let mut roots = pieces(task.cut);
-    let means = task.means(fit, &mut roots);
-    let mut reached = vec![false; on_curves.len()];
+fn points(task: &Task<'_>, fit: &CopyColors, on_curves: &[bool]) -> Result<(Vec<u32>, Vec<f64>)> {
+    let mut roots = pieces(task.cut)?;
+    let means = task.means(fit, &mut roots)?;
+    let mut reached = memory::repeated(false, on_curves.len())?;
     (0..).zip(on_curves).filter(|(_, on)| **on).for_each(|(i, _)| reached[roots.root(i) as usize] = true);
     let (mut points, mut colors) = (Vec::new(), Vec::new());
     // The root of a piece is its first copy.
     for copy in (0..on_curves.len()).filter(|&i| roots.root(i as u32) as usize == i && !reached[i]) {
-        points.push(task.cut.vertices[copy]);
+        memory::push(&mut points, task.cut.vertices[copy])?;
+        memory::extend(&mut colors, means.n_columns)?;
         colors.extend((0..means.n_columns).map(|c| means.column(c)[copy]));
     }
-    (points, colors)
+    Ok((points, colors))
 }
 
 /// The mean of squared differences over the channels and the area.

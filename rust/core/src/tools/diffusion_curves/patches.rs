@@ -4,6 +4,7 @@ use super::constants::{PAINT_NOISE, SHADING};
 use super::groups::Groups;
 use super::sorting::{Paint, Sorted};
 use crate::mesh::partition::Partition;
+use crate::{memory, Result};
 
 /// Vertices joined by edges over which colors hardly change.
 pub(super) struct PaintedParts {
@@ -14,34 +15,39 @@ pub(super) struct PaintedParts {
 }
 
 impl PaintedParts {
-    pub(super) fn new(paint: &Paint<'_>) -> Self {
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing.
+    pub(super) fn new(paint: &Paint<'_>) -> Result<Self> {
         let connectivity = paint.mesh.connectivity();
         let jump = |h: usize| paint.distance(connectivity.tail(h) as usize, connectivity.head(h) as usize);
-        let jumps: Vec<f64> = (0..connectivity.n_halfedges()).map(jump).collect();
-        let tolerance = (SHADING * paint.scale()).max(PAINT_NOISE * median(&mut jumps.clone()));
-        let mut parts = Partition::new(connectivity.n_vertices());
+        let jumps: Vec<f64> = memory::gathered((0..connectivity.n_halfedges()).map(jump))?;
+        let tolerance = (SHADING * paint.scale()).max(PAINT_NOISE * median(&mut memory::twin(&jumps)?));
+        let mut parts = Partition::new(connectivity.n_vertices())?;
         for (h, _) in jumps.iter().enumerate().filter(|(_, jump)| **jump < tolerance) {
             parts.unite(connectivity.tail(h), connectivity.head(h));
         }
-        let root = (0..connectivity.n_vertices() as u32).map(|v| parts.root(v) as usize).collect();
-        Self { root, tolerance }
+        let roots = (0..connectivity.n_vertices() as u32).map(|v| parts.root(v) as usize);
+        Ok(Self { root: memory::gathered(roots)?, tolerance })
     }
 }
 
 /// Gives each patch a region of its own: a part of the vertices, none of which has the color of its region,
 /// and that `least` faces or more touch.
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
 pub(super) fn add_patches(
     paint: &Paint<'_>,
     sorted: &Sorted,
     groups: &Groups,
     least: usize,
     labels: &mut [i32],
-) {
+) -> Result<()> {
     let connectivity = paint.mesh.connectivity();
-    let PaintedParts { root, tolerance } = PaintedParts::new(paint);
-    let mut strange = vec![true; root.len()];
+    let PaintedParts { root, tolerance } = PaintedParts::new(paint)?;
+    let mut strange = memory::repeated(true, root.len())?;
     root.iter().zip(&sorted.off).for_each(|(&r, off)| strange[r] &= *off > tolerance);
-    let mut touching = vec![0; root.len()];
+    let mut touching = memory::repeated(0, root.len())?;
     for face in connectivity.faces() {
         let mut found = face.map(|v| root[v as usize]);
         found.sort_unstable();
@@ -53,7 +59,7 @@ pub(super) fn add_patches(
     }
     let first = labels.iter().max().map_or(0, |most| most + 1);
     let patches = (0..root.len()).filter(|&r| root[r] == r && strange[r] && touching[r] >= least.max(1));
-    let mut region = vec![None; root.len()];
+    let mut region = memory::repeated(None, root.len())?;
     patches.zip(first..).for_each(|(r, label)| region[r] = Some(label));
     for (f, face) in connectivity.faces().iter().enumerate() {
         let [a, b, c] = face.map(|v| region[root[v as usize]]);
@@ -61,6 +67,7 @@ pub(super) fn add_patches(
             groups.set(labels, f, label);
         }
     }
+    Ok(())
 }
 
 /// The median of numbers, 0 of none.

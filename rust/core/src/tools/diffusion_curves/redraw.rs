@@ -8,7 +8,7 @@ use crate::memory::Tool;
 use crate::mesh::{Connectivity, CutMesh, EdgeTable, Mesh};
 use crate::progress::{Progress, Report};
 use crate::unit::Unit;
-use crate::{Error, Result};
+use crate::{memory, Error, Result};
 
 /// Colors on both sides of edges of a mesh, and at single vertices.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -73,7 +73,7 @@ pub fn redraw(
     let table = EdgeTable::new(connectivity)?;
     let cut = CutMesh::new(connectivity, &table, &curves.cuts(connectivity, &table)?)?;
     let membrane = Membrane::new(&cut, mesh.edge_lengths())?;
-    let conditions = Conditions::new(connectivity, &table, &cut, curves);
+    let conditions = Conditions::new(connectivity, &table, &cut, curves)?;
     conditions.check(&cut)?;
     progress.check()?;
     let mut harmonic = Harmonic::new(&membrane, &conditions.fixed)?;
@@ -126,7 +126,7 @@ impl ColoredCurves {
 
     /// The halfedges of the curves.
     fn cuts(&self, connectivity: &Connectivity, table: &EdgeTable) -> Result<Vec<bool>> {
-        let mut cut = vec![false; connectivity.n_halfedges()];
+        let mut cut = memory::repeated(false, connectivity.n_halfedges())?;
         for (row, &[a, b]) in self.edges.iter().enumerate() {
             let mut found = table.between(a, b).peekable();
             if found.peek().is_none() {
@@ -172,10 +172,10 @@ impl Conditions {
         table: &EdgeTable,
         cut: &CutMesh,
         curves: &ColoredCurves,
-    ) -> Self {
+    ) -> Result<Self> {
         let (n, k) = (cut.n_copies(), curves.n_channels);
-        let mut counts = vec![0_u32; n];
-        let mut values = Columns::zeros(n, k);
+        let mut counts = memory::repeated(0_u32, n)?;
+        let mut values = Columns::try_zeros(n, k)?;
         for (e, &[start, end]) in curves.edges.iter().enumerate() {
             for (h, is_left) in sided(connectivity, table, [start, end]) {
                 let side = if is_left { &curves.left } else { &curves.right };
@@ -186,7 +186,7 @@ impl Conditions {
                 }
             }
         }
-        let mut point = vec![None; connectivity.n_vertices()];
+        let mut point = memory::repeated(None, connectivity.n_vertices())?;
         (0..).zip(&curves.points).for_each(|(row, &v)| point[v as usize] = Some(row));
         for copy in 0..n {
             if counts[copy] > 1 {
@@ -197,13 +197,13 @@ impl Conditions {
                 (0..k).for_each(|c| values.column_mut(c)[copy] = curves.point_colors[row * k + c]);
             }
         }
-        Self { fixed: counts.iter().map(|&count| count > 0).collect(), values }
+        Ok(Self { fixed: memory::gathered(counts.iter().map(|&count| count > 0))?, values })
     }
 
     /// Refuses a piece of surface that nothing colors.
     fn check(&self, cut: &CutMesh) -> Result<()> {
-        let mut roots = pieces(cut);
-        let mut reached = vec![false; cut.n_copies()];
+        let mut roots = pieces(cut)?;
+        let mut reached = memory::repeated(false, cut.n_copies())?;
         (0..)
             .zip(&self.fixed)
             .filter(|(_, fixed)| **fixed)
@@ -227,13 +227,13 @@ impl Conditions {
         sides: Option<&[Option<u32>]>,
         progress: &Progress,
     ) -> Result<Redrawn> {
-        let mut values = self.values.clone();
+        let mut values = self.values.copied()?;
         harmonic.extend(&mut values, progress)?;
         self.clamp(&mut values);
         let (n, k) = (connectivity.n_vertices(), values.n_columns);
-        let mut counts = vec![0.0_f64; n];
+        let mut counts = memory::repeated(0.0_f64, n)?;
         cut.vertices.iter().for_each(|&v| counts[v as usize] += 1.0);
-        let mut colors = Columns::zeros(n, k);
+        let mut colors = Columns::try_zeros(n, k)?;
         for c in 0..k {
             let out = colors.column_mut(c);
             cut.vertices.iter().zip(values.column(c)).for_each(|(&v, x)| out[v as usize] += x);
@@ -248,13 +248,9 @@ impl Conditions {
             }
         }
         let corner_colors = |&copy: &u32| (0..k).map(move |c| (c, copy as usize));
-        let corners = cut
-            .faces
-            .iter()
-            .flatten()
-            .flat_map(corner_colors)
-            .map(|(c, copy)| values.column(c)[copy])
-            .collect();
+        let mut corners = memory::room(3 * cut.faces.len() * k)?;
+        let at_corners = cut.faces.iter().flatten().flat_map(corner_colors);
+        corners.extend(at_corners.map(|(c, copy)| values.column(c)[copy]));
         Ok(Redrawn { colors, corners })
     }
 

@@ -45,7 +45,7 @@ pub fn color_regions(
     let (mesh, colors) =
         (mesh.measured(mesh.unit())?, colors.measured(Unit::of(colors.data.iter().copied())));
     let original = Paint { mesh: &mesh, colors: &colors, fidelity, progress };
-    let sharp = sharpened(&original);
+    let sharp = sharpened(&original)?;
     let paint = Paint { colors: &sharp, ..original };
     let mut labels = segment(&mesh, Some(&sharp), options, progress)?.labels;
     groups.unify(&mut labels);
@@ -56,10 +56,10 @@ pub fn color_regions(
     report("following colors", 0.0)?;
     follow(&paint, &groups, false, &mut labels)?;
     if options.n_segments.is_none() {
-        groups.absorb_islands(connectivity, &mut labels);
-        groups.split(connectivity, &mut labels);
+        groups.absorb_islands(connectivity, &mut labels)?;
+        groups.split(connectivity, &mut labels)?;
         let least = options.min_faces.unwrap_or(1);
-        add_patches(&paint, &paint.sort(&labels)?, &groups, least, &mut labels);
+        add_patches(&paint, &paint.sort(&labels)?, &groups, least, &mut labels)?;
         // What a border does not show because of a vertex on its wrong side must not count for or against it.
         settle(&paint, &groups, &mut labels)?;
         report("leaving out borders", 0.5)?;
@@ -115,7 +115,7 @@ fn follow(paint: &Paint<'_>, groups: &Groups, cover: bool, labels: &mut [i32]) -
 
 /// Gives every vertex a face of its region, and shortens the borders.
 fn settle(paint: &Paint<'_>, groups: &Groups, labels: &mut [i32]) -> Result<()> {
-    groups.absorb_islands(paint.mesh.connectivity(), labels);
+    groups.absorb_islands(paint.mesh.connectivity(), labels)?;
     let sorted = follow(paint, groups, true, labels)?;
     Faces::new(paint.mesh, groups, &sorted.regions, labels).shorten();
     Ok(())

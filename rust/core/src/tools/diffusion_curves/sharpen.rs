@@ -9,6 +9,7 @@ use super::patches::PaintedParts;
 use super::sorting::{neighbors, Paint};
 use crate::linear::Columns;
 use crate::ordered::Ordered;
+use crate::{memory, Result};
 
 /// The colors, with every blend replaced by the one of the colors that it is a blend of to which it is
 /// nearest.
@@ -18,45 +19,51 @@ use crate::ordered::Ordered;
 /// vertices have a mixture of the colors around it. Blends are filled from what is around them, the most
 /// similar vertex first (seeded region growing, Adams and Bischof 1994). Borders then are where one color
 /// outweighs the other, and flat paint stays as it is.
-pub(super) fn sharpened(paint: &Paint<'_>) -> Columns {
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing, here and below.
+pub(super) fn sharpened(paint: &Paint<'_>) -> Result<Columns> {
     let colors = paint.colors;
     let connectivity = paint.mesh.connectivity();
-    let around = neighbors(connectivity.faces(), colors.n_rows, |_| true);
-    let blended = blends(paint, &around);
-    let mut source: Vec<Option<usize>> = (0..colors.n_rows).map(|v| (!blended[v]).then_some(v)).collect();
+    let around = neighbors(connectivity.faces(), colors.n_rows, |_| true)?;
+    let blended = blends(paint, &around)?;
+    let own = (0..colors.n_rows).map(|v| (!blended[v]).then_some(v));
+    let mut source: Vec<Option<usize>> = memory::gathered(own)?;
     // How far off the color of a vertex is for another one, that one, and it.
     type Offer = Reverse<(Ordered, usize, usize)>;
     let mut waiting = BinaryHeap::new();
     let offer = |waiting: &mut BinaryHeap<Offer>, source: &[Option<usize>], from: usize, color: usize| {
         for v in around[from].iter().map(|&v| v as usize).filter(|&v| source[v].is_none()) {
+            memory::extend_heap(waiting, 1)?;
             waiting.push(Reverse((Ordered(paint.distance(v, color)), v, color)));
         }
+        Result::Ok(())
     };
-    (0..colors.n_rows).filter(|&v| !blended[v]).for_each(|v| offer(&mut waiting, &source, v, v));
+    (0..colors.n_rows).filter(|&v| !blended[v]).try_for_each(|v| offer(&mut waiting, &source, v, v))?;
     while let Some(Reverse((_, vertex, color))) = waiting.pop() {
         if source[vertex].is_none() {
             source[vertex] = Some(color);
-            offer(&mut waiting, &source, vertex, color);
+            offer(&mut waiting, &source, vertex, color)?;
         }
     }
-    let mut sharp = colors.clone();
+    let mut sharp = colors.copied()?;
     for c in 0..colors.n_columns {
         let taken = source.iter().enumerate().map(|(v, from)| colors.column(c)[from.unwrap_or(v)]);
         sharp.column_mut(c).iter_mut().zip(taken).for_each(|(x, new)| *x = new);
     }
-    sharp
+    Ok(sharp)
 }
 
 /// Whether each vertex may be part of a blend.
-fn blends(paint: &Paint<'_>, around: &[Vec<u32>]) -> Vec<bool> {
+fn blends(paint: &Paint<'_>, around: &[Vec<u32>]) -> Result<Vec<bool>> {
     let colors = paint.colors;
-    let PaintedParts { root, tolerance } = PaintedParts::new(paint);
+    let PaintedParts { root, tolerance } = PaintedParts::new(paint)?;
     let flat = |v: usize| around[v].iter().all(|&u| paint.distance(v, u as usize) < tolerance);
-    let flat: Vec<bool> = (0..root.len()).map(flat).collect();
-    let mut wide = vec![false; root.len()];
+    let flat: Vec<bool> = memory::gathered((0..root.len()).map(flat))?;
+    let mut wide = memory::repeated(false, root.len())?;
     root.iter().zip(&flat).for_each(|(&r, flat)| wide[r] |= flat);
     // How many more vertices of each part are mixtures than are not.
-    let mut mixed = vec![0_i64; root.len()];
+    let mut mixed = memory::repeated(0_i64, root.len())?;
     for v in (0..root.len()).filter(|&v| !wide[root[v]]) {
         let near = around[v].iter().flat_map(|&u| &around[u as usize]).chain(&around[v]);
         let mut others: Vec<u32> = near.copied().filter(|&u| root[u as usize] != root[v]).collect();
@@ -65,7 +72,7 @@ fn blends(paint: &Paint<'_>, around: &[Vec<u32>]) -> Vec<bool> {
         mixed[root[v]] += if is_mixture(colors, v, &others, tolerance) { 1 } else { -1 };
     }
     let blended = |(&r, flat): (&usize, &bool)| if wide[r] { !flat } else { mixed[r] > 0 };
-    root.iter().zip(&flat).map(blended).collect()
+    Ok(memory::gathered(root.iter().zip(&flat).map(blended))?)
 }
 
 /// Whether a mixture of the colors of `others` comes as near to the color of `v` as `tolerance`: steps toward

@@ -59,21 +59,20 @@ impl Paint<'_> {
         let fidelity = self.fidelity.min(BROAD) / area;
         let task = Task { cut: &cut, membrane: &membrane, colors: self.colors, fidelity };
         let values = task.screened(self.progress)?.values;
-        let copies = task.copies();
-        let mut label_of = vec![0; cut.n_copies()];
+        let copies = task.copies()?;
+        let mut label_of = memory::repeated(0, cut.n_copies())?;
         cut.faces
             .iter()
             .zip(labels)
             .for_each(|(face, &label)| face.iter().for_each(|&i| label_of[i as usize] = label));
         let around =
-            neighbors(connectivity.faces(), connectivity.n_vertices(), |v| copies[v as usize].len() > 1);
-        let mut corners = vec![Vec::new(); copies.len()];
+            neighbors(connectivity.faces(), connectivity.n_vertices(), |v| copies[v as usize].len() > 1)?;
+        let mut corners = memory::repeated(Vec::new(), copies.len())?;
         for (face, &label) in connectivity.faces().iter().zip(labels) {
             face.iter().for_each(|&v| corners[v as usize].push(label));
         }
         let least = UNSEEN * self.scale();
-        let mut sorted =
-            Sorted { regions: Vec::with_capacity(copies.len()), off: Vec::with_capacity(copies.len()) };
+        let mut sorted = Sorted { regions: memory::room(copies.len())?, off: memory::room(copies.len())? };
         for (v, own) in copies.iter().enumerate() {
             let beside = around[v].iter().flat_map(|&u| &copies[u as usize]);
             let mut fits = Misfits { labels: &label_of, values: &values, found: Vec::new() };
@@ -140,12 +139,15 @@ impl Misfits<'_> {
 }
 
 /// The neighbors of every vertex that `on_border` holds for or that has such a neighbor.
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
 pub(super) fn neighbors(
     faces: &[[u32; 3]],
     n_vertices: usize,
     on_border: impl Fn(u32) -> bool,
-) -> Vec<Vec<u32>> {
-    let mut around = vec![Vec::new(); n_vertices];
+) -> Result<Vec<Vec<u32>>> {
+    let mut around = memory::repeated(Vec::new(), n_vertices)?;
     for face in faces.iter().filter(|face| face.iter().any(|&v| on_border(v))) {
         for i in 0..3 {
             around[face[i] as usize].extend([face[(i + 1) % 3], face[(i + 2) % 3]]);
@@ -155,5 +157,5 @@ pub(super) fn neighbors(
         list.sort_unstable();
         list.dedup();
     }
-    around
+    Ok(around)
 }

@@ -89,7 +89,7 @@ impl<'a> Search<'a> {
         let table = EdgeTable::new(connectivity)?;
         let ends = |h: usize| [connectivity.tail(h), connectivity.head(h)];
         let edges = memory::sifted(table.edges().filter_map(|mut edge| edge.next()).map(ends))?;
-        let neighbors = Buckets::try_new(positions.len(), |visit| {
+        let neighbors = Buckets::new(positions.len(), |visit| {
             for &[a, b] in &edges {
                 visit(a as usize, b);
                 visit(b as usize, a);

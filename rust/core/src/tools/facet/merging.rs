@@ -9,7 +9,7 @@ use super::regions::{Regions, Set};
 use crate::mesh::partition::Partition;
 use crate::ordered::Ordered;
 use crate::progress::{Progress, Report};
-use crate::Result;
+use crate::{memory, Result};
 
 /// A merge that might be made: its cost, the regions, and how often they had changed.
 type Offer = Reverse<(Ordered, Set, u32)>;
@@ -181,20 +181,22 @@ impl<W: Fn(u32) -> f64> Merging<'_, '_, W> {
 impl Merges {
     /// The regions of `n` that are `count` after the first merges,
     /// numbered in the order of their first members.
-    pub(super) fn labels(&self, n: usize, count: usize) -> Vec<u32> {
-        let mut sets = Partition::new(n);
+    ///
+    /// # Errors
+    /// [`crate::error::SolveError::Memory`].
+    pub(super) fn labels(&self, n: usize, count: usize) -> Result<Vec<u32>> {
+        let mut sets = Partition::new(n)?;
         self.pairs[..n - count].iter().for_each(|&[kept, gone]| sets.unite(kept, gone));
-        let mut names = vec![u32::MAX; n];
+        let mut names = memory::repeated(u32::MAX, n)?;
         let mut next = 0;
-        (0..n as u32)
-            .map(|f| {
-                let name = &mut names[sets.root(f) as usize];
-                if *name == u32::MAX {
-                    *name = next;
-                    next += 1;
-                }
-                *name
-            })
-            .collect()
+        let label = |f: u32| {
+            let name = &mut names[sets.root(f) as usize];
+            if *name == u32::MAX {
+                *name = next;
+                next += 1;
+            }
+            *name
+        };
+        Ok(memory::gathered((0..n as u32).map(label))?)
     }
 }

@@ -203,7 +203,7 @@ impl<'a> Job<'a> {
         let n = self.parts.len();
         let mut regions = Regions::new(connectivity, &self.positions, self.labels(0..n as u32), n);
         let moments = self.places().into_iter().map(Moments::of).collect();
-        let rows = options.edge_weights.as_ref().map(|rows| self.working.corner_rows(rows));
+        let rows = options.edge_weights.as_ref().map(|rows| self.working.corner_rows(rows)).transpose()?;
         let weight = |h: u32| {
             let of = |h: usize| rows.as_ref().map_or(1.0, |rows| rows[h / 3][h % 3]);
             connectivity.mate(h as usize).map_or(of(h as usize), |mate| of(h as usize).min(of(mate)))
@@ -268,7 +268,7 @@ impl<'a> Job<'a> {
     /// The shape made of `count` regions, sound where that can be had.
     fn settled(&self, merges: &Merges, count: usize, progress: &Progress) -> Result<Settled> {
         let n = self.parts.len();
-        let labels = merges.labels(n, count);
+        let labels = merges.labels(n, count)?;
         let mut faces = Faces::new(self.places(), labels, memory::twin(&self.is_held)?)?;
         let (mut moments, mut is_held) = (vec![Moments::default(); count], vec![false; count]);
         for ((&label, own), &held) in faces.labels.iter().zip(&faces.moments).zip(&self.is_held) {

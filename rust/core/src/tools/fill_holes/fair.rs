@@ -70,7 +70,7 @@ impl Cut {
         let surface = FaceGeometry::of(region)?;
         let faces = region.faces()?;
         // Corners of faces that are one vertex, as a forest: across every edge that is no ridge.
-        let mut corners = Partition::new(3 * faces.len());
+        let mut corners = Partition::new(3 * faces.len())?;
         let corner =
             |f: u32, v: u32| 3 * f + faces[f as usize].iter().position(|&w| w == v).unwrap_or(0) as u32;
         for [a, b] in mesh.edges()? {

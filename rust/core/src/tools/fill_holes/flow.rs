@@ -62,6 +62,6 @@ pub(super) fn flow(
 /// The length that is 1 for the fidelity weight: of the patch alone, so that nothing farther away matters.
 fn unit(region: &Region, scale: Scale) -> Result<f64> {
     let (points, faces, _) = region.patch()?;
-    let lengths = edge_lengths(&faces, &points);
+    let lengths = edge_lengths(&faces, &points)?;
     Ok(scale.unit(&Connectivity::new(faces, points.len())?, &points, &lengths))
 }

@@ -3,6 +3,7 @@
 use super::{FillHolesOptions, Filled, LoopChoice};
 use crate::mesh::cycle;
 use crate::mesh::Working;
+use crate::{memory, Result};
 
 /// The options with loops in vertices of the mesh that is computed on.
 pub(super) fn options_on(working: &Working<'_>, options: &FillHolesOptions) -> FillHolesOptions {
@@ -22,11 +23,14 @@ pub(super) fn options_on(working: &Working<'_>, options: &FillHolesOptions) -> F
 
 /// Patches in vertices and coordinates of the mesh as it was:
 /// beside an edge of it in the vertices that this edge has.
-pub(super) fn given_back(mut filled: Filled, working: &Working<'_>) -> Filled {
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub(super) fn given_back(mut filled: Filled, working: &Working<'_>) -> Result<Filled> {
     if working.is_plain() {
-        return filled;
+        return Ok(filled);
     }
-    let seams = working.seam_edges();
+    let seams = working.seam_edges()?;
     let (n_here, n_there) = (working.mesh().connectivity().n_vertices() as u32, working.n_original() as u32);
     let number = |v: u32| if v < n_here { working.original(v) } else { v - n_here + n_there };
     filled.vertices.iter_mut().for_each(|p| *p = working.place(*p));
@@ -42,12 +46,12 @@ pub(super) fn given_back(mut filled: Filled, working: &Working<'_>) -> Filled {
     }
     for hole in &mut filled.holes {
         let own = |edge: [u32; 2]| seams.get(&edge).map_or_else(|| number(edge[0]), |own| own[0]);
-        hole.boundary = cycle(&hole.boundary).map(own).collect();
+        hole.boundary = memory::sifted(cycle(&hole.boundary).map(own))?;
     }
     for edge in &mut filled.ridges {
         *edge = edge.map(number);
         edge.sort_unstable();
     }
     filled.ridges.sort_unstable();
-    filled
+    Ok(filled)
 }

@@ -89,7 +89,7 @@ pub fn fill_holes(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) 
     let working = Working::new(&mesh)?;
     let options = give_back::options_on(&working, &options);
     let filled = options.solve.run(|| fill(&working, &options, &progress.in_unit(unit)))?;
-    let mut filled = give_back::given_back(filled, &working);
+    let mut filled = give_back::given_back(filled, &working)?;
     let around = Surroundings::of(
         filled
             .holes
@@ -112,10 +112,15 @@ pub fn fill_holes(mesh: &Mesh, options: &FillHolesOptions, progress: &Progress) 
 
 /// What filling holes takes of which the longest has `longest` edges, since they follow each other;
 /// without it, all of the mesh.
-#[must_use]
-pub fn filling_demand(mesh: &Mesh, longest: Option<usize>) -> Demand {
-    let of_all = || boundary_loops(mesh.connectivity()).iter().map(Vec::len).max().unwrap_or(0);
-    demand(mesh, longest.unwrap_or_else(of_all))
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub fn filling_demand(mesh: &Mesh, longest: Option<usize>) -> Result<Demand> {
+    let longest = match longest {
+        Some(longest) => longest,
+        None => boundary_loops(mesh.connectivity())?.iter().map(Vec::len).max().unwrap_or(0),
+    };
+    Ok(demand(mesh, longest))
 }
 
 /// What a patch in a rim of so many edges takes: it has as many faces as a disk with that rim has, up to the

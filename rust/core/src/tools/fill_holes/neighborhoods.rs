@@ -115,7 +115,7 @@ mod tests {
         let open = cube(12).without_faces(|f| (f % 97 == 5 || f % 97 == 6) && f < 200);
         for shape in [open, grid(9, 7)] {
             let mesh = shape.mesh().unwrap();
-            let loops = boundary_loops(mesh.connectivity());
+            let loops = boundary_loops(mesh.connectivity()).unwrap();
             let near = Neighborhoods::new(mesh.connectivity(), &faces_at(&mesh, &loops).unwrap()).unwrap();
             for (vertices, rings) in
                 loops.iter().flat_map(|vertices| [1, 2, 5].map(|rings| (vertices, rings)))

@@ -34,7 +34,7 @@ impl SmoothParts {
         let mesh = &region.mesh;
         let surface = FaceGeometry::of(region)?;
         let on_rim = on_rim(region)?;
-        let mut pieces = Partition::new(region.n_outer);
+        let mut pieces = Partition::new(region.n_outer)?;
         let mut ridges = Vec::new();
         for [a, b] in mesh.edges()? {
             let Some(wings) = mesh.wings(a, b) else { continue };

@@ -128,7 +128,7 @@ impl Region {
 
     /// The surface as it is now.
     pub(super) fn to_mesh(&self) -> Result<Mesh> {
-        Ok(Mesh::new(memory::twin(self.mesh.positions())?, self.faces()?)?)
+        Mesh::new(memory::twin(self.mesh.positions())?, self.faces()?)
     }
 
     /// The number in the whole mesh of vertex `v`.

@@ -48,7 +48,7 @@ impl Graph {
             edge.cost = edge.cost.max(ROUNDING);
             edge.distance = edge.distance.max(ROUNDING);
         }
-        let arcs = Buckets::try_new(areas.len(), |visit| {
+        let arcs = Buckets::new(areas.len(), |visit| {
             for (i, edge) in (0_u32..).zip(&edges) {
                 let [a, b] = edge.ends;
                 visit(a as usize, [b, i]);
@@ -143,7 +143,7 @@ impl Graph {
     /// The connected pieces over the edges that `keep` takes, numbered in the order of their first nodes,
     /// and how many there are.
     pub(super) fn pieces(&self, keep: impl Fn(&Edge) -> bool) -> Result<(Vec<u32>, usize)> {
-        let mut partition = Partition::try_new(self.n_nodes())?;
+        let mut partition = Partition::new(self.n_nodes())?;
         self.edges.iter().filter(|e| keep(e)).for_each(|e| partition.unite(e.ends[0], e.ends[1]));
         let mut names = memory::repeated(NONE, self.n_nodes())?;
         let mut count = 0;

@@ -40,7 +40,7 @@ impl Merging {
         let mut borders: BTreeMap<[u32; 2], f64> = BTreeMap::new();
         parts.edges.iter().for_each(|e| *borders.entry(ordered(e.ends)).or_default() += e.cost);
         // A part that holds a gap makes one piece of both sides.
-        let mut joined = Partition::try_new(found.len() + pieces.len())?;
+        let mut joined = Partition::new(found.len() + pieces.len())?;
         let name = |piece: u32| found.len() as u32 + piece;
         labels.iter().zip(pieces).for_each(|(&part, &piece)| joined.unite(part, name(piece)));
         let roots: Vec<u32> = (0..found.len() as u32).map(|part| joined.root(part)).collect();

@@ -87,7 +87,7 @@ fn found(mesh: &Mesh, options: &PartsOptions, progress: &Progress) -> Result<Par
     let n_parts = options.n_parts.unwrap_or(found).min(hierarchy.range()[0]);
     let labels = hierarchy.labels_at(n_parts)?;
     let status = if progress.is_finishing() { Status::Stopped } else { Status::Solved };
-    Ok(Parts { boundary_edges: boundary_edges(mesh, &labels), labels, n_parts, hierarchy, status })
+    Ok(Parts { boundary_edges: boundary_edges(mesh, &labels)?, labels, n_parts, hierarchy, status })
 }
 
 /// Divisions of every count, among them the first `found` parts that were divided.

@@ -74,7 +74,7 @@ fn nearest_pairs(
 ) -> Result<Vec<([u32; 2], f64)>> {
     let mut members: Vec<Vec<u32>> = memory::repeated(Vec::new(), areas.len())?;
     (0..).zip(pieces).try_for_each(|(f, &piece)| memory::push(&mut members[piece as usize], f))?;
-    let mut united = Partition::try_new(areas.len())?;
+    let mut united = Partition::new(areas.len())?;
     let mut pairs = Vec::new();
     for (piece, faces) in (0_u32..).zip(&members) {
         let mut best: Option<(f64, [u32; 2])> = None;

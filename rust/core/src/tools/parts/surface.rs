@@ -105,7 +105,7 @@ fn orient(
     opposite: &[bool],
     closed: bool,
 ) -> Result<()> {
-    let around = Buckets::try_new(normals.len(), |visit| {
+    let around = Buckets::new(normals.len(), |visit| {
         for (joint, &turned) in joints.iter().zip(opposite) {
             let [f, g] = joint.faces;
             visit(f as usize, (g, turned));

@@ -7,7 +7,7 @@ use crate::mesh::vector::norm;
 use crate::mesh::Mesh;
 use crate::progress::Progress;
 use crate::tools::{stylize, Scale, SolveOptions, StylizeOptions};
-use crate::Result;
+use crate::{memory, Result};
 
 /// Moves the vertices inside free pieces by the flow until they have moved by the noise, root mean square.
 ///
@@ -24,14 +24,13 @@ pub(super) fn denoise(
         let label = state.labels[f as usize];
         label != NONE && state.pieces[label as usize].surface.is_none()
     };
-    let fixed: Vec<bool> = (0..placement.points.len())
-        .map(|v| !(placement.moves[v] && domain.faces_at(v as u32).iter().all(|&f| is_free(f))))
-        .collect();
+    let stays = |v: usize| !(placement.moves[v] && domain.faces_at(v as u32).iter().all(|&f| is_free(f)));
+    let fixed: Vec<bool> = memory::gathered((0..placement.points.len()).map(stays))?;
     if fixed.iter().all(|fixed| *fixed) {
         return Ok(());
     }
     let area: f64 = domain.areas.iter().map(|a| norm(*a)).sum();
-    let mesh = Mesh::new(placement.points.clone(), domain.connectivity.faces().to_vec())?;
+    let mesh = Mesh::new(memory::twin(&placement.points)?, memory::twin(domain.connectivity.faces())?)?;
     let options = StylizeOptions {
         iterations: FLOW_STEPS,
         fidelity: FLOW_FIDELITY,

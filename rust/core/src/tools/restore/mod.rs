@@ -16,7 +16,7 @@ pub use options::{RestoreOptions, RestoreStatus, Restored, RestoredSurface};
 
 use crate::error::MeshError;
 use crate::labelling::{labelling, Domain, Labelling, NONE};
-use crate::memory::Tool;
+use crate::memory::{self, Tool};
 use crate::mesh::vector::{distance, Point};
 use crate::mesh::{Mesh, Working};
 use crate::progress::{Progress, Report};
@@ -45,7 +45,7 @@ pub fn restore(mesh: &Mesh, options: &RestoreOptions, progress: &Progress) -> Re
         measured.demand(Tool::Restore).admit(options.solve.memory_limit)?;
         on(&working, unit, options, progress)
     })?;
-    found.vertices = working.positions(&found.vertices);
+    found.vertices = working.positions(&found.vertices)?;
     unit.restore_points(&mut found.vertices, start, original);
     let origin = working.place([0.0; 3]);
     for piece in &mut found.surfaces {
@@ -70,7 +70,7 @@ fn on(working: &Working<'_>, unit: Unit, options: &RestoreOptions, progress: &Pr
         mesh,
         None,
         &SegmentOptions {
-            faces: options.faces.clone(),
+            faces: options.faces.as_deref().map(memory::twin).transpose()?,
             solve: options.segment_solve(),
             ..SegmentOptions::default()
         },
@@ -78,23 +78,24 @@ fn on(working: &Working<'_>, unit: Unit, options: &RestoreOptions, progress: &Pr
     )?;
     say(progress, 0.5, "surfaces");
     let noise = options.noise.map_or(segments.noise, |noise| unit.measure(noise));
-    let domain = Domain::new(mesh.connectivity(), positions, noise.max(ROUNDING * size));
+    let domain = Domain::new(mesh.connectivity(), positions, noise.max(ROUNDING * size))?;
     let mut state = labelling(&domain, &segments.labels, progress)?;
     let relations = match options.regularize {
-        Some(degrees) => regularize::regularize(&domain, &mut state, degrees.to_radians()),
+        Some(degrees) => regularize::regularize(&domain, &mut state, degrees.to_radians())?,
         None => Vec::new(),
     };
     say(progress, 0.8, "vertices");
-    let fixed = options.fixed.as_ref().map(|fixed| working.any_of(fixed));
+    let fixed = options.fixed.as_ref().map(|fixed| working.any_of(fixed)).transpose()?;
     let reach = options
         .max_move
         .map_or(MOST_MOVE[0] * domain.sigma + MOST_MOVE[1] * domain.mean_edge, |most| unit.measure(most));
-    let mut placement = Placement::new(&domain, &state, fixed.as_deref(), reach);
+    let mut placement = Placement::new(&domain, &state, fixed.as_deref(), reach)?;
     placement.place(&domain, &state, progress)?;
     let has_free = state.pieces.iter().any(|piece| piece.surface.is_none());
+    let labels = state.labels.iter().map(|&l| if l == NONE { -1 } else { l.cast_signed() });
     let mut restored = Restored {
         vertices: Vec::new(),
-        labels: state.labels.iter().map(|&l| if l == NONE { -1 } else { l.cast_signed() }).collect(),
+        labels: memory::gathered(labels)?,
         surfaces: pieces(&state),
         noise: domain.sigma,
         relations,
@@ -103,7 +104,7 @@ fn on(working: &Working<'_>, unit: Unit, options: &RestoreOptions, progress: &Pr
         status: RestoreStatus::Restored,
     };
     if restored.surfaces.iter().all(|piece| piece.surface.is_none()) {
-        restored.vertices = positions.to_vec();
+        restored.vertices = memory::twin(positions)?;
         restored.status = RestoreStatus::Unsure;
         return Ok(restored);
     }
@@ -113,7 +114,7 @@ fn on(working: &Working<'_>, unit: Unit, options: &RestoreOptions, progress: &Pr
     }
     say(progress, 0.95, "folds");
     restored.n_folded = relax::relax(&domain, &state, &mut placement, progress)?;
-    restored.vertices = kept(positions, placement.points, ROUNDING * size);
+    restored.vertices = kept(positions, placement.points, ROUNDING * size)?;
     if !Surroundings::of(positions).hold(&restored.vertices) {
         return Err(refused());
     }
@@ -124,8 +125,9 @@ fn on(working: &Working<'_>, unit: Unit, options: &RestoreOptions, progress: &Pr
 }
 
 /// The points, those that moved by no more than rounding as they were.
-fn kept(before: &[Point], after: Vec<Point>, least: f64) -> Vec<Point> {
-    before.iter().zip(after).map(|(&p, q)| if distance(p, q) <= least { p } else { q }).collect()
+fn kept(before: &[Point], after: Vec<Point>, least: f64) -> Result<Vec<Point>> {
+    let one = |(&p, q): (&Point, Point)| if distance(p, q) <= least { p } else { q };
+    Ok(memory::gathered(before.iter().zip(after).map(one))?)
 }
 
 /// What is said of the pieces.

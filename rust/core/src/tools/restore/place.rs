@@ -9,7 +9,7 @@ use crate::labelling::{Domain, Labelling, NONE};
 use crate::mesh::vector::{distance, norm, Point};
 use crate::progress::Progress;
 use crate::surfaces::{meeting, Surface};
-use crate::Result;
+use crate::{memory, Result};
 
 /// Where the vertices are, and what each is held by.
 pub(super) struct Placement {
@@ -27,7 +27,15 @@ pub(super) struct Placement {
 
 impl Placement {
     /// The vertices as they are. Those without faces, of faces that take no part, and `fixed` ones stay.
-    pub(super) fn new(domain: &Domain<'_>, state: &Labelling, fixed: Option<&[bool]>, reach: f64) -> Self {
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing.
+    pub(super) fn new(
+        domain: &Domain<'_>,
+        state: &Labelling,
+        fixed: Option<&[bool]>,
+        reach: f64,
+    ) -> Result<Self> {
         let n = domain.positions.len();
         let moves = |v: usize| {
             let faces = domain.faces_at(v as u32);
@@ -35,8 +43,9 @@ impl Placement {
                 && !faces.is_empty()
                 && faces.iter().all(|&f| state.labels[f as usize] != NONE)
         };
-        let on = (0..n as u32).map(|v| surfaces_at(domain, state, v)).collect();
-        Self { points: domain.positions.to_vec(), moves: (0..n).map(moves).collect(), on, reach, n_held: 0 }
+        let on = memory::gathered((0..n).map(|v| surfaces_at(domain, state, v as u32)))?;
+        let (points, moves) = (memory::twin(domain.positions)?, memory::gathered((0..n).map(moves))?);
+        Ok(Self { points, moves, on, reach, n_held: 0 })
     }
 
     /// Places all vertices that move.
@@ -50,10 +59,9 @@ impl Placement {
         progress: &Progress,
     ) -> Result<()> {
         progress.check()?;
-        let placed: Vec<(Point, usize)> = (0..self.points.len())
-            .into_par_iter()
-            .map(|v| self.nearest(domain, state, v, usize::MAX))
-            .collect();
+        let nearest = |v: usize| self.nearest(domain, state, v, usize::MAX);
+        let placed: Vec<(Point, usize)> =
+            memory::joined((0..self.points.len()).into_par_iter().map(nearest))?;
         let mut taken: HashMap<Vec<u32>, Vec<usize>> = HashMap::new();
         for (v, (point, kept)) in placed.into_iter().enumerate() {
             if !self.moves[v] {

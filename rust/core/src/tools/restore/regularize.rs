@@ -5,6 +5,7 @@ use crate::labelling::{Domain, Labelling};
 use crate::linear::small::{determined, Quadric};
 use crate::mesh::vector::{add, cross, dot, norm, scale, sub, unit, Point};
 use crate::surfaces::{Samples, Surface};
+use crate::Result;
 
 /// Directions of surfaces, joined where they are parallel.
 struct Direction {
@@ -15,7 +16,10 @@ struct Direction {
 
 /// Makes directions parallel and orthogonal that are so up to `tolerance` radians, and radii equal that
 /// differ by no more than that part; offsets and centers are fitted again. Returns what was done, in words.
-pub(super) fn regularize(domain: &Domain<'_>, state: &mut Labelling, tolerance: f64) -> Vec<String> {
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub(super) fn regularize(domain: &Domain<'_>, state: &mut Labelling, tolerance: f64) -> Result<Vec<String>> {
     let mut said = Vec::new();
     let mut directions = parallel(state, tolerance);
     let joined = directions.iter().map(|d| d.pieces.len().saturating_sub(1)).sum::<usize>();
@@ -28,7 +32,7 @@ pub(super) fn regularize(domain: &Domain<'_>, state: &mut Labelling, tolerance: 
     }
     for direction in &directions {
         for &k in &direction.pieces {
-            let samples = domain.samples(&state.pieces[k].faces);
+            let samples = domain.samples(&state.pieces[k].faces)?;
             if let Some(surface) = &mut state.pieces[k].surface {
                 *surface = aligned(surface, direction.axis, &samples);
             }
@@ -40,10 +44,10 @@ pub(super) fn regularize(domain: &Domain<'_>, state: &mut Labelling, tolerance: 
     }
     for piece in &mut state.pieces {
         if let Some(surface) = &piece.surface {
-            piece.rms = domain.samples(&piece.faces).rms(surface);
+            piece.rms = domain.samples(&piece.faces)?.rms(surface);
         }
     }
-    said
+    Ok(said)
 }
 
 /// The directions of all surfaces, the heaviest first, those that are nearly parallel as one.

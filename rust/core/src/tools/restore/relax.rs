@@ -9,7 +9,7 @@ use crate::mesh::EdgeKind;
 use crate::progress::Progress;
 use crate::shape_guard::{is_thinned, is_turned};
 use crate::surfaces::meeting;
-use crate::Result;
+use crate::{memory, Result};
 
 /// Relaxes around folded faces and slivers; returns how many folded ones are left.
 ///
@@ -22,7 +22,7 @@ pub(super) fn relax(
     progress: &Progress,
 ) -> Result<usize> {
     let n = placement.points.len();
-    let mut is_rim = vec![false; n];
+    let mut is_rim = memory::repeated(false, n)?;
     for h in 0..domain.connectivity.n_halfedges() {
         if domain.connectivity.kind(h) != EdgeKind::Interior {
             is_rim[domain.connectivity.tail(h) as usize] = true;
@@ -31,11 +31,11 @@ pub(super) fn relax(
     }
     let slides =
         |v: usize, placement: &Placement| placement.moves[v] && !is_rim[v] && !placement.on[v].is_empty();
-    let mut active = vec![false; n];
+    let mut active = memory::repeated(false, n)?;
     for _ in 0..MOST_ROUNDS {
         progress.check()?;
-        let bad: Vec<usize> =
-            (0..state.labels.len()).filter(|&f| is_bad(domain, state, placement, f)).collect();
+        let faces = 0..state.labels.len();
+        let bad: Vec<usize> = memory::sifted(faces.filter(|&f| is_bad(domain, state, placement, f)))?;
         if bad.is_empty() || progress.is_finishing() {
             break;
         }
@@ -45,7 +45,10 @@ pub(super) fn relax(
                 neighbors(domain, v).into_iter().for_each(|w| active[w as usize] = true);
             }
         }
-        for v in (0..n).filter(|&v| active[v] && slides(v, placement)).collect::<Vec<_>>() {
+        for (v, _) in active.iter().enumerate().filter(|(_, is_active)| **is_active) {
+            if !slides(v, placement) {
+                continue;
+            }
             if let Some(point) = relaxed(domain, state, placement, v) {
                 placement.points[v] = point;
             }

@@ -17,7 +17,7 @@ use crate::mesh::vector::Point;
 use crate::mesh::Mesh;
 use crate::progress::Progress;
 use crate::tools::{Levels, Scale};
-use crate::Result;
+use crate::{memory, Result};
 
 /// The segments of `mesh`, a shape whose `surface` has lengths in `unit`; nothing if it has no coarser level.
 /// Those of the coarsest are found by `segment`.
@@ -32,32 +32,34 @@ pub(super) fn coarse_to_fine(
 ) -> Result<Option<Segmentation>> {
     let levels = levels(mesh, None, ENOUGH, progress)?;
     let Some(coarsest) = levels.last() else { return Ok(None) };
-    let weights = options.face_weights.as_ref().map(|weights| face_values(mesh, &levels, weights));
+    let values = |weights: &Vec<f64>| face_values(mesh, &levels, weights);
+    let weights = options.face_weights.as_ref().map(values).transpose()?;
     // What is said of the noise of the mesh is in proportion true of coarser ones.
-    let found_here = noise_level(surface, &Columns::from_points(&surface.positions)?, 1);
+    let found_here = noise_level(surface, &Columns::from_points(&surface.positions)?, 1)?;
     let doubt = if options.noise.is_some() && found_here > 0.0 { noise / found_here } else { 1.0 };
     let noise_on = |surface: &Surface<'_>| -> Result<f64> {
-        Ok(doubt * noise_level(surface, &Columns::from_points(&surface.positions)?, 1))
+        Ok(doubt * noise_level(surface, &Columns::from_points(&surface.positions)?, 1)?)
     };
-    let on_level = |depth: usize| {
+    let on_level = |depth: usize| -> Result<SegmentOptions> {
         let level = &levels[depth - 1].mesh;
         let share = |count: usize| {
             let n = count as f64 * level.connectivity().n_faces() as f64;
             (n / mesh.connectivity().n_faces() as f64).round() as usize
         };
-        SegmentOptions {
-            face_weights: weights.as_ref().map(|weights| weights[depth - 1].clone()),
+        let of_level = |weights: &Vec<Vec<f64>>| memory::twin(&weights[depth - 1]);
+        Ok(SegmentOptions {
+            face_weights: weights.as_ref().map(of_level).transpose()?,
             min_faces: options.min_faces.map(share),
             scale: Scale::Length(unit),
             noise: None,
             levels: Levels::Never,
-            ..options.clone()
-        }
+            ..options.without_arrays()
+        })
     };
-    let mut coarsest_options = on_level(levels.len());
+    let mut coarsest_options = on_level(levels.len())?;
     if options.noise.is_some() {
         let (mesh, points) = (&coarsest.mesh, coarsest.mesh.positions().ok_or(MeshError::NoPositions)?);
-        let surface = Surface::new(mesh.connectivity(), points, unit, coarsest_options.edge_costs(mesh));
+        let surface = Surface::new(mesh.connectivity(), points, unit, coarsest_options.edge_costs(mesh)?)?;
         coarsest_options.noise = Some(unit * noise_on(&surface)?);
     }
     let found = segment(&coarsest.mesh, &coarsest_options)?;
@@ -65,28 +67,28 @@ pub(super) fn coarse_to_fine(
     for depth in (1..levels.len()).rev() {
         let finer = &levels[depth - 1].mesh;
         carried.go_to(finer, &levels[depth])?;
-        let options = on_level(depth);
+        let options = on_level(depth)?;
         let points = finer.positions().ok_or(MeshError::NoPositions)?;
-        let surface = Surface::new(finer.connectivity(), points, unit, options.edge_costs(finer));
+        let surface = Surface::new(finer.connectivity(), points, unit, options.edge_costs(finer)?)?;
         let start = Columns::from_points(&surface.positions)?;
         let noise = noise_on(&surface)?;
-        let mut labels = carried.labels.clone();
+        let mut labels = memory::twin(&carried.labels)?;
         carried.passes(&surface, &start, noise, &options, progress).refine(&mut labels)?;
         carried.labels = labels;
     }
     carried.go_to(mesh, &levels[0])?;
     let start = Columns::from_points(&surface.positions)?;
     let passes = carried.passes(surface, &start, noise, options, progress);
-    let slopes = passes.slopes();
+    let slopes = passes.slopes()?;
     let merging = passes.merging(&slopes);
-    let mut labels = carried.labels.clone();
+    let mut labels = memory::twin(&carried.labels)?;
     passes.refine(&mut labels)?;
     passes.settled(&merging, &mut labels)?;
-    let (labels, n_segments) = contiguous(&labels);
+    let (labels, n_segments) = contiguous(&labels)?;
     let hierarchy = passes.hierarchy(&merging, &carried.leaves, &labels)?;
     let labels = hierarchy.labels_at(n_segments)?;
     Ok(Some(Segmentation {
-        boundary_edges: boundary_edges(mesh, &labels),
+        boundary_edges: boundary_edges(mesh, &labels)?,
         labels,
         n_segments,
         indicator: carried.indicator,
@@ -109,12 +111,12 @@ struct Carried {
 
 impl Carried {
     fn of(found: &Segmentation) -> Result<Self> {
-        let names = |labels: &[i32]| labels.iter().map(|label| label.cast_unsigned()).collect();
+        let names = |labels: &[i32]| memory::gathered(labels.iter().map(|label| label.cast_unsigned()));
         let [most, _] = found.hierarchy.range();
         Ok(Self {
-            labels: names(&found.labels),
-            leaves: names(&found.hierarchy.labels_at(most)?),
-            indicator: found.indicator.clone(),
+            labels: names(&found.labels)?,
+            leaves: names(&found.hierarchy.labels_at(most)?)?,
+            indicator: memory::twin(&found.indicator)?,
             points: found.values.to_points()?,
         })
     }
@@ -124,10 +126,10 @@ impl Carried {
         let faces = level.carry.faces(finer, &level.mesh)?;
         // Nothing is held, so that every face has its place.
         let at = |f: &Option<u32>| f.map_or(0, |f| f as usize);
-        self.labels = faces.iter().map(|f| self.labels[at(f)]).collect();
-        self.leaves = faces.iter().map(|f| self.leaves[at(f)]).collect();
-        self.indicator = faces.iter().map(|f| self.indicator[at(f)]).collect();
-        self.points = level.carry.points(&self.points, [0.0; 3]);
+        self.labels = memory::gathered(faces.iter().map(|f| self.labels[at(f)]))?;
+        self.leaves = memory::gathered(faces.iter().map(|f| self.leaves[at(f)]))?;
+        self.indicator = memory::gathered(faces.iter().map(|f| self.indicator[at(f)]))?;
+        self.points = level.carry.points(&self.points, [0.0; 3])?;
         Ok(())
     }
 

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::slopes::Slopes;
 use super::surface::{Surface, NONE};
 use super::walk::{Bend, Marks, Walk};
+use crate::{memory, Result};
 
 /// The common border of two segments, `labels[0] < labels[1]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,25 +22,27 @@ pub(super) struct Border {
 
 impl Slopes {
     /// The borders between the segments, sorted by their labels.
-    pub(super) fn borders(&self, surface: &Surface<'_>, labels: &[u32]) -> Vec<Border> {
-        let edges: Vec<usize> = surface
-            .connectivity
-            .edges()
-            .filter(|&h| {
-                let g = surface.neighbors[h / 3][h % 3];
-                g != NONE && labels[g as usize] != labels[h / 3]
-            })
-            .collect();
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing.
+    pub(super) fn borders(&self, surface: &Surface<'_>, labels: &[u32]) -> Result<Vec<Border>> {
+        let is_border = |&h: &usize| {
+            let g = surface.neighbors[h / 3][h % 3];
+            g != NONE && labels[g as usize] != labels[h / 3]
+        };
+        let edges: Vec<usize> = memory::sifted(surface.connectivity.edges().filter(is_border))?;
         let n = surface.n_faces();
-        let at_border: Vec<bool> = (0..n).into_par_iter().map(|f| surface.is_at_border(labels, f)).collect();
+        let at_border = memory::joined((0..n).into_par_iter().map(|f| surface.is_at_border(labels, f)))?;
         let walk = Walk { slopes: self, surface, labels, at_border: &at_border };
-        let mut bends: Vec<Bend> = edges
-            .par_iter()
-            .with_min_len(64)
-            .map_init(|| Marks::new(n), |marks, &h| walk.bend(h, marks))
-            .collect();
-        bends.sort_by_key(|bend| bend.labels);
-        let mut borders: Vec<Border> = bends.chunk_by(|a, b| a.labels == b.labels).map(Border::of).collect();
+        let bend = |marks: &mut Result<Marks>, &h: &usize| match marks {
+            Ok(marks) => walk.bend(h, marks),
+            Err(error) => Err(error.clone()),
+        };
+        let bends = edges.par_iter().with_min_len(64).map_init(|| Marks::new(n), bend);
+        let mut bends: Vec<Bend> = memory::all(memory::joined(bends)?)?;
+        bends.sort_unstable_by_key(|bend| (bend.labels, bend.halfedge));
+        let same = bends.chunk_by(|a, b| a.labels == b.labels);
+        let mut borders: Vec<Border> = memory::sifted(same.map(Border::of))?;
         let mut perimeters: BTreeMap<u32, f64> = BTreeMap::new();
         for border in &borders {
             for label in border.labels {
@@ -51,7 +54,7 @@ impl Slopes {
             border.strength *=
                 (self.least_contact * perimeter / border.length.max(f64::MIN_POSITIVE)).max(1.0);
         }
-        borders
+        Ok(borders)
     }
 }
 

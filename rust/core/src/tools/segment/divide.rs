@@ -12,7 +12,7 @@ use super::patches::{Patch, SegmentPlane};
 use super::surface::{members, pieces, Surface};
 use crate::mesh::vector::{distance, dot, Point};
 use crate::progress::Progress;
-use crate::Result;
+use crate::{memory, Result};
 
 /// How segments are divided.
 pub(super) struct Divide<'a> {
@@ -50,10 +50,10 @@ impl Divide<'_> {
     pub(super) fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
         for _ in 0..DIVIDE_ROUNDS {
             self.progress.check()?;
-            let members = members(labels);
+            let members = members(labels)?;
             let mut divided = false;
             for (fresh, faces) in (members.len() as u32..).zip(members) {
-                for f in self.second_side(&faces).unwrap_or_default() {
+                for f in self.second_side(&faces)?.unwrap_or_default() {
                     labels[f as usize] = fresh;
                     divided = true;
                 }
@@ -61,44 +61,60 @@ impl Divide<'_> {
             if !divided {
                 break;
             }
-            *labels = pieces(self.surface, labels).0;
+            *labels = pieces(self.surface, labels)?.0;
         }
         Ok(())
     }
 
     /// The faces of the second of two sides, where they explain what one patch does not.
-    fn second_side(&self, faces: &[u32]) -> Option<Vec<u32>> {
-        if faces.len() < 2 * LEAST_PART || SegmentPlane::through(self.surface, faces)?.spread <= self.flat {
-            return None;
+    fn second_side(&self, faces: &[u32]) -> Result<Option<Vec<u32>>> {
+        let is_divisible = |plane: SegmentPlane| faces.len() >= 2 * LEAST_PART && plane.spread > self.flat;
+        if !SegmentPlane::through(self.surface, faces).is_some_and(is_divisible) {
+            return Ok(None);
         }
-        let patch = Patch::fit(self.surface, faces, None)?;
+        let Some(patch) = Patch::fit(self.surface, faces, None) else { return Ok(None) };
         let directions = patch.curvature_directions();
         let squares = self.squares(&Model::Patch(patch), faces);
-        directions.into_iter().find_map(|across| {
-            let mut leanings: Vec<f64> =
-                faces.iter().map(|&f| dot(across, self.surface.centroids[f as usize])).collect();
-            let middle = *leanings.clone().select_nth_unstable_by(faces.len() / 2, f64::total_cmp).1;
+        for across in directions {
+            let leaning = |&f: &u32| dot(across, self.surface.centroids[f as usize]);
+            let mut leanings: Vec<f64> = memory::gathered(faces.iter().map(leaning))?;
+            let mut sorted = memory::twin(&leanings)?;
+            let middle = *sorted.select_nth_unstable_by(faces.len() / 2, f64::total_cmp).1;
             leanings.iter_mut().for_each(|x| *x -= middle);
-            [false, true].into_iter().find_map(|curved| self.halves(faces, &mut leanings, squares, curved))
-        })
+            for curved in [false, true] {
+                if let Some(second) = self.halves(faces, &mut leanings, squares, curved)? {
+                    return Ok(Some(second));
+                }
+            }
+        }
+        Ok(None)
     }
 
     /// The second of two sides, planes or `curved`, that follow from how faces lean: those with positive
     /// `leanings` to it. Nothing where they do not fit within the noise, bend little where they meet, or
     /// explain no more than the one patch that misses the corners by `squares`.
-    fn halves(&self, faces: &[u32], leanings: &mut [f64], squares: f64, curved: bool) -> Option<Vec<u32>> {
+    fn halves(
+        &self,
+        faces: &[u32],
+        leanings: &mut [f64],
+        squares: f64,
+        curved: bool,
+    ) -> Result<Option<Vec<u32>>> {
         let kind = usize::from(curved);
         let mut turn = 0;
         loop {
-            let side = |second: bool| -> Vec<u32> {
+            let side = |second: bool| {
                 let pairs = faces.iter().zip(leanings.iter());
-                pairs.filter(|(_, x)| (**x > 0.0) == second).map(|(f, _)| *f).collect()
+                memory::sifted(pairs.filter(|(_, x)| (**x > 0.0) == second).map(|(f, _)| *f))
             };
-            let sides = [side(false), side(true)];
+            let sides: [Vec<u32>; 2] = [side(false)?, side(true)?];
             if sides.iter().any(|side| side.len() < LEAST_PART) {
-                return None;
+                return Ok(None);
             }
-            let models = [self.model(&sides[0], curved)?, self.model(&sides[1], curved)?];
+            let [Some(first), Some(second)] = [0, 1].map(|i| self.model(&sides[i], curved)) else {
+                return Ok(None);
+            };
+            let models = [first, second];
             if turn < DIVIDE_TURNS[kind] {
                 turn += 1;
                 for (leaning, &f) in leanings.iter_mut().zip(faces) {
@@ -113,7 +129,7 @@ impl Divide<'_> {
                     > EVIDENCE_TO_DIVIDE[kind]
                 && self.bend_between(&models, &sides) > self.bend;
             let [_, second] = sides;
-            return stands.then_some(second);
+            return Ok(stands.then_some(second));
         }
     }
 

@@ -11,6 +11,7 @@ use super::constants::{
 use super::surface::{contiguous, Surface};
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::{add, distance, norm, sub, unit, Point};
+use crate::{memory, Result};
 
 /// The flat sides of an exact shape.
 pub(super) struct Planes {
@@ -22,33 +23,36 @@ pub(super) struct Planes {
 
 /// The planes of a shape that is exact and has sides too coarse for the Hessian, where borders are none if
 /// the unit normals differ by less than `bend`; nothing for any other shape.
-pub(super) fn coarse_planes(surface: &Surface<'_>, bend: f64) -> Option<Planes> {
-    let facets = Facets::new(surface);
-    let edges = facets.turns();
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub(super) fn coarse_planes(surface: &Surface<'_>, bend: f64) -> Result<Option<Planes>> {
+    let facets = Facets::new(surface)?;
+    let edges = facets.turns()?;
     let flat = edges.iter().filter(|edge| edge.is_flat).count();
     if surface.n_faces() >= FEW_FACES && (flat as f64) < FLAT_SHARE * edges.len() as f64 {
-        return None;
+        return Ok(None);
     }
-    let sides = facets.joined(&edges, |edge| edge.turn < bend);
-    if !is_coarse(surface, &sides) {
-        return None;
+    let sides = facets.joined(&edges, |edge| edge.turn < bend)?;
+    if !is_coarse(surface, &sides)? {
+        return Ok(None);
     }
-    let labels = facets.joined(&edges, |edge| edge.is_flat);
-    let mut sums = vec![[0.0; 3]; labels.iter().map(|l| *l as usize + 1).max().unwrap_or(0)];
+    let labels = facets.joined(&edges, |edge| edge.is_flat)?;
+    let mut sums = memory::repeated([0.0; 3], labels.iter().map(|l| *l as usize + 1).max().unwrap_or(0))?;
     for (f, &label) in labels.iter().enumerate() {
         sums[label as usize] = add(sums[label as usize], surface.vector_area(f));
     }
-    let normals = labels.iter().map(|&label| unit(sums[label as usize])).collect();
-    Some(Planes { labels, normals })
+    let normals = memory::gathered(labels.iter().map(|&label| unit(sums[label as usize])))?;
+    Ok(Some(Planes { labels, normals }))
 }
 
 /// Whether a side has too few faces inside.
-fn is_coarse(surface: &Surface<'_>, sides: &[u32]) -> bool {
-    let mut inside = vec![0; sides.iter().map(|l| *l as usize + 1).max().unwrap_or(0)];
+fn is_coarse(surface: &Surface<'_>, sides: &[u32]) -> Result<bool> {
+    let mut inside = memory::repeated(0, sides.iter().map(|l| *l as usize + 1).max().unwrap_or(0))?;
     for (f, &side) in sides.iter().enumerate() {
         inside[side as usize] += usize::from(!surface.is_at_border(sides, f));
     }
-    inside.iter().any(|count| *count < LEAST_INSIDE)
+    Ok(inside.iter().any(|count| *count < LEAST_INSIDE))
 }
 
 /// The faces with what rounding makes of them.
@@ -67,17 +71,19 @@ struct Turn {
 }
 
 impl<'a> Facets<'a> {
-    fn new(surface: &'a Surface<'a>) -> Self {
+    fn new(surface: &'a Surface<'a>) -> Result<Self> {
         let largest = surface.positions.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
         let rounding = COORDINATE_ROUNDING.max(SINGLE_PRECISION * largest);
-        let mut facets = Self { surface, rounding, normals: Vec::new(), slivers: Vec::new() };
-        for f in 0..surface.n_faces() {
+        let n = surface.n_faces();
+        let (normals, slivers) = (memory::room(n)?, memory::room(n)?);
+        let mut facets = Self { surface, rounding, normals, slivers };
+        for f in 0..n {
             facets.normals.push(unit(surface.vector_area(f)));
             let longest = facets.longest(f).0;
             let height = 2.0 * norm(surface.vector_area(f)) / longest.max(f64::MIN_POSITIVE);
             facets.slivers.push(height < SLIVER_ROUNDINGS * rounding);
         }
-        facets
+        Ok(facets)
     }
 
     /// The length of the longest edge of face `f`, and its halfedge.
@@ -93,7 +99,7 @@ impl<'a> Facets<'a> {
     }
 
     /// All edges between faces that have normals.
-    fn turns(&self) -> Vec<Turn> {
+    fn turns(&self) -> Result<Vec<Turn>> {
         let connectivity = self.surface.connectivity;
         let turn = |h: usize| {
             let twin = connectivity.twin(h)?;
@@ -110,7 +116,7 @@ impl<'a> Facets<'a> {
                 is_flat: turn < (4.0 * rounded).min(MOST_TURN_IN_A_PLANE),
             })
         };
-        connectivity.edges().filter_map(turn).collect()
+        Ok(memory::sifted(connectivity.edges().filter_map(turn))?)
     }
 
     /// The height of a face over the edge of its halfedge `h`.
@@ -123,22 +129,22 @@ impl<'a> Facets<'a> {
 
     /// The faces joined over the edges that `joins`, slivers with the neighbor at their longest edge:
     /// a label for each, from 0.
-    fn joined(&self, edges: &[Turn], joins: impl Fn(&Turn) -> bool) -> Vec<u32> {
+    fn joined(&self, edges: &[Turn], joins: impl Fn(&Turn) -> bool) -> Result<Vec<u32>> {
         let n = self.surface.n_faces();
-        let mut partition = Partition::new(n);
+        let mut partition = Partition::new(n)?;
         for edge in edges.iter().filter(|edge| joins(edge)) {
             partition.unite(edge.faces[0], edge.faces[1]);
         }
-        self.place_slivers(&mut partition);
-        let roots: Vec<u32> = (0..n as u32).map(|f| partition.root(f)).collect();
-        contiguous(&roots).0
+        self.place_slivers(&mut partition)?;
+        let roots: Vec<u32> = memory::gathered((0..n as u32).map(|f| partition.root(f)))?;
+        Ok(contiguous(&roots)?.0)
     }
 
     /// Joins each sliver with the neighbor at its longest edge, or where that leads to slivers only,
     /// at another one.
-    fn place_slivers(&self, partition: &mut Partition) {
-        let mut placed: Vec<bool> = self.slivers.iter().map(|sliver| !sliver).collect();
-        let mut left: Vec<usize> = (0..placed.len()).filter(|&f| !placed[f]).collect();
+    fn place_slivers(&self, partition: &mut Partition) -> Result<()> {
+        let mut placed: Vec<bool> = memory::gathered(self.slivers.iter().map(|sliver| !sliver))?;
+        let mut left: Vec<usize> = memory::sifted((0..placed.len()).filter(|&f| !placed[f]))?;
         for any_edge in [false, true] {
             loop {
                 let before = left.len();
@@ -155,6 +161,7 @@ impl<'a> Facets<'a> {
                 }
             }
         }
+        Ok(())
     }
 }
 
@@ -167,8 +174,9 @@ mod tests {
 
     fn planes(mesh: &Mesh) -> Option<usize> {
         let (connectivity, positions) = (mesh.connectivity(), mesh.positions().unwrap());
-        let surface = Surface::new(connectivity, positions, 1.0, vec![[1.0; 3]; connectivity.n_faces()]);
-        coarse_planes(&surface, 0.4).map(|planes| contiguous(&planes.labels).1)
+        let costs = vec![[1.0; 3]; connectivity.n_faces()];
+        let surface = Surface::new(connectivity, positions, 1.0, costs).unwrap();
+        coarse_planes(&surface, 0.4).unwrap().map(|planes| contiguous(&planes.labels).unwrap().1)
     }
 
     #[test]

@@ -8,7 +8,7 @@ use super::patches::{Patch, SegmentPlane};
 use super::surface::{members, Surface};
 use crate::mesh::vector::{add, dot};
 use crate::progress::Progress;
-use crate::Result;
+use crate::{memory, Result};
 
 /// How much a neighbor explains.
 pub(super) struct Explain<'a> {
@@ -44,14 +44,14 @@ impl Explain<'_> {
     pub(super) fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
         loop {
             self.progress.check()?;
-            let segments = self.measured(labels);
+            let segments = self.measured(labels)?;
             let count = segments.members.len();
-            let mut order: Vec<u32> = (0..count as u32).collect();
+            let mut order = memory::numbers(count)?;
             let area = |label: u32| segments.areas[label as usize];
-            order.sort_by(|&a, &b| area(a).total_cmp(&area(b)).then(a.cmp(&b)));
-            let mut names: Vec<u32> = (0..count as u32).collect();
+            order.sort_unstable_by(|&a, &b| area(a).total_cmp(&area(b)).then(a.cmp(&b)));
+            let mut names = memory::numbers(count)?;
             // Each segment takes part in one merge of a round, so that fits are still theirs.
-            let mut busy = vec![false; count];
+            let mut busy = memory::repeated(false, count)?;
             for own in order {
                 if busy[own as usize] {
                     continue;
@@ -70,9 +70,9 @@ impl Explain<'_> {
     }
 
     /// Renumbers the segments and measures them.
-    fn measured(&self, labels: &mut Vec<u32>) -> Segments {
+    fn measured(&self, labels: &mut Vec<u32>) -> Result<Segments> {
         let surface = self.surface;
-        let members = members(labels);
+        let members = members(labels)?;
         let area = |faces: &Vec<u32>| faces.iter().map(|&f| surface.areas[f as usize]).sum();
         let plane = |faces: &Vec<u32>| {
             SegmentPlane::through(surface, faces).filter(|plane| plane.spread <= self.flat)
@@ -84,12 +84,12 @@ impl Explain<'_> {
                 *borders.entry((labels[f], labels[g])).or_default() += surface.lengths[f][h % 3];
             }
         }
-        Segments {
-            areas: members.iter().map(area).collect(),
-            planes: members.iter().map(plane).collect(),
+        Ok(Segments {
+            areas: memory::gathered(members.iter().map(area))?,
+            planes: memory::gathered(members.iter().map(plane))?,
             members,
             borders,
-        }
+        })
     }
 
     /// The larger neighbor that explains the segment `own`, that with the longest border of several.

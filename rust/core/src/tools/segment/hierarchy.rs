@@ -47,34 +47,34 @@ impl Hierarchy {
     }
 
     /// The same for faces that are each one of those here, `faces[i]`. Segments without a face are none.
-    pub(in crate::tools) fn picked(&self, faces: &[u32]) -> Self {
-        let picked: Vec<u32> = faces.iter().map(|&f| self.leaves[f as usize]).collect();
+    ///
+    /// # Errors
+    /// [`Error::Solve`] where memory is missing.
+    pub(in crate::tools) fn picked(&self, faces: &[u32]) -> Result<Self> {
+        let picked: Vec<u32> = memory::gathered(faces.iter().map(|&f| self.leaves[f as usize]))?;
         // The fresh name of each segment that is there,
         // which moves on to the segment that it becomes part of.
-        let mut name = vec![u32::MAX; self.n_leaves];
+        let mut name = memory::repeated(u32::MAX, self.n_leaves)?;
         let mut count = 0;
-        let leaves: Vec<u32> = picked
-            .iter()
-            .map(|&leaf| {
-                let Some(name) = name.get_mut(leaf as usize) else { return u32::MAX };
-                if *name == u32::MAX {
-                    *name = count;
-                    count += 1;
-                }
-                *name
-            })
-            .collect();
+        let leaves: Vec<u32> = memory::gathered(picked.iter().map(|&leaf| {
+            let Some(name) = name.get_mut(leaf as usize) else { return u32::MAX };
+            if *name == u32::MAX {
+                *name = count;
+                count += 1;
+            }
+            *name
+        }))?;
         let mut there = Self { leaves, n_leaves: count as usize, merges: Vec::new(), strengths: Vec::new() };
         for (&[kept, gone], &strength) in self.merges.iter().zip(&self.strengths) {
             let (a, b) = (name[kept as usize], name[gone as usize]);
             if a == u32::MAX {
                 name[kept as usize] = b;
             } else if b != u32::MAX {
-                there.merges.push([a, b]);
-                there.strengths.push(strength);
+                memory::push(&mut there.merges, [a, b])?;
+                memory::push(&mut there.strengths, strength)?;
             }
         }
-        there
+        Ok(there)
     }
 
     /// Most and fewest segments that there can be: those of the finest segmentation,
@@ -101,12 +101,12 @@ impl Hierarchy {
             return Err(Error::argument("n_segments", "is 0; ask for at least one segment"));
         }
         let count = self.n_leaves.saturating_sub(n_segments).min(self.merges.len());
-        let mut name = memory::sifted(0..self.n_leaves as u32)?;
+        let mut name = memory::numbers(self.n_leaves)?;
         for &[kept, gone] in self.merges[..count].iter().rev() {
             name[gone as usize] = name[kept as usize];
         }
         let used = self.leaves.iter().filter(|l| **l != u32::MAX).map(|&l| name[l as usize]);
-        let mut renamed = contiguous(&memory::sifted(used)?).0.into_iter();
+        let mut renamed = contiguous(&memory::sifted(used)?)?.0.into_iter();
         let label =
             |leaf: &u32| if *leaf == u32::MAX { -1 } else { renamed.next().map_or(-1, u32::cast_signed) };
         Ok(memory::gathered(self.leaves.iter().map(label))?)
@@ -137,8 +137,8 @@ mod tests {
     fn segments_without_a_face_are_none() {
         let merges = [([2, 3], 0.2), ([0, 1], 0.3), ([0, 2], 0.5)];
         let hierarchy = Hierarchy::new(vec![0, 1, 2, 3, u32::MAX, 1], 4, merges);
-        assert_eq!(hierarchy.picked(&[0, 1, 2, 3, 4, 5]), hierarchy);
-        let picked = hierarchy.picked(&[5, 3, 4]);
+        assert_eq!(hierarchy.picked(&[0, 1, 2, 3, 4, 5]).unwrap(), hierarchy);
+        let picked = hierarchy.picked(&[5, 3, 4]).unwrap();
         assert_eq!(picked.range(), [2, 1]);
         assert_eq!(picked.strengths(), [0.5]);
         assert_eq!(picked.labels_at(2).unwrap(), [0, 1, -1]);

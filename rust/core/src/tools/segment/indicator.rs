@@ -10,7 +10,7 @@ use crate::operators::{voronoi_mass, Dual, HessianPattern};
 use crate::progress::{Progress, Report};
 use crate::solve::{solve, Coupling, Problem, Session, Settings, Solution, Solver, Status};
 use crate::tools::sharpness::block_norms;
-use crate::Result;
+use crate::{memory, Result};
 
 /// How the functional is minimized.
 pub(super) struct Functional<'a> {
@@ -61,14 +61,14 @@ impl Functional<'_> {
             functional: self,
             operator: &operator,
             total: mass.iter().sum(),
-            fixed: mass.iter().map(|m| *m <= 0.0).collect(),
+            fixed: memory::gathered(mass.iter().map(|m| *m <= 0.0))?,
             mass,
             solver: Session::new(),
             step: IndicatorStep::new(surface, self.length_weight, self.face_costs)?,
             progress,
             reached: Minimizer {
-                values: self.values.clone(),
-                indicator: vec![1.0; surface.n_faces()],
+                values: self.values.copied()?,
+                indicator: memory::repeated(1.0, surface.n_faces())?,
                 fidelity: self.fidelity,
                 alternations: 0,
                 status: Status::Solved,
@@ -106,7 +106,7 @@ impl Functional<'_> {
             step.prepare(*epsilon);
         }
         Ok(Minimizer {
-            values: self.values.clone(),
+            values: self.values.copied()?,
             indicator: step.minimize(&block_norms(&operator, self.values, Coupling::Joint)?)?,
             fidelity: self.fidelity,
             alternations: 1,
@@ -199,10 +199,10 @@ impl Run<'_> {
         let alpha = self.reached.fidelity;
         let problem = Problem {
             operator: self.operator,
-            weights: self.reached.indicator.iter().map(|v| (v * v).max(LEAST_WEIGHT)).collect(),
-            fidelity: self.mass.iter().map(|m| alpha * m).collect(),
-            target: self.functional.values.clone(),
-            fixed: self.fixed.clone(),
+            weights: memory::gathered(self.reached.indicator.iter().map(|v| (v * v).max(LEAST_WEIGHT)))?,
+            fidelity: memory::gathered(self.mass.iter().map(|m| alpha * m))?,
+            target: self.functional.values.copied()?,
+            fixed: memory::twin(&self.fixed)?,
             linear_constraints: None,
             coupling: Coupling::Joint,
         };

@@ -25,7 +25,7 @@ impl IndicatorStep {
     /// Too little memory for the factor.
     pub(super) fn new(surface: &Surface<'_>, length_weight: f64, face_costs: &[f64]) -> Result<Self> {
         let m = surface.n_faces();
-        let weights = face_laplacian_weights(surface.connectivity, &surface.lengths, &surface.centroids);
+        let weights = face_laplacian_weights(surface.connectivity, &surface.lengths, &surface.centroids)?;
         let most = m + surface.connectivity.edges().count();
         let (mut starts, mut rows) = (memory::room(m + 1)?, memory::room(most)?);
         let mut laplacian = memory::room(most)?;

@@ -9,7 +9,7 @@ use super::slopes::Slopes;
 use super::surface::Surface;
 use crate::ordered::Ordered;
 use crate::progress::Progress;
-use crate::Result;
+use crate::{memory, Result};
 
 /// Two segments that became one: `gone` is `kept` from then on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,26 +52,28 @@ impl Merging<'_> {
         loop {
             let borders = self.borders(labels)?;
             // A fifth of the borders at a time: the later ones change with the segments.
-            let mut strengths: Vec<f64> = borders.iter().map(|b| b.strength).collect();
+            let mut strengths: Vec<f64> = memory::gathered(borders.iter().map(|b| b.strength))?;
             if strengths.is_empty() {
                 return Ok(merges);
             }
-            strengths.sort_by(f64::total_cmp);
-            let round = greedy(&borders, strengths[strengths.len() / 5] * (1.0 + 1e-9) + f64::MIN_POSITIVE);
+            strengths.sort_unstable_by(f64::total_cmp);
+            let most = strengths[strengths.len() / 5] * (1.0 + 1e-9) + f64::MIN_POSITIVE;
+            let round = greedy(&borders, most)?;
             rename(labels, &round);
+            memory::extend(&mut merges, round.len())?;
             merges.extend(round);
         }
     }
 
     fn round(&self, labels: &mut [u32], threshold: f64) -> Result<Vec<Merge>> {
-        let merges = greedy(&self.borders(labels)?, threshold);
+        let merges = greedy(&self.borders(labels)?, threshold)?;
         rename(labels, &merges);
         Ok(merges)
     }
 
     fn borders(&self, labels: &[u32]) -> Result<Vec<Border>> {
         self.progress.check()?;
-        let mut borders = self.slopes.borders(self.surface, labels);
+        let mut borders = self.slopes.borders(self.surface, labels)?;
         if let Some(groups) = self.groups {
             let mut group = BTreeMap::new();
             for (label, g) in labels.iter().zip(groups) {
@@ -104,7 +106,8 @@ impl Merging<'_> {
                     }
                 }
             }
-            let mut small: Vec<(usize, u32)> = weakest.keys().map(|label| (sizes[label], *label)).collect();
+            let mut small: Vec<(usize, u32)> =
+                memory::gathered(weakest.keys().map(|label| (sizes[label], *label)))?;
             small.sort_unstable();
             // Each segment takes part in one merge of a round, so that the measured borders are still theirs.
             let mut busy: BTreeMap<u32, ()> = BTreeMap::new();
@@ -118,7 +121,7 @@ impl Merging<'_> {
                 if sizes[&kept] < least {
                     busy.insert(kept, ());
                 }
-                round.push(Merge { kept, gone, strength });
+                memory::push(&mut round, Merge { kept, gone, strength })?;
             }
             if round.is_empty() {
                 return Ok(merges);
@@ -145,9 +148,13 @@ pub(super) fn rename(labels: &mut [u32], merges: &[Merge]) {
 
 /// Removes borders weaker than `threshold`, weakest first; borders that two segments had with a third become
 /// one, with their mean strength by length.
-pub(super) fn greedy(borders: &[Border], threshold: f64) -> Vec<Merge> {
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub(super) fn greedy(borders: &[Border], threshold: f64) -> Result<Vec<Merge>> {
     let mut around: BTreeMap<u32, BTreeMap<u32, (f64, f64)>> = BTreeMap::new();
     let mut heap = BinaryHeap::new();
+    memory::extend_heap(&mut heap, borders.len())?;
     for &Border { labels: [a, b], length, strength } in borders {
         around.entry(a).or_default().insert(b, (length, strength));
         around.entry(b).or_default().insert(a, (length, strength));
@@ -177,15 +184,17 @@ pub(super) fn greedy(borders: &[Border], threshold: f64) -> Vec<Merge> {
             let mean = (held.0 * held.1 + length * strength) / total.max(f64::MIN_POSITIVE);
             around.entry(kept).or_default().insert(third, (total, mean));
             around.entry(third).or_default().insert(kept, (total, mean));
+            memory::extend_heap(&mut heap, 1)?;
             heap.push(Reverse((Ordered(mean), [kept.min(third), kept.max(third)])));
         }
-        merges.push(Merge { kept, gone, strength });
+        memory::push(&mut merges, Merge { kept, gone, strength })?;
     }
-    merges
+    Ok(merges)
 }
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     fn border(a: u32, b: u32, strength: f64) -> Border {
@@ -195,7 +204,7 @@ mod tests {
     #[test]
     fn weak_borders_fall_first_and_joint_ones_have_the_mean_strength() {
         let borders = [border(0, 1, 0.1), border(0, 2, 1.0), border(1, 2, 0.4), border(2, 3, 0.6)];
-        let merges = greedy(&borders, 0.65);
+        let merges = greedy(&borders, 0.65).unwrap();
         assert_eq!(merges.len(), 2);
         assert_eq!((merges[0].strength, merges[1].strength), (0.1, 0.6));
         // 0 and 1 against 2: (1.0 + 0.4) / 2 = 0.7, which stands.

@@ -88,14 +88,14 @@ pub fn segment(
     let working = Working::new(mesh)?;
     let here = working.mesh();
     let positions = here.positions().ok_or(MeshError::NoPositions)?;
-    let Some(found) = TJunctions::find(here.connectivity(), positions) else {
+    let Some(found) = TJunctions::find(here.connectivity(), positions)? else {
         return oriented(mesh, &working, None, options, progress);
     };
     let split = found.split(here, positions)?;
-    let options = split::options_of_parts(&split, &options_here(&working, options));
+    let options = split::options_of_parts(&split, &options_here(&working, options)?)?;
     // Joined sides may disagree on what is outside.
     let parts = oriented(&split.mesh, &Working::unwelded(&split.mesh)?, None, &options, progress)?;
-    given_back(&working, None, split::of_whole_faces(&split, here, parts))
+    given_back(&working, None, split::of_whole_faces(&split, here, parts)?)
 }
 
 /// Segments the `working` mesh made of `mesh`, and gives back what comes out for that.
@@ -109,21 +109,25 @@ fn oriented(
     if working.is_plain() {
         return on(mesh, values, options, progress);
     }
-    given_back(working, values, on(working.mesh(), values, &options_here(working, options), progress)?)
+    given_back(working, values, on(working.mesh(), values, &options_here(working, options)?, progress)?)
 }
 
 /// The options for the faces of the working mesh.
-fn options_here(working: &Working<'_>, options: &SegmentOptions) -> SegmentOptions {
-    let edge_weights = options.edge_weights.as_ref().map(|weights| working.corner_rows(weights));
-    SegmentOptions { edge_weights, ..options.clone() }
+fn options_here(working: &Working<'_>, options: &SegmentOptions) -> Result<SegmentOptions> {
+    let edge_weights =
+        options.edge_weights.as_ref().map(|weights| working.corner_rows(weights)).transpose()?;
+    let faces = options.faces.as_deref().map(memory::twin).transpose()?;
+    let face_weights = options.face_weights.as_deref().map(memory::twin).transpose()?;
+    Ok(SegmentOptions { edge_weights, faces, face_weights, ..options.without_arrays() })
 }
 
 /// The same for the mesh that the working one was made of.
 fn given_back(working: &Working<'_>, values: Option<&Columns>, found: Segmentation) -> Result<Segmentation> {
+    let edges = found.boundary_edges.iter();
     Ok(Segmentation {
-        boundary_edges: found.boundary_edges.iter().map(|edge| edge.map(|v| working.original(v))).collect(),
+        boundary_edges: memory::gathered(edges.map(|edge| edge.map(|v| working.original(v))))?,
         values: match values {
-            None => Columns::from_points(&working.positions(&found.values.to_points()?))?,
+            None => Columns::from_points(&working.positions(&found.values.to_points()?)?)?,
             Some(_) => found.values,
         },
         ..found
@@ -148,9 +152,9 @@ fn on(
         relative => relative,
     };
     let noise = options.noise.map(|noise| value.measure(noise));
-    let options = &SegmentOptions { scale, noise, ..options.clone() };
-    let copies = Copies::among(mesh.connectivity(), options.faces.as_deref());
-    let without = copies.as_ref().map(|copies| copies.others(options.faces.as_deref()));
+    let options = &SegmentOptions { scale, noise, ..options.copied()? };
+    let copies = Copies::among(mesh.connectivity(), options.faces.as_deref())?;
+    let without = copies.as_ref().map(|copies| copies.others(options.faces.as_deref())).transpose()?;
     let mut found = options.solve.run(|| {
         let by_levels = options.are_levels_used(mesh.connectivity().n_vertices(), values.is_some());
         mesh.demand(if by_levels { Tool::SegmentByLevels } else { Tool::Segment })
@@ -166,7 +170,7 @@ fn on(
         }
     })?;
     if let Some(copies) = &copies {
-        found = copies.given(found);
+        found = copies.given(found)?;
     }
     value.restore_all(found.values.data.iter_mut());
     found.noise = value.restore(found.noise);
@@ -189,17 +193,17 @@ fn whole(
     if !(unit > 0.0 && unit.is_finite()) {
         return Err(MeshError::NoFaces.into());
     }
-    let surface = Surface::new(mesh.connectivity(), positions, unit, options.edge_costs(mesh));
+    let surface = Surface::new(mesh.connectivity(), positions, unit, options.edge_costs(mesh)?)?;
     if surface.areas.iter().all(|area| *area <= 0.0) {
         return Err(MeshError::NoFaces.into());
     }
-    let signal = values.map(Normalized::of);
+    let signal = values.map(Normalized::of).transpose()?;
     let start = match &signal {
         Some(signal) => signal.values.copied()?,
         None => Columns::from_points(&surface.positions)?,
     };
     let exact = if options.is_plain(values.is_some()) {
-        coarse_planes(&surface, BEND * options.length_weight)
+        coarse_planes(&surface, BEND * options.length_weight)?
     } else {
         None
     };
@@ -209,7 +213,7 @@ fn whole(
     let noise = match options.noise {
         _ if is_exact => 0.0,
         Some(given) => given / size,
-        None => noise_level(&surface, &start, degrees),
+        None => noise_level(&surface, &start, degrees)?,
     };
     if options.are_levels_used(positions.len(), values.is_some()) {
         if !is_exact {
@@ -231,7 +235,7 @@ fn whole(
         surface: &surface,
         values: &start,
         length_weight: options.length_weight,
-        face_costs: &options.face_costs(&surface.costs),
+        face_costs: &options.face_costs(&surface.costs)?,
         fidelity: options.starting_fidelity(),
         noise: options.fidelity.is_none().then_some(noise),
         epsilons: epsilons.clone(),
@@ -253,14 +257,14 @@ fn whole(
     };
     let regions = passes.regions()?;
     passes.regions = regions.as_ref();
-    let slopes = passes.slopes();
+    let slopes = passes.slopes()?;
     let merging = passes.merging(&slopes);
     let leaves = passes.leaves()?;
-    let (labels, n_segments) = contiguous(&passes.joined(&merging, &leaves)?);
+    let (labels, n_segments) = contiguous(&passes.joined(&merging, &leaves)?)?;
     let hierarchy = passes.hierarchy(&merging, &leaves, &labels)?;
     let labels = hierarchy.labels_at(n_segments)?;
     let unscaled = |columns: &Columns| match &signal {
-        Some(signal) => Ok(signal.restored(columns)),
+        Some(signal) => signal.restored(columns),
         None if is_exact => Columns::from_points(positions),
         None => {
             let data = memory::gathered(columns.data.iter().map(|x| unit * x))?;
@@ -268,7 +272,7 @@ fn whole(
         }
     };
     Ok(Segmentation {
-        boundary_edges: boundary_edges(mesh, &labels),
+        boundary_edges: boundary_edges(mesh, &labels)?,
         labels,
         n_segments,
         indicator: found.indicator,

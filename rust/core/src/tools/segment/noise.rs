@@ -3,6 +3,7 @@
 use super::surface::Surface;
 use crate::linear::Columns;
 use crate::operators::Hinge;
+use crate::{memory, Result};
 
 /// The median of the length of a standard normal vector, by its number of entries (1 to 4; the square root of
 /// the median of a chi-squared variable).
@@ -14,7 +15,10 @@ const MEDIAN_LENGTH: [f64; 4] = [0.674_490, 1.177_410, 1.538_172, 1.832_125];
 /// Across an edge the gradient of an affine function does not jump; independent noise makes it jump by the
 /// noise times the norm of the four coefficients. The median over all edges does not see borders (Rousseeuw
 /// and Croux 1993). Smooth curvature counts as noise where the mesh resolves it no better.
-pub(super) fn noise_level(surface: &Surface<'_>, values: &Columns, degrees: usize) -> f64 {
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub(super) fn noise_level(surface: &Surface<'_>, values: &Columns, degrees: usize) -> Result<f64> {
     let connectivity = surface.connectivity;
     let mut ratios = Vec::new();
     for h in connectivity.edges() {
@@ -38,14 +42,14 @@ pub(super) fn noise_level(surface: &Surface<'_>, values: &Columns, degrees: usiz
             .sum();
         let norm = jump.iter().map(|j| j * j).sum::<f64>().sqrt();
         if norm > 0.0 && norm.is_finite() {
-            ratios.push(squared.sqrt() / norm);
+            memory::push(&mut ratios, squared.sqrt() / norm)?;
         }
     }
     if ratios.is_empty() {
-        return 0.0;
+        return Ok(0.0);
     }
     let middle = ratios.len() / 2;
     let median = *ratios.select_nth_unstable_by(middle, f64::total_cmp).1;
     let degrees = degrees.clamp(1, MEDIAN_LENGTH.len());
-    median / MEDIAN_LENGTH[degrees - 1]
+    Ok(median / MEDIAN_LENGTH[degrees - 1])
 }

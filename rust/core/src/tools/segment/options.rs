@@ -6,7 +6,7 @@ use crate::mesh::Mesh;
 use crate::solve::MAX_JOINT_COLUMNS;
 use crate::tools::options::{check_edge_weights, check_faces, check_positive, check_range, check_weights};
 use crate::tools::{Levels, Scale, SolveOptions};
-use crate::{Error, Result};
+use crate::{memory, Error, Result};
 
 /// How segments are made from the indicator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -121,6 +121,24 @@ impl SegmentOptions {
         Ok(())
     }
 
+    /// A copy.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] where memory is missing.
+    pub(super) fn copied(&self) -> Result<Self> {
+        Ok(Self {
+            face_weights: self.face_weights.as_deref().map(memory::twin).transpose()?,
+            edge_weights: self.edge_weights.as_deref().map(memory::twin).transpose()?,
+            faces: self.faces.as_deref().map(memory::twin).transpose()?,
+            ..self.without_arrays()
+        })
+    }
+
+    /// The same without what has an entry a face.
+    pub(super) fn without_arrays(&self) -> Self {
+        Self { face_weights: None, edge_weights: None, faces: None, ..*self }
+    }
+
     /// Whether nothing is asked for but the faces of a shape.
     pub(super) fn is_plain(&self, has_values: bool) -> bool {
         !has_values && self.fidelity.is_none() && self.method == SegmentMethod::Fitted
@@ -153,19 +171,22 @@ impl SegmentOptions {
     }
 
     /// What a border along each halfedge costs per length, the same for both halfedges of an edge.
-    pub(super) fn edge_costs(&self, mesh: &Mesh) -> Vec<[f64; 3]> {
+    ///
+    /// # Errors
+    /// [`Error::Solve`] where memory is missing, here and below.
+    pub(super) fn edge_costs(&self, mesh: &Mesh) -> Result<Vec<[f64; 3]>> {
         let connectivity = mesh.connectivity();
         let own = |h: usize| {
             self.edge_weights.as_ref().map_or(1.0, |w| w[h / 3][h % 3])
                 * self.face_weights.as_ref().map_or(1.0, |w| w[h / 3])
         };
         let cost = |h: usize| connectivity.twin(h).map_or_else(|| own(h), |twin| 0.5 * (own(h) + own(twin)));
-        (0..connectivity.n_faces()).map(|f| [0, 1, 2].map(|i| cost(3 * f + i))).collect()
+        Ok(memory::gathered((0..connectivity.n_faces()).map(|f| [0, 1, 2].map(|i| cost(3 * f + i))))?)
     }
 
     /// What borders cost in each face: as much as along its cheapest edge.
-    pub(super) fn face_costs(&self, edge_costs: &[[f64; 3]]) -> Vec<f64> {
+    pub(super) fn face_costs(&self, edge_costs: &[[f64; 3]]) -> Result<Vec<f64>> {
         let cheapest = |costs: &[f64; 3]| costs.iter().copied().fold(f64::INFINITY, f64::min);
-        edge_costs.iter().map(cheapest).map(|cost| cost.max(1e-3)).collect()
+        Ok(memory::gathered(edge_costs.iter().map(cheapest).map(|cost| cost.max(1e-3)))?)
     }
 }

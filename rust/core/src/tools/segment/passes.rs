@@ -19,7 +19,7 @@ use super::watershed::watershed;
 use crate::linear::Columns;
 use crate::mesh::partition::Partition;
 use crate::progress::{Progress, Report};
-use crate::Result;
+use crate::{memory, Result};
 
 /// All that segments are made from.
 pub(super) struct Passes<'a> {
@@ -40,7 +40,10 @@ pub(super) struct Passes<'a> {
 
 impl<'a> Passes<'a> {
     /// What bends across borders.
-    pub(super) fn slopes(&self) -> Slopes {
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing.
+    pub(super) fn slopes(&self) -> Result<Slopes> {
         match self.planes {
             Some(planes) => Slopes::of_planes(self.surface, &planes.normals),
             None if self.is_shape => Slopes::of_shape(self.surface, self.noise),
@@ -61,17 +64,17 @@ impl<'a> Passes<'a> {
     pub(super) fn leaves(&self) -> Result<Vec<u32>> {
         self.report(0.9, "segments");
         if let Some(planes) = self.planes {
-            return Ok(planes.labels.clone());
+            return Ok(memory::twin(&planes.labels)?);
         }
         match self.options.method {
             SegmentMethod::Paper => {
                 let (threshold, least) = (self.options.cut_threshold, self.least_faces());
-                Ok(cut_and_merge(self.surface, self.indicator, threshold, least).0)
+                Ok(cut_and_merge(self.surface, self.indicator, threshold, least)?.0)
             }
             SegmentMethod::Fitted => {
-                let mut leaves = watershed(self.surface, self.indicator, PERSISTENCE).0;
+                let mut leaves = watershed(self.surface, self.indicator, PERSISTENCE)?.0;
                 if let Some(regions) = self.groups() {
-                    leaves = common(self.surface, &leaves, regions);
+                    leaves = common(self.surface, &leaves, regions)?;
                 }
                 self.divide(&mut leaves)?;
                 Ok(leaves)
@@ -84,14 +87,14 @@ impl<'a> Passes<'a> {
     /// # Errors
     /// [`crate::Error::Cancelled`].
     pub(super) fn joined(&self, merging: &Merging<'_>, leaves: &[u32]) -> Result<Vec<u32>> {
-        let mut labels = leaves.to_vec();
+        let mut labels = memory::twin(leaves)?;
         if self.planes.is_some() {
             merging.below(&mut labels, BEND * self.options.length_weight)?;
             merging.absorb_small(&mut labels, self.options.min_faces.unwrap_or(0))?;
         } else if self.options.method == SegmentMethod::Fitted {
             self.fit(&Merging { groups: self.groups(), ..*merging }, &mut labels)?;
             if let Some(regions) = self.regions {
-                regions.join(self.surface, &mut labels, BEND * self.options.length_weight);
+                regions.join(self.surface, &mut labels, BEND * self.options.length_weight)?;
                 merging.absorb_small(&mut labels, self.options.min_faces.unwrap_or(0))?;
             }
         }
@@ -174,7 +177,7 @@ impl<'a> Passes<'a> {
             merging.absorb_small(labels, self.least_faces())?;
             self.explain(labels, false)?;
             self.divide(labels)?;
-            let before = labels.clone();
+            let before = memory::twin(labels)?;
             relabel.run(labels)?;
             if *labels == before && share == 1.0 {
                 break;
@@ -183,16 +186,17 @@ impl<'a> Passes<'a> {
         let [_, flat] = self.deviations();
         let straighten =
             self.is_shape.then(|| Straighten::new(self.surface, flat, self.groups(), self.progress));
+        let straighten = straighten.transpose()?;
         if let Some(straighten) = &straighten {
             straighten.run(labels)?;
-            relabel.rejoin(labels);
+            relabel.rejoin(labels)?;
         }
         merging.below(labels, threshold)?;
         merging.absorb_small(labels, self.least_faces())?;
         self.explain(labels, true)?;
         if let Some(straighten) = &straighten {
             straighten.run(labels)?;
-            relabel.rejoin(labels);
+            relabel.rejoin(labels)?;
         }
         Ok(())
     }
@@ -214,8 +218,8 @@ impl<'a> Passes<'a> {
         let relabel = self.relabel(usize::MAX);
         relabel.run(labels)?;
         let [_, flat] = self.deviations();
-        Straighten::new(self.surface, flat, self.groups(), self.progress).run(labels)?;
-        relabel.rejoin(labels);
+        Straighten::new(self.surface, flat, self.groups(), self.progress)?.run(labels)?;
+        relabel.rejoin(labels)?;
         Ok(())
     }
 
@@ -230,11 +234,11 @@ impl<'a> Passes<'a> {
 
     /// Merges down to `n` segments, where there are more.
     fn merge_to(&self, merging: &Merging<'_>, labels: &mut [u32], n: usize) -> Result<()> {
-        let count = contiguous(labels).1;
+        let count = contiguous(labels)?.1;
         if count <= n {
             return Ok(());
         }
-        let mut merged = labels.to_vec();
+        let mut merged = memory::twin(labels)?;
         let merges = merging.all(&mut merged)?;
         rename(labels, &merges[..(count - n).min(merges.len())]);
         Ok(())
@@ -249,26 +253,29 @@ impl<'a> Passes<'a> {
         labels: &[u32],
     ) -> Result<Hierarchy> {
         self.report(0.98, "hierarchy");
-        let (finest, n_leaves) = self.nested_leaves(leaves, labels);
-        let mut current = finest.clone();
+        let (finest, n_leaves) = self.nested_leaves(leaves, labels)?;
+        let mut current = memory::twin(&finest)?;
         let within = Merging { groups: Some(labels), ..*merging };
         let mut merges: Vec<Merge> = within.all(&mut current)?;
         merges.sort_by(|a, b| a.strength.total_cmp(&b.strength));
-        let mut merges = within_order(&finest, n_leaves, &merges);
-        let mut current = finest.clone();
+        let mut merges = within_order(&finest, n_leaves, &merges)?;
+        let mut current = memory::twin(&finest)?;
         rename(&mut current, &merges);
-        merges.extend(merging.all(&mut current)?);
+        let outer = merging.all(&mut current)?;
+        memory::extend(&mut merges, outer.len())?;
+        merges.extend(outer);
         let merges = merges.iter().map(|m| ([m.kept, m.gone], m.strength));
         Ok(Hierarchy::new(finest, n_leaves, merges).ascending())
     }
 
     /// Each leaf belongs to the segment that has most of its faces;
     /// faces elsewhere go to the nearest leaf of their own segment.
-    fn nested_leaves(&self, leaves: &[u32], labels: &[u32]) -> (Vec<u32>, usize) {
+    fn nested_leaves(&self, leaves: &[u32], labels: &[u32]) -> Result<(Vec<u32>, usize)> {
         let n_leaves = leaves.iter().map(|l| *l as usize + 1).max().unwrap_or(0);
-        let mut pairs: Vec<(u32, u32)> = leaves.iter().copied().zip(labels.iter().copied()).collect();
+        let mut pairs: Vec<(u32, u32)> =
+            memory::gathered(leaves.iter().copied().zip(labels.iter().copied()))?;
         pairs.sort_unstable();
-        let mut owner = vec![(0, u32::MAX); n_leaves];
+        let mut owner = memory::repeated((0, u32::MAX), n_leaves)?;
         for same in pairs.chunk_by(|a, b| a == b) {
             let held = &mut owner[same[0].0 as usize];
             if same.len() > held.0 {
@@ -276,18 +283,22 @@ impl<'a> Passes<'a> {
             }
         }
         // Names that no leaf has stand for segments without a leaf of their own.
-        let mut nested: Vec<u32> = leaves
-            .iter()
-            .zip(labels)
-            .map(|(&leaf, &label)| if owner[leaf as usize].1 == label { leaf } else { u32::MAX })
-            .collect();
-        let mut queue: std::collections::VecDeque<usize> =
-            (0..nested.len()).filter(|&f| nested[f] != u32::MAX).collect();
-        while let Some(f) = queue.pop_front() {
+        let own = |(&leaf, &label): (&u32, &u32)| {
+            if owner[leaf as usize].1 == label {
+                leaf
+            } else {
+                u32::MAX
+            }
+        };
+        let mut nested: Vec<u32> = memory::gathered(leaves.iter().zip(labels).map(own))?;
+        let mut queue: Vec<usize> = memory::sifted((0..nested.len()).filter(|&f| nested[f] != u32::MAX))?;
+        let mut next = 0;
+        while let Some(&f) = queue.get(next) {
+            next += 1;
             for (_, g) in self.surface.around(f) {
                 if nested[g] == u32::MAX && labels[g] == labels[f] {
                     nested[g] = nested[f];
-                    queue.push_back(g);
+                    memory::push(&mut queue, g)?;
                 }
             }
         }
@@ -305,23 +316,21 @@ impl<'a> Passes<'a> {
 }
 
 /// The connected pieces in which two labelings both have one label.
-fn common(surface: &Surface<'_>, first: &[u32], second: &[u32]) -> Vec<u32> {
+fn common(surface: &Surface<'_>, first: &[u32], second: &[u32]) -> Result<Vec<u32>> {
     let mut names = std::collections::BTreeMap::new();
     let pairs = first.iter().zip(second);
-    let labels: Vec<u32> = pairs
-        .map(|pair| {
-            let fresh = names.len() as u32;
-            *names.entry(pair).or_insert(fresh)
-        })
-        .collect();
-    pieces(surface, &labels).0
+    let labels: Vec<u32> = memory::gathered(pairs.map(|pair| {
+        let fresh = names.len() as u32;
+        *names.entry(pair).or_insert(fresh)
+    }))?;
+    Ok(pieces(surface, &labels)?.0)
 }
 
 /// The same merges in the order given, each named by segments that are still there.
-fn within_order(labels: &[u32], n: usize, merges: &[Merge]) -> Vec<Merge> {
+fn within_order(labels: &[u32], n: usize, merges: &[Merge]) -> Result<Vec<Merge>> {
     debug_assert!(labels.iter().all(|l| (*l as usize) < n));
-    let mut segments = Partition::new(n);
-    let mut ordered = Vec::with_capacity(merges.len());
+    let mut segments = Partition::new(n)?;
+    let mut ordered = memory::room(merges.len())?;
     for merge in merges {
         let (kept, gone) = (segments.root(merge.kept), segments.root(merge.gone));
         if kept != gone {
@@ -329,5 +338,5 @@ fn within_order(labels: &[u32], n: usize, merges: &[Merge]) -> Vec<Merge> {
             ordered.push(Merge { kept, gone, strength: merge.strength });
         }
     }
-    ordered
+    Ok(ordered)
 }

@@ -15,7 +15,7 @@ use super::merge::{greedy, rename};
 use super::surface::{contiguous, pieces, Surface};
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::{add, distance, norm, scale, unit, Point};
-use crate::Result;
+use crate::{memory, Result};
 
 /// The regions, and how sharply the surface turns between them.
 pub(super) struct Regions {
@@ -39,8 +39,8 @@ impl Regions {
         if noise > MOST_REGION_NOISE * surface.mean_edge {
             return Ok(None);
         }
-        let normals = averaged(surface);
-        let mut partition = Partition::new(surface.n_faces());
+        let normals = averaged(surface)?;
+        let mut partition = Partition::new(surface.n_faces())?;
         for f in 0..surface.n_faces() {
             for (_, g) in
                 surface.around(f).filter(|&(_, g)| g > f && distance(normals[f], normals[g]) < ONE_SIDE)
@@ -48,19 +48,19 @@ impl Regions {
                 partition.unite(f as u32, g as u32);
             }
         }
-        let roots: Vec<u32> = (0..surface.n_faces() as u32).map(|f| partition.root(f)).collect();
-        let mut regions = Self { labels: contiguous(&roots).0, normals };
+        let roots = (0..surface.n_faces() as u32).map(|f| partition.root(f));
+        let mut regions = Self { labels: contiguous(&memory::gathered(roots)?)?.0, normals };
         let mut labels = std::mem::take(&mut regions.labels);
-        regions.join(surface, &mut labels, CLEAR_RIDGE);
+        regions.join(surface, &mut labels, CLEAR_RIDGE)?;
         explain.run(&mut labels)?;
-        let (parts, n_parts) = pieces(surface, &vec![0; labels.len()]);
-        let closes = regions.closed_parts(surface, &labels, &parts, n_parts);
+        let (parts, n_parts) = pieces(surface, &memory::repeated(0, labels.len())?)?;
+        let closes = regions.closed_parts(surface, &labels, &parts, n_parts)?;
         for (label, &part) in labels.iter_mut().zip(&parts) {
             if !closes[part as usize] {
                 *label = u32::MAX - 1;
             }
         }
-        let (labels, count) = pieces(surface, &labels);
+        let (labels, count) = pieces(surface, &labels)?;
         regions.labels = labels;
         Ok((count > n_parts).then_some(regions))
     }
@@ -72,8 +72,8 @@ impl Regions {
         labels: &[u32],
         parts: &[u32],
         n_parts: usize,
-    ) -> Vec<bool> {
-        let (mut open, mut total) = (vec![0.0; n_parts], vec![0.0; n_parts]);
+    ) -> Result<Vec<bool>> {
+        let (mut open, mut total) = (memory::repeated(0.0, n_parts)?, memory::repeated(0.0, n_parts)?);
         for f in 0..labels.len() {
             for (h, g) in surface.around(f).filter(|&(_, g)| g > f) {
                 if distance(self.normals[f], self.normals[g]) > CLEAR_RIDGE {
@@ -83,40 +83,49 @@ impl Regions {
                 }
             }
         }
-        open.iter().zip(&total).map(|(open, total)| *open <= MOST_OPEN_RIDGES * total).collect()
+        let closes = open.iter().zip(&total).map(|(open, total)| *open <= MOST_OPEN_RIDGES * total);
+        Ok(memory::gathered(closes)?)
     }
 
     /// Joins segments where the surface turns by less than `bend` on average along their border,
     /// the least turn first.
-    pub(super) fn join(&self, surface: &Surface<'_>, labels: &mut [u32], bend: f64) {
-        let merges = greedy(&self.borders(surface, labels), bend);
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing.
+    pub(super) fn join(&self, surface: &Surface<'_>, labels: &mut [u32], bend: f64) -> Result<()> {
+        let merges = greedy(&self.borders(surface, labels)?, bend)?;
         rename(labels, &merges);
+        Ok(())
     }
 
     /// The borders between segments with the mean turn along them, over what a border costs there.
-    fn borders(&self, surface: &Surface<'_>, labels: &[u32]) -> Vec<Border> {
-        let mut edges: Vec<([u32; 2], f64, f64)> = Vec::new();
+    fn borders(&self, surface: &Surface<'_>, labels: &[u32]) -> Result<Vec<Border>> {
+        let mut edges: Vec<Edge> = Vec::new();
         for f in 0..labels.len() {
             for (h, g) in surface.around(f).filter(|&(_, g)| g > f && labels[g] != labels[f]) {
                 let turn = distance(self.normals[f], self.normals[g]) / surface.costs[f][h % 3].max(1e-3);
                 let pair = [labels[f].min(labels[g]), labels[f].max(labels[g])];
-                edges.push((pair, surface.lengths[f][h % 3], turn));
+                memory::push(&mut edges, ((pair, h), surface.lengths[f][h % 3], turn))?;
             }
         }
-        edges.sort_by_key(|edge| edge.0);
-        let border = |edges: &[([u32; 2], f64, f64)]| {
+        edges.sort_unstable_by_key(|edge| edge.0);
+        let border = |edges: &[Edge]| {
             let length: f64 = edges.iter().map(|edge| edge.1).sum();
             let sum: f64 = edges.iter().map(|edge| edge.1 * edge.2).sum();
-            Border { labels: edges[0].0, length, strength: sum / length.max(f64::MIN_POSITIVE) }
+            Border { labels: edges[0].0 .0, length, strength: sum / length.max(f64::MIN_POSITIVE) }
         };
-        edges.chunk_by(|a, b| a.0 == b.0).map(border).collect()
+        Ok(memory::sifted(edges.chunk_by(|a, b| a.0 .0 == b.0 .0).map(border))?)
     }
 }
 
+/// A border edge: its labels and halfedge, its length, and how far the surface turns there.
+type Edge = (([u32; 2], usize), f64, f64);
+
 /// Unit normals averaged over neighbors, by areas and by how alike they are:
 /// bilateral filtering (Zheng et al. 2011).
-fn averaged(surface: &Surface<'_>) -> Vec<Point> {
-    let mut normals: Vec<Point> = (0..surface.n_faces()).map(|f| unit(surface.vector_area(f))).collect();
+fn averaged(surface: &Surface<'_>) -> Result<Vec<Point>> {
+    let own = (0..surface.n_faces()).map(|f| unit(surface.vector_area(f)));
+    let mut normals: Vec<Point> = memory::gathered(own)?;
     for _ in 0..NORMAL_ROUNDS {
         let mean = |f: usize| {
             let near = surface.around(f).map(|(_, g)| {
@@ -130,9 +139,9 @@ fn averaged(surface: &Surface<'_>) -> Vec<Point> {
                 normals[f]
             }
         };
-        normals = (0..surface.n_faces()).map(mean).collect();
+        normals = memory::gathered((0..surface.n_faces()).map(mean))?;
     }
-    normals
+    Ok(normals)
 }
 
 #[cfg(test)]
@@ -146,7 +155,8 @@ mod tests {
     /// How many regions there are, of a mesh with noise of that share of the mean edge.
     fn count(mesh: &Mesh, noise: f64) -> usize {
         let (connectivity, positions) = (mesh.connectivity(), mesh.positions().unwrap());
-        let surface = Surface::new(connectivity, positions, 1.0, vec![[1.0; 3]; connectivity.n_faces()]);
+        let costs = vec![[1.0; 3]; connectivity.n_faces()];
+        let surface = Surface::new(connectivity, positions, 1.0, costs).unwrap();
         let (noise, least) = (noise * surface.mean_edge, 0.02 * surface.mean_edge);
         let explain = Explain {
             surface: &surface,
@@ -158,7 +168,7 @@ mod tests {
             progress: &Progress::new(),
         };
         let found = Regions::between_clear_ridges(&surface, noise, &explain).unwrap();
-        found.map_or(1, |regions| contiguous(&regions.labels).1)
+        found.map_or(1, |regions| contiguous(&regions.labels).unwrap().1)
     }
 
     #[test]

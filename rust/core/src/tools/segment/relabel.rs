@@ -15,7 +15,7 @@ use super::surface::{pieces, Surface};
 use crate::linear::Columns;
 use crate::mesh::vector::{distance, unit};
 use crate::progress::Progress;
-use crate::Result;
+use crate::{memory, Result};
 
 /// What is fitted, and how exactly.
 pub(super) struct Relabel<'a> {
@@ -55,14 +55,14 @@ impl Relabel<'_> {
     pub(super) fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
         for _ in 0..RELABEL_ROUNDS {
             self.progress.check()?;
-            let before = labels.clone();
-            let mut round = Round::new(self, before.clone());
+            let before = memory::twin(labels)?;
+            let mut round = Round::new(self, memory::twin(labels)?)?;
             for _ in 0..RELABEL_SWEEPS {
                 if !self.sweep(&mut round, labels) {
                     break;
                 }
             }
-            self.rejoin(labels);
+            self.rejoin(labels)?;
             if *labels == before {
                 break;
             }
@@ -110,10 +110,14 @@ impl Relabel<'_> {
 
     /// Gives every small piece of a segment but its largest to the neighbor with which it has the longest
     /// border; other pieces become segments of their own.
-    pub(super) fn rejoin(&self, labels: &mut [u32]) {
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing.
+    pub(super) fn rejoin(&self, labels: &mut [u32]) -> Result<()> {
         loop {
-            let (piece, count) = pieces(self.surface, labels);
-            let (mut area, mut size, mut owner) = (vec![0.0; count], vec![0; count], vec![0; count]);
+            let (piece, count) = pieces(self.surface, labels)?;
+            let (mut area, mut size) = (memory::repeated(0.0, count)?, memory::repeated(0, count)?);
+            let mut owner = memory::repeated(0, count)?;
             for f in 0..labels.len() {
                 let p = piece[f] as usize;
                 area[p] += self.surface.areas[f];
@@ -153,7 +157,7 @@ impl Relabel<'_> {
                 }
             }
             if home.is_empty() {
-                return;
+                return Ok(());
             }
             for (label, p) in labels.iter_mut().zip(&piece) {
                 if let Some((_, new)) = home.get(p) {
@@ -165,7 +169,7 @@ impl Relabel<'_> {
 }
 
 impl<'a, 'b> Round<'a, 'b> {
-    fn new(relabel: &'b Relabel<'a>, labels: Vec<u32>) -> Self {
+    fn new(relabel: &'b Relabel<'a>, labels: Vec<u32>) -> Result<Self> {
         let surface = relabel.surface;
         let m = labels.len();
         let mut planes = BTreeMap::new();
@@ -174,9 +178,9 @@ impl<'a, 'b> Round<'a, 'b> {
             for f in 0..m {
                 let entry = members.entry(labels[f]).or_default();
                 if !surface.is_at_border(&labels, f) {
-                    entry.0.push(f as u32);
+                    memory::push(&mut entry.0, f as u32)?;
                 }
-                entry.1.push(f as u32);
+                memory::push(&mut entry.1, f as u32)?;
             }
             let flat = (PLANE_NOISE * relabel.noise).max(PLANE_EDGE * surface.mean_edge);
             for (label, (inside, all)) in members {
@@ -188,17 +192,17 @@ impl<'a, 'b> Round<'a, 'b> {
         }
         let least =
             if relabel.signal.is_none() { LEAST_NOISE * surface.mean_edge } else { LEAST_NOISE_OF_VALUES };
-        Self {
+        Ok(Self {
             relabel,
             labels,
             planes,
             known: BTreeMap::new(),
-            seen: vec![0; m],
+            seen: memory::repeated(0, m)?,
             stamp: 0,
             patch_size: patch_size(relabel.noise / surface.mean_edge),
             deviation: relabel.noise.max(least),
             turn: LEAST_TURN + STRAY_OF_NOISE * relabel.noise / surface.mean_edge,
-        }
+        })
     }
 
     /// The cost of face `f` in the segment `label`, as that was at the beginning of the round.

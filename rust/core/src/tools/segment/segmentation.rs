@@ -4,6 +4,7 @@ use super::hierarchy::Hierarchy;
 use crate::linear::Columns;
 use crate::mesh::Mesh;
 use crate::solve::Status;
+use crate::{memory, Result};
 
 /// What came out of a segmentation.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,7 +35,10 @@ pub struct Segmentation {
 }
 
 /// The vertices of the edges between faces of different labels, −1 not counted as one.
-pub(in crate::tools) fn boundary_edges(mesh: &Mesh, labels: &[i32]) -> Vec<[u32; 2]> {
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub(in crate::tools) fn boundary_edges(mesh: &Mesh, labels: &[i32]) -> Result<Vec<[u32; 2]>> {
     let connectivity = mesh.connectivity();
     let between = |h: usize| {
         connectivity.mate(h).is_some_and(|mate| {
@@ -42,9 +46,6 @@ pub(in crate::tools) fn boundary_edges(mesh: &Mesh, labels: &[i32]) -> Vec<[u32;
             a != b && a >= 0 && b >= 0
         })
     };
-    connectivity
-        .edges()
-        .filter(|&h| between(h))
-        .map(|h| [connectivity.tail(h), connectivity.head(h)])
-        .collect()
+    let ends = |h: usize| [connectivity.tail(h), connectivity.head(h)];
+    Ok(memory::sifted(connectivity.edges().filter(|&h| between(h)).map(ends))?)
 }

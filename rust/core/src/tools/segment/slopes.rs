@@ -5,6 +5,7 @@ use super::surface::Surface;
 use crate::linear::Columns;
 use crate::mesh::triangle;
 use crate::mesh::vector::Point;
+use crate::{memory, Result};
 
 /// What bends across borders, face by face: the gradients of a function, or the normals of the surface.
 ///
@@ -32,37 +33,42 @@ pub(super) struct Slopes {
 
 impl Slopes {
     /// The shape itself, with `noise` of that standard deviation along the normals.
-    pub(super) fn of_shape(surface: &Surface<'_>, noise: f64) -> Self {
-        let gradients = (0..surface.n_faces()).flat_map(|f| {
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing, here and below.
+    pub(super) fn of_shape(surface: &Surface<'_>, noise: f64) -> Result<Self> {
+        let mut gradients = memory::room(2 * surface.n_faces())?;
+        gradients.extend((0..surface.n_faces()).flat_map(|f| {
             let [x, y, z] = surface.vector_area(f).map(|x| x / surface.areas[f].max(f64::MIN_POSITIVE));
             [[x, y], [z, 0.0]]
-        });
-        Self {
+        }));
+        Ok(Self {
             n_columns: 2,
-            gradients: gradients.collect(),
+            gradients,
             is_shape: true,
-            means: vec![0.0; 2 * surface.n_faces()],
-            layouts: layouts(surface),
+            means: memory::repeated(0.0, 2 * surface.n_faces())?,
+            layouts: layouts(surface)?,
             reach: reach(surface, noise),
             step: 0.0,
             noise,
             least_contact: LEAST_CONTACT,
-        }
+        })
     }
 
     /// An exact shape whose faces have the normals of their planes:
     /// one edge tells the angle between two of them.
-    pub(super) fn of_planes(surface: &Surface<'_>, normals: &[Point]) -> Self {
-        let gradients = normals.iter().flat_map(|&[x, y, z]| [[x, y], [z, 0.0]]).collect();
-        Self { gradients, reach: 0.0, least_contact: 0.0, ..Self::of_shape(surface, 0.0) }
+    pub(super) fn of_planes(surface: &Surface<'_>, normals: &[Point]) -> Result<Self> {
+        let mut gradients = memory::room(2 * normals.len())?;
+        gradients.extend(normals.iter().flat_map(|&[x, y, z]| [[x, y], [z, 0.0]]));
+        Ok(Self { gradients, reach: 0.0, least_contact: 0.0, ..Self::of_shape(surface, 0.0)? })
     }
 
     /// `values` on the surface, with `noise` of that standard deviation.
-    pub(super) fn of_values(surface: &Surface<'_>, values: &Columns, noise: f64) -> Self {
+    pub(super) fn of_values(surface: &Surface<'_>, values: &Columns, noise: f64) -> Result<Self> {
         let k = values.n_columns;
         let m = surface.n_faces();
-        let layouts = layouts(surface);
-        let (mut gradients, mut means) = (Vec::with_capacity(k * m), Vec::with_capacity(k * m));
+        let layouts = layouts(surface)?;
+        let (mut gradients, mut means) = (memory::room(k * m)?, memory::room(k * m)?);
         for (face, p) in surface.connectivity.faces().iter().zip(&layouts) {
             for c in 0..k {
                 let [a, b, d] = face.map(|v| values.column(c)[v as usize]);
@@ -74,7 +80,7 @@ impl Slopes {
             }
         }
         let (reach, step) = (reach(surface, noise), BENDS_OF_A_STEP / surface.mean_edge);
-        Self {
+        Ok(Self {
             n_columns: k,
             gradients,
             is_shape: false,
@@ -84,12 +90,12 @@ impl Slopes {
             step,
             noise,
             least_contact: LEAST_CONTACT,
-        }
+        })
     }
 }
 
-fn layouts(surface: &Surface<'_>) -> Vec<[[f64; 2]; 3]> {
-    surface.lengths.iter().map(|&l| triangle::layout(l)).collect()
+fn layouts(surface: &Surface<'_>) -> Result<Vec<[[f64; 2]; 3]>> {
+    Ok(memory::gathered(surface.lengths.iter().map(|&l| triangle::layout(l)))?)
 }
 
 /// How far gradients are averaged: noise of values of range 1 makes slopes like noise of positions does.

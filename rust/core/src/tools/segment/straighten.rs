@@ -13,7 +13,7 @@ use super::surface::{members, Surface};
 use crate::mesh::vector::{add, distance, dot, sub, unit, Point};
 use crate::progress::Progress;
 use crate::tools::minimum_cut::Graph;
-use crate::Result;
+use crate::{memory, Result};
 
 /// What borders cost.
 pub(super) struct Straighten<'a> {
@@ -30,21 +30,19 @@ pub(super) struct Straighten<'a> {
 impl<'a> Straighten<'a> {
     /// Measures all edges. Normals are those of a face and its neighbors together,
     /// so that noise does not count as creases.
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing.
     pub(super) fn new(
         surface: &'a Surface<'a>,
         flat: f64,
         regions: Option<&'a [u32]>,
         progress: &'a Progress,
-    ) -> Self {
-        let normals: Vec<Point> = (0..surface.n_faces())
-            .map(|f| {
-                unit(
-                    surface
-                        .around(f)
-                        .fold(surface.vector_area(f), |sum, (_, g)| add(sum, surface.vector_area(g))),
-                )
-            })
-            .collect();
+    ) -> Result<Self> {
+        let sum = |f: usize| {
+            surface.around(f).fold(surface.vector_area(f), |sum, (_, g)| add(sum, surface.vector_area(g)))
+        };
+        let normals: Vec<Point> = memory::gathered((0..surface.n_faces()).map(|f| unit(sum(f))))?;
         let bend = |f: usize, g: usize| {
             let outward = dot(sub(normals[g], normals[f]), sub(surface.centroids[g], surface.centroids[f]));
             distance(normals[f], normals[g]) * if outward > 0.0 { BEND_OVER_A_RIDGE } else { 1.0 }
@@ -57,13 +55,13 @@ impl<'a> Straighten<'a> {
             }
         }
         let mean = (sum / f64::from(count.max(1))).max(f64::MIN_POSITIVE);
-        let mut costs = surface.costs.clone();
+        let mut costs = memory::twin(&surface.costs)?;
         for (f, costs) in costs.iter_mut().enumerate() {
             for (h, g) in surface.around(f) {
                 costs[h % 3] *= surface.lengths[f][h % 3] / (1.0 + bend(f, g) / mean);
             }
         }
-        Self { surface, flat, costs, regions, progress }
+        Ok(Self { surface, flat, costs, regions, progress })
     }
 
     /// Moves the borders between segments that are no planes; those of planes are where the planes meet. No
@@ -75,7 +73,7 @@ impl<'a> Straighten<'a> {
         let is_curved = |faces: &Vec<u32>| {
             SegmentPlane::through(self.surface, faces).is_none_or(|plane| plane.spread > self.flat)
         };
-        let curved: Vec<bool> = members(labels).iter().map(is_curved).collect();
+        let curved: Vec<bool> = memory::gathered(members(labels)?.iter().map(is_curved))?;
         for _ in 0..STRAIGHTEN_PASSES {
             let mut borders: BTreeMap<[u32; 2], Vec<u32>> = BTreeMap::new();
             for f in 0..labels.len() {
@@ -83,7 +81,7 @@ impl<'a> Straighten<'a> {
                 for (_, g) in self.surface.around(f).filter(|&(_, g)| may(g)) {
                     let (a, b) = (labels[f].min(labels[g]), labels[f].max(labels[g]));
                     if a != b && curved[a as usize] && curved[b as usize] {
-                        borders.entry([a, b]).or_default().push(f as u32);
+                        memory::push(borders.entry([a, b]).or_default(), f as u32)?;
                     }
                 }
             }
@@ -162,7 +160,8 @@ mod tests {
     fn teeth_go_and_the_segments_stay() {
         let mesh = shapes::icosphere(3).mesh().unwrap();
         let (connectivity, positions) = (mesh.connectivity(), mesh.positions().unwrap());
-        let surface = Surface::new(connectivity, positions, 1.0, vec![[1.0; 3]; connectivity.n_faces()]);
+        let costs = vec![[1.0; 3]; connectivity.n_faces()];
+        let surface = Surface::new(connectivity, positions, 1.0, costs).unwrap();
         let side = |f: usize, tooth: f64| u32::from(surface.centroids[f][2] > tooth);
         let mut labels: Vec<u32> =
             (0..surface.n_faces()).map(|f| side(f, if f % 3 == 0 { 0.15 } else { 0.0 })).collect();
@@ -172,8 +171,8 @@ mod tests {
                 .sum()
         };
         let before = length(&labels);
-        Straighten::new(&surface, 0.0, None, &Progress::new()).run(&mut labels).unwrap();
+        Straighten::new(&surface, 0.0, None, &Progress::new()).unwrap().run(&mut labels).unwrap();
         assert!(3 * length(&labels) < 2 * before, "{} of {before}", length(&labels));
-        assert_eq!(contiguous(&labels).1, 2);
+        assert_eq!(contiguous(&labels).unwrap().1, 2);
     }
 }

@@ -3,6 +3,7 @@
 use crate::mesh::vector::area_vector;
 use crate::mesh::{edge_lengths, triangle, Connectivity};
 use crate::operators::mollify;
+use crate::{memory, Result};
 
 /// No face.
 pub(super) const NONE: u32 = u32::MAX;
@@ -28,35 +29,37 @@ pub(super) struct Surface<'a> {
 
 impl<'a> Surface<'a> {
     /// The surface with all lengths divided by `unit`.
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing, here and below.
     pub(super) fn new(
         connectivity: &'a Connectivity,
         positions: &[[f64; 3]],
         unit: f64,
         costs: Vec<[f64; 3]>,
-    ) -> Self {
-        let positions: Vec<[f64; 3]> = positions.iter().map(|p| p.map(|x| x / unit)).collect();
-        let mut lengths = edge_lengths(connectivity.faces(), &positions);
+    ) -> Result<Self> {
+        let positions: Vec<[f64; 3]> = memory::gathered(positions.iter().map(|p| p.map(|x| x / unit)))?;
+        let mut lengths = edge_lengths(connectivity.faces(), &positions)?;
         mollify(connectivity, &mut lengths);
-        let areas = lengths.iter().map(|&l| triangle::area(l)).collect();
+        let areas = memory::gathered(lengths.iter().map(|&l| triangle::area(l)))?;
         let centroid = |face: &[u32; 3]| {
             std::array::from_fn(|c| face.iter().map(|&v| positions[v as usize][c]).sum::<f64>() / 3.0)
         };
-        let neighbors = (0..connectivity.n_faces())
-            .map(|f| [0, 1, 2].map(|i| connectivity.twin(3 * f + i).map_or(NONE, |twin| (twin / 3) as u32)))
-            .collect();
+        let across = |h: usize| connectivity.twin(h).map_or(NONE, |twin| (twin / 3) as u32);
+        let neighbors = (0..connectivity.n_faces()).map(|f| [0, 1, 2].map(|i| across(3 * f + i)));
         let (sum, count) = connectivity
             .edges()
             .fold((0.0, 0_usize), |(sum, count), h| (sum + lengths[h / 3][h % 3], count + 1));
-        Self {
-            centroids: connectivity.faces().iter().map(centroid).collect(),
+        Ok(Self {
+            centroids: memory::gathered(connectivity.faces().iter().map(centroid))?,
             connectivity,
             positions,
             areas,
-            neighbors,
+            neighbors: memory::gathered(neighbors)?,
             costs,
             mean_edge: sum / count.max(1) as f64,
             lengths,
-        }
+        })
     }
 
     /// Number of faces.
@@ -85,51 +88,50 @@ impl<'a> Surface<'a> {
 }
 
 /// Labels renumbered from 0 in the order of their first faces, and how many there are.
-pub(super) fn contiguous(labels: &[u32]) -> (Vec<u32>, usize) {
-    let mut names = vec![NONE; labels.iter().map(|&l| l as usize + 1).max().unwrap_or(0)];
+pub(super) fn contiguous(labels: &[u32]) -> Result<(Vec<u32>, usize)> {
+    let mut names = memory::repeated(NONE, labels.iter().map(|&l| l as usize + 1).max().unwrap_or(0))?;
     let mut count = 0;
-    let renamed = labels
-        .iter()
-        .map(|&label| {
-            let name = &mut names[label as usize];
-            if *name == NONE {
-                *name = count;
-                count += 1;
-            }
-            *name
-        })
-        .collect();
-    (renamed, count as usize)
+    let renamed = memory::gathered(labels.iter().map(|&label| {
+        let name = &mut names[label as usize];
+        if *name == NONE {
+            *name = count;
+            count += 1;
+        }
+        *name
+    }))?;
+    Ok((renamed, count as usize))
 }
 
 /// Renumbers the labels in place, as [`contiguous`] does, and lists the faces of each segment.
-pub(super) fn members(labels: &mut Vec<u32>) -> Vec<Vec<u32>> {
-    let (fresh, count) = contiguous(labels);
+pub(super) fn members(labels: &mut Vec<u32>) -> Result<Vec<Vec<u32>>> {
+    let (fresh, count) = contiguous(labels)?;
     *labels = fresh;
-    let mut members = vec![Vec::new(); count];
-    (0..).zip(labels.iter()).for_each(|(f, &label): (u32, _)| members[label as usize].push(f));
-    members
+    let mut members = memory::repeated(Vec::new(), count)?;
+    for (f, &label) in (0_u32..).zip(labels.iter()) {
+        memory::push(&mut members[label as usize], f)?;
+    }
+    Ok(members)
 }
 
 /// The connected pieces of equal labels, numbered in the order of their first faces, and how many there are.
-pub(super) fn pieces(surface: &Surface<'_>, labels: &[u32]) -> (Vec<u32>, usize) {
-    let mut piece = vec![NONE; labels.len()];
+pub(super) fn pieces(surface: &Surface<'_>, labels: &[u32]) -> Result<(Vec<u32>, usize)> {
+    let mut piece = memory::repeated(NONE, labels.len())?;
     let (mut count, mut stack) = (0, Vec::new());
     for start in 0..labels.len() {
         if piece[start] != NONE {
             continue;
         }
         piece[start] = count;
-        stack.push(start);
+        memory::push(&mut stack, start)?;
         while let Some(f) = stack.pop() {
             for (_, g) in surface.around(f) {
                 if piece[g] == NONE && labels[g] == labels[f] {
                     piece[g] = count;
-                    stack.push(g);
+                    memory::push(&mut stack, g)?;
                 }
             }
         }
         count += 1;
     }
-    (piece, count as usize)
+    Ok((piece, count as usize))
 }

@@ -6,6 +6,7 @@ use super::slopes::Slopes;
 use super::surface::Surface;
 use crate::mesh::vector::distance;
 use crate::solve::MAX_JOINT_COLUMNS;
+use crate::{memory, Result};
 
 /// A rigid motion of the plane: rotation as a complex number, then a shift.
 #[derive(Clone, Copy)]
@@ -27,6 +28,7 @@ impl Motion {
 
 /// A border edge between two segments, given by a halfedge, and the bend across it.
 pub(super) struct Bend {
+    pub halfedge: usize,
     pub labels: [u32; 2],
     pub length: f64,
     pub cost: f64,
@@ -42,8 +44,11 @@ pub(super) struct Marks {
 
 impl Marks {
     /// None of `n` faces seen.
-    pub(super) fn new(n: usize) -> Self {
-        Self { stamps: vec![0; n], stamp: 0, queue: Vec::new() }
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing, here and below.
+    pub(super) fn new(n: usize) -> Result<Self> {
+        Ok(Self { stamps: memory::repeated(0, n)?, stamp: 0, queue: Vec::new() })
     }
 }
 
@@ -88,7 +93,7 @@ pub(super) struct Walk<'a> {
 
 impl Walk<'_> {
     /// The bend across the edge of halfedge `h`.
-    pub(super) fn bend(&self, h: usize, marks: &mut Marks) -> Bend {
+    pub(super) fn bend(&self, h: usize, marks: &mut Marks) -> Result<Bend> {
         let (f, surface) = (h / 3, self.surface);
         let g = surface.neighbors[f][h % 3] as usize;
         let p = self.slopes.layouts[f];
@@ -103,11 +108,12 @@ impl Walk<'_> {
         let [from, to] = [surface.connectivity.tail(h), surface.connectivity.head(h)]
             .map(|v| surface.positions[v as usize]);
         let place = [0, 1, 2].map(|c| 0.5 * (from[c] + to[c]));
-        let inner = self.side(f, home, place, marks);
-        let outer = self.side(g, self.across(h, home), place, marks);
+        let inner = self.side(f, home, place, marks)?;
+        let outer = self.side(g, self.across(h, home), place, marks)?;
         let (a, b) = (self.labels[f], self.labels[g]);
         let cost = surface.costs[f][h % 3].max(1e-3);
-        Bend { labels: [a.min(b), a.max(b)], length, cost, bend: self.jump(&inner, &outer) }
+        let bend = self.jump(&inner, &outer);
+        Ok(Bend { halfedge: h, labels: [a.min(b), a.max(b)], length, cost, bend })
     }
 
     /// The motion of the face across halfedge `h`, unfolded into the plane of the face that has `motion`.
@@ -132,7 +138,7 @@ impl Walk<'_> {
 
     /// Averages over the faces with the label of `start` near the origin. The faces at the border itself may
     /// lie on the wrong side of it: they count only where there is nothing else.
-    fn side(&self, start: usize, motion: Motion, place: [f64; 3], marks: &mut Marks) -> Side {
+    fn side(&self, start: usize, motion: Motion, place: [f64; 3], marks: &mut Marks) -> Result<Side> {
         let mut side = Side::EMPTY;
         let reach = self.slopes.reach;
         let label = self.labels[start];
@@ -141,7 +147,7 @@ impl Walk<'_> {
             marks.stamp += 1;
             marks.stamps[start] = marks.stamp;
             marks.queue.clear();
-            marks.queue.push((start, motion));
+            memory::push(&mut marks.queue, (start, motion))?;
             let mut next = 0;
             while next < marks.queue.len() {
                 let (f, motion) = marks.queue[next];
@@ -158,12 +164,12 @@ impl Walk<'_> {
                     if self.labels[g] == label && marks.stamps[g] != marks.stamp {
                         marks.stamps[g] = marks.stamp;
                         let there = self.across(h, motion);
-                        marks.queue.push((g, there));
+                        memory::push(&mut marks.queue, (g, there))?;
                     }
                 }
             }
             if side.area > 0.0 || !skip_border {
-                return side;
+                return Ok(side);
             }
             skip_border = false;
             side = Side::EMPTY;

@@ -3,17 +3,26 @@
 
 use super::surface::{contiguous, Surface};
 use crate::mesh::partition::Partition;
+use crate::{memory, Result};
 
 /// Floods the faces from the maxima of `indicator` downwards; two basins stay apart only if the pass between
 /// them lies deeper than `persistence` under the lower of their maxima. Returns a label for every face, from
 /// 0, and how many there are.
-pub(super) fn watershed(surface: &Surface<'_>, indicator: &[f64], persistence: f64) -> (Vec<u32>, usize) {
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub(super) fn watershed(
+    surface: &Surface<'_>,
+    indicator: &[f64],
+    persistence: f64,
+) -> Result<(Vec<u32>, usize)> {
     let m = surface.n_faces();
-    let mut order: Vec<u32> = (0..m as u32).collect();
-    order.sort_by(|&a, &b| indicator[b as usize].total_cmp(&indicator[a as usize]).then(a.cmp(&b)));
+    let mut order = memory::numbers(m)?;
+    // Faces are all different, so that the order of equal ones does not matter.
+    order.sort_unstable_by(|&a, &b| indicator[b as usize].total_cmp(&indicator[a as usize]).then(a.cmp(&b)));
     // A basin is named by its highest face, which is the root of its tree.
-    let mut flooded = vec![false; m];
-    let mut sets = Partition::new(m);
+    let mut flooded = memory::repeated(false, m)?;
+    let mut sets = Partition::new(m)?;
     let mut basins: Vec<u32> = Vec::with_capacity(3);
     for &face in &order {
         let f = face as usize;
@@ -44,6 +53,6 @@ pub(super) fn watershed(surface: &Surface<'_>, indicator: &[f64], persistence: f
         let home = sets.root(home);
         sets.attach(face, home);
     }
-    let roots: Vec<u32> = (0..m as u32).map(|f| sets.root(f)).collect();
+    let roots: Vec<u32> = memory::gathered((0..m as u32).map(|f| sets.root(f)))?;
     contiguous(&roots)
 }

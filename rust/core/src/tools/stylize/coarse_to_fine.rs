@@ -17,7 +17,7 @@ use crate::mesh::{edge_lengths, Mesh};
 use crate::progress::Progress;
 use crate::solve::Settings;
 use crate::tools::Scale;
-use crate::Result;
+use crate::{memory, Result};
 
 /// How many steps a flow is expected to take on its coarsest level, for the progress: 2 to 9.
 const EXPECTED: usize = 6;
@@ -38,19 +38,19 @@ pub(super) fn coarse_to_fine(
     progress: &Progress,
 ) -> Result<Stylized> {
     let start = mesh.positions().ok_or(MeshError::NoPositions)?;
-    let held = held(options, start.len());
+    let held = held(options, start.len())?;
     let levels = levels(mesh, held.as_deref(), ENOUGH, progress)?;
     // One unit of length for all levels.
-    let lengths = edge_lengths(mesh.connectivity().faces(), start);
+    let lengths = edge_lengths(mesh.connectivity().faces(), start)?;
     let coarse_scale = Scale::Length(scale.unit(mesh.connectivity(), start, &lengths));
-    let all = options_by_level(mesh, options, held.as_deref(), &levels);
+    let all = options_by_level(mesh, options, held.as_deref(), &levels)?;
     let fractions = fractions(mesh, &levels);
     let energy = finest.energy()?;
     let mut account = Account { energy: vec![energy], ..Account::default() };
     let mut legacy: Option<Legacy> = None;
     for depth in (1..=levels.len()).rev() {
         let level = &levels[depth - 1];
-        let onto_mesh = |points: &[Point]| show(&carried(mesh, &levels[..depth], points.to_vec()));
+        let onto_mesh = |points: &[Point]| show(&carried(mesh, &levels[..depth], memory::twin(points)?)?);
         let mut flow =
             Flow::new(&level.mesh, &all[depth], coarse_scale, &onto_mesh)?.within(fractions[depth], STEPS);
         if let Some(legacy) = legacy.take() {
@@ -65,9 +65,10 @@ pub(super) fn coarse_to_fine(
         }
         if left.plan.n_steps() > 0 {
             let finer = mesh_at(mesh, &levels, depth - 1);
-            let points = carried(finer, &levels[depth - 1..depth], left.points);
+            let points = carried(finer, &levels[depth - 1..depth], left.points)?;
             let faces = finer.connectivity().faces();
-            let sharpening = left.sharpening.as_ref().map(|factors| level.carry.factors(factors, faces));
+            let finer_factors = |factors: &Vec<f64>| level.carry.factors(factors, faces);
+            let sharpening = left.sharpening.as_ref().map(finer_factors).transpose()?;
             legacy = Some(Legacy { points, sharpening, ..left });
         }
     }
@@ -90,9 +91,9 @@ fn mesh_at<'m>(mesh: &'m Mesh, levels: &'m [Level], depth: usize) -> &'m Mesh {
 }
 
 /// Which vertices do not move at all: none of the others collapses into one of them.
-fn held(options: &StylizeOptions, n_vertices: usize) -> Option<Vec<bool>> {
+fn held(options: &StylizeOptions, n_vertices: usize) -> Result<Option<Vec<bool>>> {
     let may_hold = options.fixed.is_some() || options.strength.is_some();
-    may_hold.then(|| (0..n_vertices).map(|v| options.holds(v)).collect())
+    Ok(may_hold.then(|| memory::gathered((0..n_vertices).map(|v| options.holds(v)))).transpose()?)
 }
 
 /// What is asked of each level, the finest first.
@@ -101,35 +102,37 @@ fn options_by_level(
     options: &StylizeOptions,
     held: Option<&[bool]>,
     levels: &[Level],
-) -> Vec<StylizeOptions> {
-    let mut all = vec![options.clone()];
-    let mut fixed: Option<Vec<f64>> =
-        held.map(|held| held.iter().map(|&is| f64::from(u8::from(is))).collect());
-    let mut strength = options.strength.clone();
-    let ridges = options.ridge_weights.as_ref().map(|weights| face_values(mesh, levels, weights));
+) -> Result<Vec<StylizeOptions>> {
+    let as_number = |held: &[bool]| memory::gathered(held.iter().map(|&is| f64::from(u8::from(is))));
+    let mut fixed: Option<Vec<f64>> = held.map(as_number).transpose()?;
+    let mut strength = options.strength.as_deref().map(memory::twin).transpose()?;
+    let values = |weights: &Vec<f64>| face_values(mesh, levels, weights);
+    let ridges = options.ridge_weights.as_ref().map(values).transpose()?;
+    let mut all = vec![options.copied()?];
+    let is_most = |values: &[f64]| memory::gathered(values.iter().map(|&value| value > 0.5));
     for (i, level) in levels.iter().enumerate() {
-        fixed = fixed.map(|values| level.mean_of(&values));
-        strength = strength.map(|values| level.mean_of(&values));
+        fixed = fixed.map(|values| level.mean_of(&values)).transpose()?;
+        strength = strength.map(|values| level.mean_of(&values)).transpose()?;
         all.push(StylizeOptions {
-            fixed: fixed.as_ref().map(|values| values.iter().map(|&value| value > 0.5).collect()),
-            strength: strength.clone(),
-            ridge_weights: ridges.as_ref().map(|values| values[i].clone()),
-            ..options.clone()
+            fixed: fixed.as_deref().map(is_most).transpose()?,
+            strength: strength.as_deref().map(memory::twin).transpose()?,
+            ridge_weights: ridges.as_ref().map(|values| memory::twin(&values[i])).transpose()?,
+            ..options.without_arrays()
         });
     }
-    all
+    Ok(all)
 }
 
 /// Points of the coarsest of `levels`, as they move the vertices of `mesh`, the finest.
-fn carried(mesh: &Mesh, levels: &[Level], mut points: Vec<Point>) -> Vec<Point> {
+fn carried(mesh: &Mesh, levels: &[Level], mut points: Vec<Point>) -> Result<Vec<Point>> {
     for (i, level) in levels.iter().enumerate().rev() {
         let finer = if i == 0 { mesh } else { &levels[i - 1].mesh };
         let (Some(home), Some(fine)) = (level.mesh.positions(), finer.positions()) else { continue };
-        let moves: Vec<Point> = points.iter().zip(home).map(|(p, q)| sub(*p, *q)).collect();
-        let moves = level.carry.points(&moves, [0.0; 3]);
-        points = fine.iter().zip(moves).map(|(p, by)| add(*p, by)).collect();
+        let moves: Vec<Point> = memory::gathered(points.iter().zip(home).map(|(p, q)| sub(*p, *q)))?;
+        let moves = level.carry.points(&moves, [0.0; 3])?;
+        points = memory::gathered(fine.iter().zip(moves).map(|(p, by)| add(*p, by)))?;
     }
-    points
+    Ok(points)
 }
 
 /// The part of the whole that each level takes, by its vertices and the steps that are expected of it.
@@ -185,7 +188,7 @@ impl Account {
 /// What a flow that was stopped on a coarse level leaves on the mesh. However that level ended, those below
 /// it were not done.
 fn stopped(mesh: &Mesh, result: Stylized, levels: &[Level]) -> Result<Stylized> {
-    let vertices = carried(mesh, levels, result.vertices);
+    let vertices = carried(mesh, levels, result.vertices)?;
     let start = mesh.positions().ok_or(MeshError::NoPositions)?;
     let flatness = [Flatness::of(mesh.connectivity(), start)?, Flatness::of(mesh.connectivity(), &vertices)?];
     let status = match result.status {

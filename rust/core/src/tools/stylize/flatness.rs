@@ -58,7 +58,7 @@ impl Flatness {
         let width = (SEEN * total).sqrt();
         let rounding = ROUNDING * extent(connectivity, points).0;
         let mut is_flat = memory::repeated(true, faces.len())?;
-        let mut facets = Partition::new(faces.len());
+        let mut facets = Partition::new(faces.len())?;
         let (mut bend, mut soft) = (0.0, 0.0);
         for h in connectivity.edges() {
             let Some(mate) = connectivity.mate(h) else { continue };

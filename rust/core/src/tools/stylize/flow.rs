@@ -40,7 +40,7 @@ pub(super) struct Legacy {
 }
 
 /// What is made of a flow's points to show them.
-pub(super) type Show<'a> = &'a dyn Fn(&[Point]) -> Vec<Point>;
+pub(super) type Show<'a> = &'a dyn Fn(&[Point]) -> Result<Vec<Point>>;
 
 /// The flow of one mesh.
 pub(super) struct Flow<'a> {
@@ -217,7 +217,7 @@ impl<'a> Flow<'a> {
             step = self.prepare()?;
             self.note(&step, &solution);
             inaccurate |= solution.status == Status::Inaccurate;
-            progress.set_snapshot(&(self.show)(&self.points));
+            progress.set_snapshot(&(self.show)(&self.points)?);
             let flatness = Flatness::of(self.connectivity, &self.points)?;
             self.result.flatness[1] = flatness;
             let moved = weighted_distance(self.start, &self.points, &weights) / self.area.sqrt();
@@ -314,7 +314,7 @@ impl<'a> Flow<'a> {
         let (connectivity, pattern) = if self.options.delaunay {
             mollify(self.connectivity, &mut lengths);
             let (connectivity, flipped_lengths, _) =
-                delaunay_flips_carrying(self.connectivity, &lengths, &mut base);
+                delaunay_flips_carrying(self.connectivity, &lengths, &mut base)?;
             lengths = flipped_lengths;
             let pattern = HessianPattern::new(&connectivity)?;
             flipped = (connectivity, pattern);

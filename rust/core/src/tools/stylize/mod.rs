@@ -13,7 +13,7 @@ pub use options::{FlowStatus, StylizeOptions, Stylized};
 
 use super::scale::Scale;
 use crate::error::MeshError;
-use crate::memory::Tool;
+use crate::memory::{self, Tool};
 use crate::mesh::vector::Point;
 use crate::mesh::{Mesh, Working};
 use crate::progress::Progress;
@@ -48,12 +48,13 @@ pub fn stylize(mesh: &Mesh, options: &StylizeOptions, progress: &Progress) -> Re
         flow(&measured, unit, options, None, &progress)?
     } else {
         let options = StylizeOptions {
-            fixed: options.fixed.as_ref().map(|fixed| working.any_of(fixed)),
-            strength: options.strength.as_ref().map(|strength| working.least_of(strength)),
-            ..options.clone()
+            fixed: options.fixed.as_ref().map(|fixed| working.any_of(fixed)).transpose()?,
+            strength: options.strength.as_ref().map(|strength| working.least_of(strength)).transpose()?,
+            ridge_weights: options.ridge_weights.as_deref().map(memory::twin).transpose()?,
+            ..options.without_arrays()
         };
         let flowed = flow(working.mesh(), unit, &options, Some(&working), &progress)?;
-        Stylized { vertices: working.positions(&flowed.vertices), ..flowed }
+        Stylized { vertices: working.positions(&flowed.vertices)?, ..flowed }
     };
     unit.restore_points(&mut result.vertices, start, original);
     for energy in &mut result.energy {
@@ -76,8 +77,9 @@ pub(super) fn flow(
         Scale::Length(length) => Scale::Length(unit.measure(length)),
         relative => relative,
     };
-    let show =
-        |points: &[Point]| working.map_or_else(|| points.to_vec(), |working| working.positions(points));
+    let show = |points: &[Point]| {
+        Ok(working.map_or_else(|| memory::twin(points), |working| working.positions(points))?)
+    };
     options.solve.run(|| {
         mesh.demand(Tool::Stylize)
             .with_columns(n_columns, options.solve.solver.is_clarabel())

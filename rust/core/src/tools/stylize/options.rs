@@ -2,6 +2,7 @@
 
 use super::Flatness;
 use crate::error::{Error, Result};
+use crate::memory;
 use crate::mesh::Mesh;
 use crate::operators::Dual;
 use crate::solve::Coupling;
@@ -70,6 +71,24 @@ impl Default for StylizeOptions {
 pub(super) const ENOUGH: usize = 9000;
 
 impl StylizeOptions {
+    /// A copy.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] where memory is missing.
+    pub(super) fn copied(&self) -> Result<Self> {
+        Ok(Self {
+            fixed: self.fixed.as_deref().map(memory::twin).transpose()?,
+            strength: self.strength.as_deref().map(memory::twin).transpose()?,
+            ridge_weights: self.ridge_weights.as_deref().map(memory::twin).transpose()?,
+            ..self.without_arrays()
+        })
+    }
+
+    /// The same without what has an entry a vertex or a face.
+    pub(super) fn without_arrays(&self) -> Self {
+        Self { fixed: None, strength: None, ridge_weights: None, ..*self }
+    }
+
     /// Whether a vertex is asked not to move at all.
     pub(super) fn holds(&self, v: usize) -> bool {
         self.fixed.as_ref().is_some_and(|fixed| fixed[v])
