@@ -1,7 +1,7 @@
 //! The smooth parts that the surface around a hole falls into along its ridges,
 //! each with the surface that it goes on as.
 
-use super::constants::{NEAR_PART, PART_WIDTH, WORST_FIT};
+use super::constants::{AS_GOOD, FLAT, NEAR_PART, PART_WIDTH, WORST_FIT};
 use super::model::Model;
 use super::region::Region;
 use super::surface::FaceGeometry;
@@ -56,7 +56,8 @@ impl SmoothParts {
     }
 
     /// The parts that the surroundings of the patch are segments of ([`mod@crate::tools::segment`]): these
-    /// are found where noise bends edges as much as ridges do. Nothing where only one reaches the hole.
+    /// are found where noise bends edges as much as ridges do. Nothing where only one reaches the hole, or
+    /// where one is off its surface by more than noise explains.
     pub(super) fn segments(
         region: &Region,
         solve: &SolveOptions,
@@ -75,7 +76,9 @@ impl SmoothParts {
         let pieces =
             memory::gathered(found.labels.iter().map(|&label| u32::try_from(label).unwrap_or(NONE)))?;
         let parts = Self::of_pieces(region, &FaceGeometry::of(region)?, &on_rim(region)?, &pieces, edge)?;
-        Ok(parts.filter(|parts| parts.models.len() > 1))
+        let sure = (FLAT * edge).max(AS_GOOD * found.noise);
+        let is_sure = |parts: &Self| parts.models.iter().all(|model| model.misfit <= sure);
+        Ok(parts.filter(|parts| parts.models.len() > 1 && is_sure(parts)))
     }
 
     /// Those of the pieces of the faces around the patch that reach it.
