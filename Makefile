@@ -4,7 +4,7 @@ RUN = @$(PYTHON) scripts/setup_env.py
 
 .PHONY: help demo test test-all-blenders test-dask lint workflows notices advisories bench bench-holes bench-segments \
 	bench-memory bench-limits bench-growth bench-latency bench-files bench-parts bench-facets bench-restore \
-	bench-overnight bench-tiles fuzz fuzz-sequences \
+	bench-overnight bench-scale bench-tiles fuzz fuzz-sequences \
 	extension wheel release sizes docs fixtures pictures gallery
 
 help:
@@ -28,6 +28,7 @@ help:
 	@echo "make bench-growth  how time grows with what a file has many of: docs/reliability.md"
 	@echo "make bench-latency   how soon every tool hears a wish to stop: docs/reliability.md"
 	@echo "make bench-files     every format when writing fails: docs/reliability.md"
+	@echo "make bench-scale   stylize from 9 thousand to a million vertices: benchmarks/scale.md"
 	@echo "make bench-tiles   a city of 4 million vertices under a cap on memory; ARGS=--lots 8: a smaller one"
 	@echo "make fuzz        random calls of wheel and core, sequences in Blender, for MINUTES=10"
 	@echo "make fuzz-sequences  sequences in Blender alone: docs/reliability.md"
@@ -78,6 +79,9 @@ bench-facets:
 
 bench-restore:
 	$(RUN) benchmarks/restore.py $(ARGS)
+
+bench-scale: wheel
+	@PYTHONPATH=.ridgeform/wheel-site .ridgeform/py311/bin/python benchmarks/scale.py $(ARGS)
 
 bench-tiles: wheel
 	@PYTHONPATH=.ridgeform/wheel-site .ridgeform/py311/bin/python benchmarks/tiles.py $(ARGS)

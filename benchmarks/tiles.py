@@ -24,6 +24,9 @@ from known_shapes import tiled_city
 from known_shapes.segment_shapes import adjusted_rand_index
 from ridgeform import tiles
 
+LEAST = 20
+"""Faces of a segment: single faces that noise turned at the foot of a wall are none."""
+
 FLOW = {"iterations": 6, "fidelity": 1e6, "sharpness": 0.75, "scale": 30.0}
 """Six short steps in the unit of a house: noise goes, and roofs keep their pitch."""
 
@@ -38,7 +41,7 @@ def capped(folder: Path, tool: str, max_vertices: int, threads: int) -> None:
         told = {"n_blocks": result.n_blocks, "energy": result.energy.tolist(), "status": result.status}
         city.write(folder / "stylize", result.vertices)
     else:
-        found = tiles.segment(city.vertices, city.faces, scale=FLOW["scale"], **options)
+        found = tiles.segment(city.vertices, city.faces, scale=FLOW["scale"], min_faces=LEAST, **options)
         told = {"n_blocks": [found.n_blocks], "n_segments": found.n_segments, "noise": found.noise}
         city.write(folder / "segment", city.vertices, found.labels)
     peaks = [line.split() for line in Path("/proc/self/status").read_text(encoding="ascii").splitlines()]
