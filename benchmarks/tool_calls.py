@@ -111,7 +111,7 @@ ESTIMATED: dict[str, tuple[str, int, str]] = {
     "denoise clarabel": ("denoise", 3, "clarabel"),
     "vibration_modes": ("vibration_modes", 3, "auto"),
     "vibration_modes l2": ("vibration_modes_quadratic", 3, "auto"),
-    "segment": ("segment", 3, "auto"),
+    "segment": ("segment_coarse_to_fine", 3, "auto"),
     "segment paper": ("segment", 3, "auto"),
     "parts": ("parts", 1, "auto"),
     "facet": ("facet", 1, "auto"),

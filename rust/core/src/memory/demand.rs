@@ -41,6 +41,10 @@ impl Demand {
         if self.tool == Tool::SegmentByLevels && self.n_vertices < COARSER.1 {
             return Self { tool: Tool::Segment, ..*self }.estimate();
         }
+        // Most of it is the segments, which are found on coarser meshes here, too.
+        if self.tool == Tool::Restore && self.n_vertices >= COARSER.1 {
+            return Self { tool: Tool::SegmentByLevels, ..*self }.estimate();
+        }
         let is_solved = self.tool.solves();
         // Of the solver's work only what the coarser mesh needs.
         let is_clarabel = is_solved && self.is_clarabel && self.tool != Tool::SegmentByLevels;

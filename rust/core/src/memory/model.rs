@@ -150,7 +150,7 @@ pub(super) const CLARABEL: Cost = Cost { face: 4600.0, logarithmic: 100.0, colum
 pub(super) const DIVIDED: (f64, f64) = (4500.0, 1300.0);
 
 /// What segments on a coarser mesh take beside its faces, and the vertices from which there is one.
-pub(super) const COARSER: (f64, usize) = (46e6, 18_000);
+pub(super) const COARSER: (f64, usize) = (38e6, 18_000);
 
 /// Bytes for a vertex without faces, in every array that has an entry for each vertex: where a linear system
 /// is solved, and elsewhere.
