@@ -205,6 +205,72 @@ def test_painted_edges_attract_the_borders():
     assert segment_shapes.adjusted_rand_index(found.labels[top], left[top].astype(int)) == 1
 
 
+def n_passing(vertices, faces):
+    """How many edges pass through the inside of a triangle that they do not touch."""
+
+    def volumes(a, b, c, d):
+        return np.einsum("...i,...i->...", np.cross(b - a, c - a), d - a)
+
+    corners = vertices[faces]
+    least = 1e-12 * np.ptp(vertices, axis=0).max() ** 3
+    passing = 0
+    for p, q in {tuple(sorted((face[i], face[i - 1]))) for face in faces.tolist() for i in range(3)}:
+        apart = ~((faces == p) | (faces == q)).any(1)
+        (a, b, c), p_at, q_at = corners[apart].transpose(1, 0, 2), vertices[p], vertices[q]
+        ends = volumes(a, b, c, p_at) * volumes(a, b, c, q_at)
+        around = np.stack([volumes(p_at, q_at, x, y) for x, y in ((a, b), (b, c), (c, a))])
+        inside = (around > least).all(0) | (around < -least).all(0)
+        passing += int((inside & (ends < -(least**2))).sum())
+    return passing
+
+
+def area(vertices, faces):
+    a, b, c = vertices[faces].transpose(1, 0, 2)
+    return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
+
+
+def thin_shapes():
+    rng = np.random.default_rng(7)
+    for name, n, m, tube in (("fine torus", 64, 24, 0.33), ("coarse torus", 36, 8, 0.2)):
+        around, across = (np.arange(k) * 2 * np.pi / k for k in (n, m))
+        u, v = (angle.ravel() for angle in np.meshgrid(around, across, indexing="ij"))
+        out = 1 + tube * np.cos(v)
+        i, j = np.divmod(np.arange(n * m), m)
+        a, b, c, d = ((i + x) % n * m + (j + y) % m for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)))
+        faces = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
+        yield name, np.stack([out * np.cos(u), out * np.sin(u), tube * np.sin(v)], 1), faces
+    sphere, faces = shapes.voxels([(0, 0, 0)], 8)
+    sphere = sphere - sphere.mean(0)
+    sphere /= np.linalg.norm(sphere, axis=1, keepdims=True)
+    waves = 1 + 0.2 * np.sin(4 * sphere @ rng.normal(size=3))
+    yield "thin and open", waves[:, None] * sphere * [1, 0.8, 0.15], faces[rng.random(len(faces)) > 0.03]
+
+
+@pytest.mark.parametrize(
+    ("name", "vertices", "faces"), [pytest.param(*case, id=case[0]) for case in thin_shapes()]
+)
+@pytest.mark.parametrize("facets", [None, 12, 100])
+def test_no_facet_passes_through_another(name, vertices, faces, facets):
+    assert n_passing(vertices, faces) == 0
+    found = ridgeform.facet(ridgeform.Mesh(vertices, faces), facets=facets)
+    if "torus" in name:
+        check_sound(found, 3.0)
+        if facets != 12:
+            assert area(found.vertices, found.faces) <= 1.2 * area(vertices, faces)
+    assert off_planes(found) <= 3e-6
+    assert found.n_crossings == 0
+    assert n_passing(found.vertices, found.faces) == 0
+    assert found.n_facets < len(faces) / 2
+
+
+def test_what_passes_through_on_the_mesh_may_do_so():
+    vertices, faces = shapes.voxels([(0, 0, 0)], 4)
+    both = np.vstack([vertices, vertices + np.array([0.52, 0.41, 0.33])])
+    found = ridgeform.facet(ridgeform.Mesh(both, np.vstack([faces, faces + len(vertices)])))
+    assert (found.n_facets, found.n_crossings) == (12, 0)
+    assert n_passing(found.vertices, found.faces) > 0
+
+
 def hostile():
     sphere = shapes.voxels([(0, 0, 0)], 4)
     yield (

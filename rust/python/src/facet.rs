@@ -136,14 +136,14 @@ fn run(
 /// Faces merge into regions, always those that lie best on one plane, as long as the regions can be the
 /// facets of a polyhedron. Then planes and corners are found together, so that every corner lies on the
 /// planes of all its facets, and faces and planes take turns until the planes are nearest. Facets that would
-/// cross are repaired or divided; what is closed stays closed. `stylize` first where the mesh is round: it
-/// decides where the ridges run.
+/// cross are repaired, divided, or not made; what is closed stays closed. `stylize` first where the mesh is
+/// round: it decides where the ridges run.
 ///
 /// Parameters
 /// ----------
 /// mesh : Mesh with positions
 /// facets : number of facets wanted, or None: as `error` has it. It is met unless the shape has no fewer, or
-///     facets had to be divided
+///     so few would pass through each other: there are more then
 /// error : root mean square distance from the mesh that is allowed, in its unit, or None: as many facets as
 ///     the faces give evidence for (Bayesian information criterion), at most as many as 0.5 % of the diagonal
 ///     of the bounding box needs

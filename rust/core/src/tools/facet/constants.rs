@@ -76,6 +76,14 @@ pub(super) const IDLE: Turns = Turns { count: 2, factor: 0.999 };
 /// How often a round is tried again with the corners of unsound facets held so many times as firmly.
 pub(super) const TRIES: Turns = Turns { count: 6, factor: 10.0 };
 
+/// How often a facet that cannot stay is made of smaller regions, twice as many each time, before its faces
+/// stay as they are.
+pub(super) const STRIKES: u32 = 5;
+
+/// How many times merges are refused at what touches last, before all that is unsound stays as on the mesh:
+/// a bound on the time. After as many times again the whole mesh stays.
+pub(super) const REFUSALS: usize = 8;
+
 /// How many times the planes are taken anew to end at the number of facets asked for,
 /// since repairs change it.
 pub(super) const COUNTS: usize = 4;

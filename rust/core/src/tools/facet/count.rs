@@ -11,6 +11,16 @@ pub(super) enum Wanted {
     Found,
 }
 
+impl Wanted {
+    /// The same beside faces that stay.
+    pub(super) fn and(self, n_held: usize) -> Self {
+        match self {
+            Self::Facets(count) => Self::Facets(count + n_held),
+            other => other,
+        }
+    }
+}
+
 impl Merges {
     /// Fewest and most regions of `n`.
     pub(super) fn range(&self, n: usize) -> [usize; 2] {
@@ -24,11 +34,9 @@ impl Merges {
         (squares / area).sqrt()
     }
 
-    /// The nearest number of regions, `count` or fewer, at which all are facets.
-    pub(super) fn whole(&self, n: usize, count: usize) -> usize {
-        let [fewest, most] = self.range(n);
-        let is_whole = |&count: &usize| count == n || self.is_whole[n - count - 1];
-        (fewest..=count.clamp(fewest, most)).rev().find(is_whole).unwrap_or(fewest)
+    /// Whether the regions are facets after so many merges.
+    pub(super) fn is_whole(&self, n_merges: usize) -> bool {
+        n_merges == 0 || self.is_whole[n_merges - 1]
     }
 
     /// How many of `n` regions to leave, on a mesh of so many vertices.

@@ -1,17 +1,61 @@
-//! Triangles of a surface that pass through each other.
+//! Triangles of a surface that pass through each other, and which of them do on the mesh already.
+
+use std::collections::{HashMap, HashSet};
 
 use robust::{orient3d, Coord3D};
 
 use crate::memory;
+use crate::mesh::partition::Partition;
 use crate::mesh::vector::Point;
 use crate::remesh::closest::ClosestPoint;
 use crate::Result;
 
+/// What passes through itself on the mesh: facets may do so as well.
+#[derive(Debug)]
+pub(super) struct Standing {
+    /// The connected piece of each face.
+    piece: Vec<u32>,
+    /// Pieces that pass through each other.
+    pieces: HashSet<[u32; 2]>,
+    /// Faces that pass through others of their piece.
+    passing: Vec<u32>,
+}
+
+impl Standing {
+    pub(super) fn new(faces: &[[u32; 3]], places: &[[Point; 3]]) -> Result<Self> {
+        let mut joined = Partition::new(faces.len())?;
+        let mut first: HashMap<u32, u32> = HashMap::new();
+        for (f, face) in (0..).zip(faces) {
+            face.iter().for_each(|&v| joined.unite(*first.entry(v).or_insert(f), f));
+        }
+        let piece: Vec<u32> = (0..faces.len() as u32).map(|f| joined.root(f)).collect();
+        let of = |[i, j]: [u32; 2]| ordered(piece[i as usize], piece[j as usize]);
+        let all = crossings(faces, places)?;
+        let (within, between): (Vec<_>, Vec<_>) =
+            all.into_iter().partition(|&pair| of(pair)[0] == of(pair)[1]);
+        let pieces = between.into_iter().map(of).collect();
+        Ok(Self { pieces, piece, passing: within.into_iter().flatten().collect() })
+    }
+
+    /// Whether the pieces of two faces pass through each other.
+    pub(super) fn has(&self, f: u32, g: u32) -> bool {
+        self.pieces.contains(&ordered(self.piece[f as usize], self.piece[g as usize]))
+    }
+
+    /// The labels of faces that pass through others of their piece.
+    pub(super) fn labels(&self, labels: &[u32]) -> HashSet<u32> {
+        self.passing.iter().map(|&f| labels[f as usize]).collect()
+    }
+}
+
+fn ordered(p: u32, q: u32) -> [u32; 2] {
+    [p.min(q), p.max(q)]
+}
+
 /// The pairs of triangles, given by corners and places, that cross: an edge of one passes through the inside
 /// of the other. What only touches does not.
-pub(super) fn crossings(triangles: &[[u32; 3]], place: impl Fn(u32) -> Point) -> Result<Vec<[u32; 2]>> {
-    let places = memory::gathered(triangles.iter().map(|t| t.map(&place)))?;
-    let tree = ClosestPoint::new(memory::twin(&places)?)?;
+pub(super) fn crossings(triangles: &[[u32; 3]], places: &[[Point; 3]]) -> Result<Vec<[u32; 2]>> {
+    let tree = ClosestPoint::new(memory::gathered(places.iter().copied())?)?;
     let mut found = Vec::new();
     for (i, triangle) in places.iter().enumerate() {
         let (mut low, mut high) = (triangle[0], triangle[0]);
@@ -22,7 +66,7 @@ pub(super) fn crossings(triangles: &[[u32; 3]], place: impl Fn(u32) -> Point) ->
         }
         tree.visit_box(low, high, &mut |j| {
             let other = j as usize;
-            if other > i && (cross(triangles, &places, i, other) || cross(triangles, &places, other, i)) {
+            if other > i && (cross(triangles, places, i, other) || cross(triangles, places, other, i)) {
                 found.push([i as u32, j]);
             }
         });

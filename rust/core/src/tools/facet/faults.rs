@@ -1,9 +1,11 @@
 //! Facets that cannot stay as they are.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
+use super::constants::FLAT;
 use super::crossings::crossings;
-use super::shape::Shape;
+use super::faces::Faces;
+use super::shape::{self, Shape};
 use super::triangulation::{forced, triangles};
 use crate::memory;
 use crate::mesh::vector::Point;
@@ -15,34 +17,61 @@ pub(super) struct Inspection {
     pub triangles: Vec<[u32; 3]>,
     /// The facet of each triangle.
     pub owners: Vec<u32>,
-    /// Facets whose loops cross or run the wrong way around.
+    /// Facets whose loops cross or run the wrong way around, or that look to the other side than their faces.
     pub crossed: Vec<u32>,
-    /// Pairs of facets that pass through each other; only looked for where no facet is crossed.
+    /// Pairs of facets that pass through each other and do not on the mesh; only looked for where no facet is
+    /// crossed.
     pub pairs: HashSet<[u32; 2]>,
 }
 
 impl Inspection {
     /// Looks at every facet, and at all together where `is_thorough` or all of them are sound.
-    pub(super) fn new(shape: &Shape, is_thorough: bool) -> Result<Self> {
+    pub(super) fn new(shape: &Shape, faces: &Faces<'_>, is_thorough: bool) -> Result<Self> {
         let mut found = Self::default();
         for (k, facet) in (0..).zip(&shape.facets) {
-            let own = triangles(shape, facet).unwrap_or_else(|| {
+            let is_upright = facet.is_held || facet.moments.faces(facet.plane.normal);
+            let simple = triangles(shape, facet);
+            if !is_upright || simple.is_none() {
                 found.crossed.push(k);
-                forced(facet)
-            });
+            }
+            let own = simple.unwrap_or_else(|| forced(facet));
             memory::extend(&mut found.owners, own.len())?;
             found.owners.extend(own.iter().map(|_| k));
             memory::extend(&mut found.triangles, own.len())?;
             found.triangles.extend(own);
         }
+        found.find_doubled(shape);
         if is_thorough || found.crossed.is_empty() {
             let pair = |[i, j]: [u32; 2]| {
                 let (p, q) = (found.owners[i as usize], found.owners[j as usize]);
                 [p.min(q), p.max(q)]
             };
-            found.pairs = crossings(&found.triangles, |c| shape.point(c))?.into_iter().map(pair).collect();
+            let all = crossings(&found.triangles, &found.places(shape)?)?;
+            let standing = faces.standing();
+            let of = |k: u32| shape.facets[k as usize].part;
+            let is_old = |[p, q]: [u32; 2]| {
+                faces.scan.standing.has(of(p), of(q)) || (standing.contains(&p) && standing.contains(&q))
+            };
+            found.pairs = all.into_iter().map(pair).filter(|&pair| !is_old(pair)).collect();
         }
         Ok(found)
+    }
+
+    /// Facets that share two corners may both have the diagonal between them: four triangles meet there.
+    fn find_doubled(&mut self, shape: &Shape) {
+        let mut sides: HashMap<[u32; 2], u32> = HashMap::with_capacity(3 * self.triangles.len());
+        for (triangle, &owner) in self.triangles.iter().zip(&self.owners) {
+            for side in shape::sides(triangle) {
+                let Some(other) = sides.insert(side, owner) else { continue };
+                // What meets along more than one side does so on the mesh.
+                let is_side = |k: u32| shape.facets[k as usize].sides().any(|own| own == side);
+                if !(is_side(other) && is_side(owner)) {
+                    self.crossed.extend([other, owner]);
+                }
+            }
+        }
+        self.crossed.sort_unstable();
+        self.crossed.dedup();
     }
 
     /// The places of the triangles.
@@ -50,12 +79,60 @@ impl Inspection {
         Ok(memory::gathered(self.triangles.iter().map(|t| t.map(|c| shape.point(c))))?)
     }
 
-    /// Facets that are crossed, or pass through others as they did not `before`.
-    pub(super) fn faults(&self, before: &HashSet<[u32; 2]>) -> Vec<u32> {
-        let passing = self.pairs.iter().filter(|pair| !before.contains(*pair)).flatten();
-        let mut all: Vec<u32> = self.crossed.iter().chain(passing).copied().collect();
+    /// Facets that are crossed or pass through others.
+    pub(super) fn faults(&self) -> Vec<u32> {
+        let mut all: Vec<u32> = self.crossed.iter().chain(self.pairs.iter().flatten()).copied().collect();
         all.sort_unstable();
         all.dedup();
         all
+    }
+}
+
+/// Facets that cannot stay: crossed, passing through others, or not flat.
+#[derive(Debug)]
+pub(super) struct Unsound {
+    pub facets: Vec<u32>,
+    pairs: HashSet<[u32; 2]>,
+}
+
+impl Unsound {
+    pub(super) fn new(shape: &Shape, faces: &Faces<'_>) -> Result<Self> {
+        let inspection = Inspection::new(shape, faces, true)?;
+        let mut facets = inspection.faults();
+        facets.extend((0..shape.facets.len() as u32).filter(|&k| shape.off_plane(k) > FLAT));
+        // What stays is as it was on the mesh.
+        facets.retain(|&k| !shape.facets[k as usize].is_held);
+        facets.sort_unstable();
+        facets.dedup();
+        Ok(Self { facets, pairs: inspection.pairs })
+    }
+
+    /// Of facets that touch or pass through each other those of highest rank.
+    pub(super) fn latest(&self, shape: &Shape, rank: impl Fn(u32) -> u32) -> Vec<u32> {
+        let mut highest: HashMap<u32, u32> = HashMap::new();
+        for &k in &self.facets {
+            for c in shape.facets[k as usize].corners() {
+                let most = highest.entry(c).or_default();
+                *most = (*most).max(rank(k));
+            }
+        }
+        let beaten: HashSet<u32> = self
+            .pairs
+            .iter()
+            .filter(|pair| pair.iter().all(|&k| !shape.facets[k as usize].is_held))
+            .filter_map(|&[p, q]| match rank(p).cmp(&rank(q)) {
+                std::cmp::Ordering::Less => Some(p),
+                std::cmp::Ordering::Greater => Some(q),
+                std::cmp::Ordering::Equal => None,
+            })
+            .collect();
+        let is_highest = |k: u32| shape.facets[k as usize].corners().all(|c| highest[&c] <= rank(k));
+        let chosen: Vec<u32> =
+            self.facets.iter().copied().filter(|&k| is_highest(k) && !beaten.contains(&k)).collect();
+        // Ranks that beat each other around a circle of touching and passing.
+        if chosen.is_empty() {
+            return self.facets.clone();
+        }
+        chosen
     }
 }

@@ -1,7 +1,5 @@
 //! Facets that are sound, then facets that fit.
 
-use std::collections::HashSet;
-
 use super::constants::{FITTING, FLAT, IDLE, NOISE, PULL, REPAIRS, STAY, TRIES};
 use super::faces::Faces;
 use super::faults::Inspection;
@@ -9,22 +7,21 @@ use super::moments::{Moments, Plane};
 use super::repair::{hold, repair};
 use super::shape::{Corner, Facet, Shape};
 use super::solve::flatten;
+use super::triangulation::{forced, triangles};
 use crate::memory;
 use crate::mesh::vector::{area_vector, between, centroid, distance, norm, unit};
 use crate::progress::Progress;
 use crate::Result;
 
 /// Flattens the facets near where they were on the mesh, and repairs those that cross themselves or others.
-pub(super) fn settle(shape: &mut Shape, faces: &mut Faces, progress: &Progress) -> Result<()> {
+pub(super) fn settle(shape: &mut Shape, faces: &mut Faces<'_>, progress: &Progress) -> Result<()> {
     for round in 0..=REPAIRS {
         progress.check()?;
         *shape = shape.at_home();
         shape.facets.iter_mut().for_each(|facet| facet.plane = facet.moments.fit().plane);
-        // What crosses on the mesh itself is not held against the facets.
-        let before = Inspection::new(shape, true)?.pairs;
         let homes = memory::gathered(shape.corners.iter().map(|corner| corner.home))?;
         flatten(shape, STAY, &homes)?;
-        let faulty = Inspection::new(shape, false)?.faults(&before);
+        let faulty = Inspection::new(shape, faces, false)?.faults();
         if faulty.is_empty() || round == REPAIRS || progress.is_finishing() || !repair(shape, faces, &faulty)
         {
             break;
@@ -35,17 +32,17 @@ pub(super) fn settle(shape: &mut Shape, faces: &mut Faces, progress: &Progress) 
 
 /// Gives every face to the nearest facet and fits the planes anew, in turns,
 /// as long as facets stay sound and come nearer.
-pub(super) fn refine(shape: &mut Shape, faces: &mut Faces, progress: &Progress) -> Result<()> {
-    let mut inspection = Inspection::new(shape, true)?;
+pub(super) fn refine(shape: &mut Shape, faces: &mut Faces<'_>, progress: &Progress) -> Result<()> {
+    let mut inspection = Inspection::new(shape, faces, true)?;
     let (mut labels, distance) = measured(shape, faces, &inspection)?;
     let mut best = (distance, shape.clone());
     let mut n_idle = 0;
     while n_idle < IDLE.count && !progress.is_finishing() {
         faces.labels = labels;
         faces.fit(shape);
-        let Some(next) = fitted(shape, faces, &inspection, NOISE * best.0, progress)? else { break };
+        let Some(next) = fitted(shape, faces, &inspection.faults(), NOISE * best.0, progress)? else { break };
         *shape = next;
-        inspection = Inspection::new(shape, true)?;
+        inspection = Inspection::new(shape, faces, true)?;
         let distance;
         (labels, distance) = measured(shape, faces, &inspection)?;
         n_idle = if distance < IDLE.factor * best.0 { 0 } else { n_idle + 1 };
@@ -59,7 +56,7 @@ pub(super) fn refine(shape: &mut Shape, faces: &mut Faces, progress: &Progress) 
 
 /// The facet nearest to each face, and the distance of both surfaces from each other: from the faces to the
 /// facets, and from the facets to the mesh.
-fn measured(shape: &Shape, faces: &Faces, inspection: &Inspection) -> Result<(Vec<u32>, f64)> {
+fn measured(shape: &Shape, faces: &Faces<'_>, inspection: &Inspection) -> Result<(Vec<u32>, f64)> {
     let (labels, distances) = faces.nearest(shape, inspection)?;
     let (mut squares, mut total) = (0.0, 0.0);
     for triangle in inspection.places(shape)? {
@@ -67,7 +64,8 @@ fn measured(shape: &Shape, faces: &Faces, inspection: &Inspection) -> Result<(Ve
         let middle = centroid(triangle);
         // The rule of three points, exact for squares.
         let points = triangle.map(|corner| between(middle, corner, 0.5));
-        squares += area / 3.0 * points.map(|p| distance(p, faces.on_mesh(p)).powi(2)).iter().sum::<f64>();
+        squares +=
+            area / 3.0 * points.map(|p| distance(p, faces.scan.on_mesh(p)).powi(2)).iter().sum::<f64>();
         total += area;
     }
     Ok((labels, (distances.rms.powi(2) + squares / f64::max(total, f64::MIN_POSITIVE)).sqrt()))
@@ -77,13 +75,13 @@ fn measured(shape: &Shape, faces: &Faces, inspection: &Inspection) -> Result<(Ve
 /// mesh, if that can be had without facets that cross where none did.
 fn fitted(
     shape: &mut Shape,
-    faces: &Faces,
-    before: &Inspection,
+    faces: &Faces<'_>,
+    before: &[u32],
     reach: f64,
     progress: &Progress,
 ) -> Result<Option<Shape>> {
     let aim = |corner: &Corner| {
-        let near = faces.on_mesh(corner.point);
+        let near = faces.scan.on_mesh(corner.point);
         let beyond = 1.0 - reach / distance(near, corner.point).max(f64::MIN_POSITIVE);
         between(corner.point, near, PULL * beyond.max(0.0))
     };
@@ -92,8 +90,8 @@ fn fitted(
         progress.check()?;
         let mut trial = shape.clone();
         let off = flatten(&mut trial, FITTING, &aims)?;
-        let mut faulty = Inspection::new(&trial, false)?.faults(&before.pairs);
-        faulty.retain(|k| !before.crossed.contains(k));
+        let mut faulty = Inspection::new(&trial, faces, false)?.faults();
+        faulty.retain(|k| !before.contains(k));
         if faulty.is_empty() {
             return Ok((off <= FLAT.max(shape.off_planes())).then_some(trial));
         }
@@ -106,7 +104,7 @@ fn fitted(
 ///
 /// # Errors
 /// Those of the linear solver.
-pub(super) fn fold(shape: &mut Shape, faces: &mut Faces) -> Result<()> {
+pub(super) fn fold(shape: &mut Shape, faces: &mut Faces<'_>) -> Result<()> {
     for _ in 0..TRIES.count {
         if shape.off_planes() <= FLAT {
             break;
@@ -114,24 +112,25 @@ pub(super) fn fold(shape: &mut Shape, faces: &mut Faces) -> Result<()> {
         let here = memory::gathered(shape.corners.iter().map(|corner| corner.point))?;
         flatten(shape, STAY, &here)?;
     }
-    let inspection = Inspection::new(shape, false)?;
-    let crossed: HashSet<u32> = inspection.crossed.iter().copied().collect();
+    let home = shape.at_home();
     let mut facets = Vec::with_capacity(shape.facets.len());
     let mut place = Vec::with_capacity(shape.facets.len());
     for (k, facet) in (0..).zip(&shape.facets) {
         place.push(facets.len() as u32);
-        let off = facet.corners().map(|c| facet.plane.height(shape.point(c)).abs()).fold(0.0, f64::max);
-        if facet.is_held || (off <= FLAT && !crossed.contains(&k)) {
+        let here = triangles(shape, facet);
+        if facet.is_held || facet.is_triangle() || (here.is_some() && shape.off_plane(k) <= FLAT) {
             facets.push(facet.clone());
             continue;
         }
-        let own = inspection.triangles.iter().zip(&inspection.owners).filter(|(_, &owner)| owner == k);
-        for (triangle, _) in own {
+        let at_home = || triangles(&home, facet).unwrap_or_else(|| forced(facet));
+        for triangle in here.unwrap_or_else(at_home) {
             let corners = triangle.map(|c| shape.point(c));
             let area = area_vector(corners);
             let plane = if norm(area) > 0.0 { Plane::through(corners[0], unit(area)) } else { facet.plane };
-            let moments = Moments::of(corners);
-            facets.push(Facet { loops: vec![triangle.to_vec()], plane, moments, is_held: false });
+            // One that comes out turned over is seen by where it was.
+            let moments = Moments::of(triangle.map(|c| shape.home(c)));
+            let loops = vec![triangle.to_vec()];
+            facets.push(Facet { loops, plane, moments, is_held: false, part: facet.part });
         }
     }
     shape.facets = facets;
@@ -140,7 +139,7 @@ pub(super) fn fold(shape: &mut Shape, faces: &mut Faces) -> Result<()> {
 }
 
 /// Puts the facets that were made before the faces that stay; returns how many they are.
-pub(super) fn order(shape: &mut Shape, faces: &mut Faces) -> usize {
+pub(super) fn order(shape: &mut Shape, faces: &mut Faces<'_>) -> usize {
     let (mut made, held): (Vec<u32>, Vec<u32>) =
         (0..shape.facets.len() as u32).partition(|&k| !shape.facets[k as usize].is_held);
     let n_made = made.len();

@@ -7,12 +7,14 @@ use super::constants::{FLAT, PATIENCE};
 use super::moments::Moments;
 use super::regions::{Regions, Set};
 use crate::mesh::partition::Partition;
+use crate::mesh::vector::Point;
 use crate::ordered::Ordered;
 use crate::progress::{Progress, Report};
 use crate::{memory, Result};
 
-/// A merge that might be made: its cost, the regions, and how often they had changed.
-type Offer = Reverse<(Ordered, Set, u32)>;
+/// A merge that might be made: its cost, the regions, how often they had changed, and what of the cost is
+/// their planes'.
+type Offer = Reverse<(Ordered, Set, u32, Ordered)>;
 
 /// From every face a facet to as few as there can be.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -25,6 +27,8 @@ pub(super) struct Merges {
     pub squared_distances: Vec<f64>,
     /// Whether the regions are facets after each of them: not in the midst of several that are made at once.
     pub is_whole: Vec<bool>,
+    /// Whether each is the last of those that were made at once.
+    pub is_last: Vec<bool>,
 }
 
 struct Merging<'r, 'a, W> {
@@ -34,6 +38,8 @@ struct Merging<'r, 'a, W> {
     stamps: Vec<u32>,
     heap: BinaryHeap<Offer>,
     refused: Refused,
+    /// Regions that are never to be in one facet with a region.
+    apart: HashMap<u32, Vec<u32>>,
     weight: W,
 }
 
@@ -61,12 +67,15 @@ impl Refused {
 }
 
 /// Merges regions, whose `moments` are given, until none can be merged with another. Regions that are `held`
-/// are none of them. `weight` is what a border along a halfedge costs: cheap ones stay.
+/// are none of them; nor are two that are to be `apart`. `weight` is what a border along a halfedge costs:
+/// cheap ones stay. `on_mesh` is the nearest point of the mesh.
 pub(super) fn merges(
     regions: &mut Regions<'_>,
     moments: Vec<Moments>,
     held: &[bool],
+    apart: &[[u32; 2]],
     weight: impl Fn(u32) -> f64,
+    on_mesh: impl Fn(Point) -> Point,
     progress: &Progress,
 ) -> Result<Merges> {
     let fits: Vec<_> = moments.iter().map(Moments::fit).collect();
@@ -80,8 +89,13 @@ pub(super) fn merges(
         stamps: vec![0; n],
         heap: BinaryHeap::new(),
         refused: Refused::default(),
+        apart: HashMap::new(),
         weight,
     };
+    for &[p, q] in apart {
+        merging.apart.entry(p).or_default().push(q);
+        merging.apart.entry(q).or_default().push(p);
+    }
     for p in (0..n as u32).filter(|&p| !held[p as usize]) {
         for (q, border) in merging.regions.neighbors(p) {
             if q > p && !held[q as usize] {
@@ -91,7 +105,7 @@ pub(super) fn merges(
     }
     let mut made = Merges::default();
     let mut n_popped = 0;
-    while let Some(Reverse((Ordered(cost), set, stamp))) = merging.heap.pop() {
+    while let Some(Reverse((Ordered(cost), set, stamp, Ordered(of_planes)))) = merging.heap.pop() {
         n_popped += 1;
         if n_popped % PATIENCE == 0 {
             progress.check()?;
@@ -108,9 +122,19 @@ pub(super) fn merges(
             merging.refused.push(set.first_two());
             continue;
         };
+        if merging.is_apart(&whole) {
+            merging.refused.push(set.first_two());
+            continue;
+        }
         if whole != set {
             merging.refused.push(set.first_two());
             merging.offer(whole, cost);
+            continue;
+        }
+        // Only now, as it takes a walk along the border: what was offered is the least that it costs.
+        let straight = of_planes + merging.regions.straightened(&set, &on_mesh);
+        if straight > cost * (1.0 + f64::EPSILON) {
+            merging.heap.push(Reverse((Ordered(straight), set, stamp, Ordered(of_planes))));
             continue;
         }
         let mut members = set.iter();
@@ -124,13 +148,16 @@ pub(super) fn merges(
             merging.moments[stays as usize] = joined;
             merging.energies[stays as usize] = fit.energy;
             [stays, gone].into_iter().for_each(|r| merging.stamps[r as usize] += 1);
+            merging.rename(gone, stays);
             kept = stays;
             made.pairs.push([stays, gone]);
             made.costs.push(cost);
             made.squared_distances.push(total.max(0.0));
             made.is_whole.push(false);
+            made.is_last.push(false);
         }
         made.is_whole.last_mut().into_iter().for_each(|whole| *whole = true);
+        made.is_last.last_mut().into_iter().for_each(|last| *last = true);
         for (r, border) in merging.regions.neighbors(kept) {
             if !held[r as usize] {
                 merging.propose(kept, r, &border);
@@ -147,8 +174,11 @@ impl<W: Fn(u32) -> f64> Merging<'_, '_, W> {
     fn propose(&mut self, p: u32, q: u32, border: &[u32]) {
         let weight = border.iter().map(|&h| (self.weight)(h)).sum::<f64>() / border.len().max(1) as f64;
         let set = Set::pair(p, q);
+        if self.is_apart(&set) {
+            return;
+        }
         let cost = self.cost(&set) / weight.max(f64::MIN_POSITIVE);
-        self.heap.push(Reverse((Ordered(cost), set, self.stamp(&set))));
+        self.heap.push(Reverse((Ordered(cost), set, self.stamp(&set), Ordered(cost))));
     }
 
     /// Offers to merge a pair that was refused before, if both are still neighbors.
@@ -162,14 +192,38 @@ impl<W: Fn(u32) -> f64> Merging<'_, '_, W> {
     /// Offers to merge several regions, for no less than `least`.
     fn offer(&mut self, set: Set, least: f64) {
         let cost = self.cost(&set).max(least);
-        self.heap.push(Reverse((Ordered(cost), set, self.stamp(&set))));
+        self.heap.push(Reverse((Ordered(cost), set, self.stamp(&set), Ordered(cost))));
+    }
+
+    fn joined(&self, set: &Set) -> Moments {
+        set.iter().fold(Moments::default(), |sum, r| sum.plus(&self.moments[r as usize]))
     }
 
     fn cost(&self, set: &Set) -> f64 {
-        let joined = set.iter().fold(Moments::default(), |sum, r| sum.plus(&self.moments[r as usize]));
+        if self.is_apart(set) {
+            return f64::INFINITY;
+        }
+        let joined = self.joined(set);
         // What is flat grows evenly: one region that takes a face at a time is slow.
         FLAT * FLAT * joined.area + joined.fit().energy
             - set.iter().map(|r| self.energies[r as usize]).sum::<f64>()
+    }
+
+    /// Whether two of the regions are not to be in one facet.
+    fn is_apart(&self, set: &Set) -> bool {
+        set.iter().any(|p| self.apart.get(&p).is_some_and(|others| others.iter().any(|&q| set.contains(q))))
+    }
+
+    /// What was to be apart from a region that is gone is to be so from the one that it became part of.
+    fn rename(&mut self, gone: u32, kept: u32) {
+        let others = self.apart.remove(&gone).unwrap_or_default();
+        for other in &others {
+            let named = self.apart.get_mut(other).into_iter().flatten();
+            named.filter(|r| **r == gone).for_each(|r| *r = kept);
+        }
+        if !others.is_empty() {
+            self.apart.entry(kept).or_default().extend(others);
+        }
     }
 
     /// How often the regions have changed.
@@ -179,6 +233,29 @@ impl<W: Fn(u32) -> f64> Merging<'_, '_, W> {
 }
 
 impl Merges {
+    /// Some of them, after which all are facets.
+    pub(super) fn only(&self, which: &[usize]) -> Self {
+        let mut is_whole = vec![false; which.len()];
+        is_whole.last_mut().into_iter().for_each(|whole| *whole = true);
+        Self {
+            pairs: which.iter().map(|&i| self.pairs[i]).collect(),
+            costs: which.iter().map(|&i| self.costs[i]).collect(),
+            squared_distances: which.iter().map(|&i| self.squared_distances[i]).collect(),
+            is_last: which.iter().map(|&i| self.is_last[i]).collect(),
+            is_whole,
+        }
+    }
+
+    /// The same and then others, whose regions have these `names` here.
+    pub(super) fn followed_by(mut self, others: Self, names: &[u32]) -> Self {
+        self.pairs.extend(others.pairs.into_iter().map(|pair| pair.map(|r| names[r as usize])));
+        self.costs.extend(others.costs);
+        self.squared_distances.extend(others.squared_distances);
+        self.is_whole.extend(others.is_whole);
+        self.is_last.extend(others.is_last);
+        self
+    }
+
     /// The regions of `n` that are `count` after the first merges,
     /// numbered in the order of their first members.
     ///

@@ -62,6 +62,11 @@ impl Moments {
         }
     }
 
+    /// Whether the faces look to the side of `normal`, in the mean.
+    pub(super) fn faces(&self, normal: Point) -> bool {
+        dot(self.vector, normal) >= 0.0
+    }
+
     pub(super) fn center(&self) -> Point {
         scale(self.first, 1.0 / self.area.max(f64::MIN_POSITIVE))
     }

@@ -34,6 +34,12 @@ impl Set {
         Self { members, len: 2 }
     }
 
+    pub(super) fn of(region: u32) -> Self {
+        let mut members = [OUTSIDE; TOGETHER];
+        members[0] = region;
+        Self { members, len: 1 }
+    }
+
     pub(super) fn is_pair(&self) -> bool {
         self.len == 2
     }
@@ -69,7 +75,7 @@ enum Verdict {
 }
 
 /// Whether a loop has enough corners. What is open gets more along the mesh's boundary.
-fn has_corners(ridges: &[Ridge]) -> bool {
+pub(super) fn has_corners(ridges: &[Ridge]) -> bool {
     let is_open = ridges.iter().any(|r| r.neighbor == OUTSIDE);
     if ridges.len() == 1 && ridges[0].from == ridges[0].to {
         is_open
@@ -81,15 +87,15 @@ fn has_corners(ridges: &[Ridge]) -> bool {
 /// A partition of faces into regions, which can be merged.
 #[derive(Debug, Clone)]
 pub(super) struct Regions<'a> {
-    connectivity: &'a Connectivity,
-    positions: &'a [Point],
+    pub(super) connectivity: &'a Connectivity,
+    pub(super) positions: &'a [Point],
     /// The region of each face, [`OUTSIDE`] for faces that are none.
-    labels: Vec<u32>,
+    pub(super) labels: Vec<u32>,
     members: Vec<Vec<u32>>,
     /// The halfedges of each region that have something else behind them.
-    borders: Vec<Vec<u32>>,
+    pub(super) borders: Vec<Vec<u32>>,
     /// How many border edges meet at each vertex.
-    valence: Vec<u32>,
+    pub(super) valence: Vec<u32>,
     /// Vertices that are corners whatever meets there.
     is_anchored: Vec<bool>,
 }
@@ -136,11 +142,11 @@ impl<'a> Regions<'a> {
     }
 
     /// The region behind halfedge `h`.
-    fn behind(&self, h: u32) -> u32 {
+    pub(super) fn behind(&self, h: u32) -> u32 {
         self.connectivity.twin(h as usize).map_or(OUTSIDE, |mate| self.labels[mate / 3])
     }
 
-    fn ends(&self, h: u32) -> [u32; 2] {
+    pub(super) fn ends(&self, h: u32) -> [u32; 2] {
         [self.connectivity.tail(h as usize), self.connectivity.head(h as usize)]
     }
 
@@ -161,7 +167,7 @@ impl<'a> Regions<'a> {
     }
 
     /// The border halfedge that follows `h` around what `is_own` describes.
-    fn follow(&self, h: u32, is_own: impl Fn(u32) -> bool) -> u32 {
+    pub(super) fn follow(&self, h: u32, is_own: impl Fn(u32) -> bool) -> u32 {
         let mut g = next(h as usize);
         while let Some(mate) = self.connectivity.twin(g) {
             if !is_own(self.labels[mate / 3]) {
@@ -173,7 +179,7 @@ impl<'a> Regions<'a> {
     }
 
     /// Whether a vertex where so many border edges meet is a corner.
-    fn is_corner(&self, v: u32, valence: u32) -> bool {
+    pub(super) fn is_corner(&self, v: u32, valence: u32) -> bool {
         valence > 2 || self.is_anchored[v as usize]
     }
 
@@ -310,7 +316,7 @@ impl<'a> Regions<'a> {
     }
 
     /// A region that has corners of these loops which are not on one line.
-    fn met_off_line(&self, border: &[u32], loops: &[Vec<Ridge>], set: &Set) -> Option<u32> {
+    pub(super) fn met_off_line(&self, border: &[u32], loops: &[Vec<Ridge>], set: &Set) -> Option<u32> {
         let corners: HashSet<u32> = loops.iter().flatten().map(|ridge| ridge.from).collect();
         let mut met: Vec<(u32, u32)> = Vec::new();
         for &h in border.iter().filter(|&&h| corners.contains(&self.connectivity.tail(h as usize))) {
@@ -374,23 +380,5 @@ impl<'a> Regions<'a> {
     /// The loops of a region as ridges; `None` where they meet.
     pub(super) fn loops(&self, region: u32) -> Option<Vec<Vec<Ridge>>> {
         self.loops_of(&self.borders[region as usize], &|r| r == region, &|v| self.valence[v as usize])
-    }
-
-    /// The vertices of a ridge, from its start to its end.
-    pub(super) fn run(&self, region: u32, ridge: &Ridge) -> Vec<u32> {
-        let border = &self.borders[region as usize];
-        let Some(mut h) = border.iter().copied().find(|&h| self.connectivity.tail(h as usize) == ridge.from)
-        else {
-            return vec![ridge.from, ridge.to];
-        };
-        let mut run = vec![ridge.from];
-        loop {
-            let head = self.connectivity.head(h as usize);
-            run.push(head);
-            if head == ridge.to {
-                return run;
-            }
-            h = self.follow(h, |r| r == region);
-        }
     }
 }

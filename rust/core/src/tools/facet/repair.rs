@@ -11,7 +11,7 @@ use super::triangulation::triangles;
 use crate::mesh::vector::{between, cross, distance, dot, sub};
 
 /// Repairs `faulty` facets, as many as do not touch each other; returns whether anything was done.
-pub(super) fn repair(shape: &mut Shape, faces: &mut Faces, faulty: &[u32]) -> bool {
+pub(super) fn repair(shape: &mut Shape, faces: &mut Faces<'_>, faulty: &[u32]) -> bool {
     let mut touched: HashSet<u32> = HashSet::new();
     let mut gone = Vec::new();
     let mut is_repaired = false;
@@ -128,12 +128,13 @@ fn contract(shape: &mut Shape, [a, b]: [u32; 2]) -> Option<Option<u32>> {
 }
 
 /// Takes a facet away; its faces go to the neighbor whose plane is nearest.
-fn remove(shape: &mut Shape, faces: &mut Faces, k: u32) {
+fn remove(shape: &mut Shape, faces: &mut Faces<'_>, k: u32) {
     let corners: HashSet<u32> = shape.facets[k as usize].corners().collect();
     let is_near = |facet: &Facet| !facet.is_held && facet.corners().any(|c| corners.contains(&c));
     let near: Vec<u32> =
         (0..).zip(&shape.facets).filter(|(j, facet)| *j != k && is_near(facet)).map(|(j, _)| j).collect();
-    for (label, &center) in faces.labels.iter_mut().zip(&faces.centers).filter(|(label, _)| **label == k) {
+    for (label, &center) in faces.labels.iter_mut().zip(&faces.scan.centers).filter(|(label, _)| **label == k)
+    {
         let off = |j: u32| shape.facets[j as usize].plane.height(center).abs();
         *label = near.iter().copied().min_by(|&i, &j| off(i).total_cmp(&off(j))).unwrap_or(0);
     }
@@ -152,7 +153,7 @@ struct Cut {
 
 /// Divides a facet without holes in two along the diagonal that leaves the flattest parts,
 /// both sound where there is one.
-fn divide(shape: &mut Shape, faces: &mut Faces, k: u32) -> bool {
+fn divide(shape: &mut Shape, faces: &mut Faces<'_>, k: u32) -> bool {
     let facet = shape.facets[k as usize].clone();
     let n = facet.corners().count();
     if facet.loops.len() != 1 || n < 4 {
@@ -172,16 +173,18 @@ fn divide(shape: &mut Shape, faces: &mut Faces, k: u32) -> bool {
             // The first part lies to the right of the way from `a` to `b`.
             let wall = cross(sub(home.point(b), home.point(a)), facet.plane.normal);
             let is_first: Vec<bool> =
-                own.iter().map(|&f| dot(sub(faces.centers[f], home.point(a)), wall) > 0.0).collect();
+                own.iter().map(|&f| dot(sub(faces.scan.centers[f], home.point(a)), wall) > 0.0).collect();
             let part = |range: std::ops::Range<usize>, first: bool| {
                 let loops = vec![range.map(|x| corners[x % n]).collect()];
-                let mut part =
-                    Facet { loops, plane: facet.plane, moments: Moments::default(), is_held: false };
+                let moments = Moments::default();
+                let mut part = Facet { loops, plane: facet.plane, moments, is_held: false, part: facet.part };
                 let polygon = home.polygon_moments(&part);
                 part.plane = polygon.fit().plane;
-                let is_sound = triangles(&home, &part).is_some();
+                // A part that is turned over lies on top of the other.
+                let is_upright = dot(part.plane.normal, facet.plane.normal) > 0.0;
+                let is_sound = is_upright && triangles(&home, &part).is_some();
                 let of_part = own.iter().zip(&is_first).filter(|(_, &is_first)| is_first == first);
-                let sum = of_part.fold(Moments::default(), |sum, (&f, _)| sum.plus(&faces.moments[f]));
+                let sum = of_part.fold(Moments::default(), |sum, (&f, _)| sum.plus(&faces.scan.moments[f]));
                 let energy = sum.fit().energy + polygon.fit().energy;
                 (Facet { plane: polygon.fit().plane, moments: polygon, ..part }, is_sound, energy)
             };

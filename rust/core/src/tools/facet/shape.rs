@@ -30,6 +30,8 @@ pub(super) struct Facet {
     pub moments: Moments,
     /// A face that stays as it is.
     pub is_held: bool,
+    /// One of the faces that it began with.
+    pub part: u32,
 }
 
 impl Facet {
@@ -61,33 +63,34 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    /// The facets that `regions` are, which have `moments`.
-    /// What lies along the mesh's boundary keeps within `tolerance` of it.
+    /// The facets that `regions` are, which have `moments` and begin with `parts`.
+    /// What lies along the mesh's boundary keeps within `tolerance` of it. Vertices without `firmness` stay.
     pub(super) fn new(
         regions: &Regions<'_>,
         moments: &[Moments],
         positions: &[Point],
+        parts: &[u32],
         is_held: &[bool],
-        is_fixed: impl Fn(u32) -> bool,
+        firmness: impl Fn(u32) -> Option<f64>,
         tolerance: f64,
     ) -> Self {
         let mut shape = Self::default();
         let mut names: HashMap<u32, u32> = HashMap::new();
-        for ((region, moments), &is_held) in (0..).zip(moments).zip(is_held) {
+        for (((region, moments), &is_held), &part) in (0..).zip(moments).zip(is_held).zip(parts) {
             let mut loops = Vec::new();
             for ridges in regions.loops(region).unwrap_or_default() {
                 let vertices = polygon(regions, region, &ridges, positions, tolerance);
                 let mut name = |v: u32| {
                     *names.entry(v).or_insert_with(|| {
                         let point = positions[v as usize];
-                        let is_fixed = is_fixed(v);
-                        shape.corners.push(Corner { point, home: point, firmness: 1.0, is_fixed, vertex: v });
+                        let (firmness, is_fixed) = (firmness(v).unwrap_or(1.0), firmness(v).is_none());
+                        shape.corners.push(Corner { point, home: point, firmness, is_fixed, vertex: v });
                         shape.corners.len() as u32 - 1
                     })
                 };
                 loops.push(vertices.into_iter().map(&mut name).collect());
             }
-            shape.facets.push(Facet { loops, plane: moments.fit().plane, moments: *moments, is_held });
+            shape.facets.push(Facet { loops, plane: moments.fit().plane, moments: *moments, is_held, part });
         }
         shape
     }
@@ -117,10 +120,13 @@ impl Shape {
 
     /// The largest distance of a corner from the plane of one of its facets.
     pub(super) fn off_planes(&self) -> f64 {
-        let off = |facet: &Facet| {
-            facet.corners().map(|c| facet.plane.height(self.point(c)).abs()).fold(0.0, f64::max)
-        };
-        self.facets.iter().map(off).fold(0.0, f64::max)
+        (0..self.facets.len() as u32).map(|k| self.off_plane(k)).fold(0.0, f64::max)
+    }
+
+    /// The same of one facet.
+    pub(super) fn off_plane(&self, k: u32) -> f64 {
+        let facet = &self.facets[k as usize];
+        facet.corners().map(|c| facet.plane.height(self.point(c)).abs()).fold(0.0, f64::max)
     }
 
     /// Whether one of the facets has the side `[a, b]` in this direction.

@@ -39,7 +39,9 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point]) -> Result
     let of_facet = |(facet, f): (usize, &super::shape::Facet)| {
         f.corners().map(|c| Incidence { facet, corner: c as usize }).collect::<Vec<_>>()
     };
-    let incidences: Vec<Incidence> = shape.facets.iter().enumerate().flat_map(of_facet).collect();
+    // Faces that stay are triangles: they are flat wherever their corners are.
+    let made = shape.facets.iter().enumerate().filter(|(_, facet)| !facet.is_held);
+    let incidences: Vec<Incidence> = made.flat_map(of_facet).collect();
     let mut share = vec![0.0; targets.len()];
     let mut at = (vec![Vec::new(); targets.len()], vec![Vec::new(); shape.facets.len()]);
     for (k, i) in incidences.iter().enumerate() {

@@ -1,0 +1,126 @@
+//! The merges as a tree: a region is a node, and what it was made of are the nodes below.
+
+use std::collections::{BTreeSet, HashMap};
+
+use super::merging::Merges;
+use super::regions::Regions;
+use crate::mesh::partition::Partition;
+use crate::Result;
+
+/// Nodes below `n` are faces; the others come in the order in which they were made.
+#[derive(Debug)]
+pub(super) struct Hierarchy {
+    n: usize,
+    /// Of each node that is no face: the nodes that it was made of, and its merges among all.
+    made: Vec<(Vec<u32>, std::ops::Range<usize>)>,
+}
+
+/// Disjoint nodes that hold all faces.
+pub(super) type Cut = BTreeSet<u32>;
+
+impl Hierarchy {
+    /// The tree of the first `n_merges` that were made of `n` faces, and the regions that they leave. What
+    /// was made at once is whole.
+    pub(super) fn new(merges: &Merges, n: usize, n_merges: usize) -> Result<(Self, Cut)> {
+        let n_merges = (0..=n_merges).rev().find(|&i| i == 0 || merges.is_last[i - 1]).unwrap_or(0);
+        let mut sets = Partition::new(n)?;
+        let mut node: Vec<u32> = (0..n as u32).collect();
+        let mut cut: Cut = node.iter().copied().collect();
+        let mut made = Vec::new();
+        let (mut parts, mut first) = (BTreeSet::new(), 0);
+        for (i, &[kept, gone]) in merges.pairs[..n_merges].iter().enumerate() {
+            let of = [kept, gone].map(|f| node[sets.root(f) as usize]);
+            // In the midst of several merges the node is not made yet.
+            parts.extend(of.into_iter().filter(|part| cut.remove(part)));
+            sets.unite(kept, gone);
+            let fresh = (n + made.len()) as u32;
+            node[sets.root(kept) as usize] = fresh;
+            if merges.is_last[i] {
+                made.push((std::mem::take(&mut parts).into_iter().collect(), first..i + 1));
+                cut.insert(fresh);
+                first = i + 1;
+            }
+        }
+        Ok((Self { n, made }, cut))
+    }
+
+    /// What a node was made of; nothing where it is a face.
+    fn parts(&self, node: u32) -> &[u32] {
+        (node as usize).checked_sub(self.n).map_or(&[], |i| self.made[i].0.as_slice())
+    }
+
+    /// The merges that made a node of its parts.
+    pub(super) fn merges(&self, node: u32) -> std::ops::Range<usize> {
+        (node as usize).checked_sub(self.n).map_or(0..0, |i| self.made[i].1.clone())
+    }
+
+    pub(super) fn is_face(&self, node: u32) -> bool {
+        (node as usize) < self.n
+    }
+
+    /// Puts the parts of a node in its place.
+    pub(super) fn split(&self, cut: &mut Cut, node: u32) {
+        if !self.is_face(node) && cut.remove(&node) {
+            cut.extend(self.parts(node));
+        }
+    }
+
+    /// The node of the cut that holds each face.
+    pub(super) fn nodes(&self, cut: &Cut) -> Vec<u32> {
+        let mut nodes = vec![0; self.n];
+        for &top in cut {
+            let mut stack = vec![top];
+            while let Some(node) = stack.pop() {
+                stack.extend(self.parts(node));
+                if self.is_face(node) {
+                    nodes[node as usize] = top;
+                }
+            }
+        }
+        nodes
+    }
+
+    /// The regions of a cut, numbered in the order of their first faces, and their nodes.
+    pub(super) fn labels(&self, cut: &Cut) -> (Vec<u32>, Vec<u32>) {
+        let nodes = self.nodes(cut);
+        let (mut names, mut tops) = (HashMap::new(), Vec::new());
+        let mut name = |node: &u32| {
+            *names.entry(*node).or_insert_with(|| {
+                tops.push(*node);
+                tops.len() as u32 - 1
+            })
+        };
+        let labels = nodes.iter().map(&mut name).collect();
+        (labels, tops)
+    }
+
+    /// Splits nodes until all can be facets beside each other, always the latest of those in the way: where
+    /// all are as when a node was made, it can.
+    pub(super) fn close<'a>(&self, cut: &mut Cut, regions: impl Fn(&[u32], usize) -> Regions<'a>) {
+        loop {
+            let (labels, tops) = self.labels(cut);
+            let regions = regions(&labels, tops.len());
+            let latest = |of: Vec<u32>| of.into_iter().map(|r| tops[r as usize]).max();
+            let split: BTreeSet<u32> = (0..tops.len() as u32)
+                .filter_map(|region| regions.in_the_way(region).and_then(latest))
+                .filter(|&node| !self.is_face(node))
+                .collect();
+            if split.is_empty() {
+                return;
+            }
+            split.into_iter().for_each(|node| self.split(cut, node));
+        }
+    }
+
+    /// The merges within the nodes of the cut, in their order.
+    pub(super) fn within(&self, cut: &Cut) -> Vec<usize> {
+        let mut found = Vec::new();
+        let mut stack: Vec<u32> = cut.iter().copied().collect();
+        while let Some(node) = stack.pop() {
+            found.extend(self.merges(node));
+            stack.extend(self.parts(node));
+        }
+        found.sort_unstable();
+        found
+    }
+}
