@@ -313,6 +313,14 @@ def test_any_mesh_gives_a_finite_answer(name, vertices, faces, facets):
         assert found.n_facets == 6
 
 
+def test_faces_that_lie_on_each_other_and_corners_named_twice_give_an_answer():
+    vertices = np.random.default_rng(0).normal(size=(4, 3))
+    faces = [[1, 3, 2], [0, 3, 2], [3, 0, 0], [3, 0, 2], [0, 1, 1], [1, 1, 0]]
+    for facets in (None, 1, 2, 10):
+        found = ridgeform.facet(ridgeform.Mesh(vertices, faces), facets=facets)
+        assert np.isfinite(found.vertices).all() and found.n_facets == 1
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -133,8 +133,11 @@ pub(super) fn fold(shape: &mut Shape, faces: &mut Faces<'_>) -> Result<()> {
             facets.push(Facet { loops, plane, moments, is_held: false, part: facet.part });
         }
     }
-    shape.facets = facets;
-    faces.labels.iter_mut().for_each(|label| *label = place[*label as usize]);
+    // One without corners, as of two faces that lie on each other, leaves nothing; its faces go to another.
+    if let Some(last) = facets.len().checked_sub(1) {
+        shape.facets = facets;
+        faces.labels.iter_mut().for_each(|label| *label = place[*label as usize].min(last as u32));
+    }
     Ok(())
 }
 
