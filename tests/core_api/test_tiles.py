@@ -1,7 +1,9 @@
 """Meshes in blocks come out as in one piece, without seams, whoever works on the blocks."""
 
+import re
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -186,3 +188,22 @@ def test_a_city_of_tiles_is_segmented_as_in_one_piece(tmp_path):
     found = tiles.segment(city.vertices, city.faces, scale=30.0, max_vertices=5000)
     assert found.n_segments == len(np.unique(truth)) == 25
     assert adjusted_rand_index(found.labels, truth) > 0.99
+
+
+def test_the_python_of_the_manual_runs(tmp_path, monkeypatch):
+    """As it is written; of the two ways to several workers the one that needs no Dask."""
+    page = Path(__file__).parents[2] / "docs/manual_tiles.md"
+    code = re.findall(r"^```python\n(.*?)^```", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    tiled_city.write_tiles(tiled_city.city(2), tmp_path / "city", 2)
+    names = {}
+    exec(code[0], names)
+    assert sorted(path.name for path in (tmp_path / "city_flat").iterdir()) == [
+        f"tile_{a}_{b}.npz" for a in range(2) for b in range(2)
+    ]
+    alone = names["result"].vertices
+    assert "ProcessPoolExecutor(4)" in code[1]
+    names["spawn"] = get_context("spawn")
+    exec(code[1].replace("ProcessPoolExecutor(4)", "ProcessPoolExecutor(2, mp_context=spawn)"), names)
+    np.testing.assert_array_equal(names["result"].vertices.shape, alone.shape)
+    assert len(code) == 3 and "distributed" in code[2]

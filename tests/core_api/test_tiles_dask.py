@@ -4,8 +4,11 @@
 """
 
 import os
+import re
 import signal
 import threading
+import types
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -74,3 +77,14 @@ def test_segments_are_the_same_as_well(client):
     )
     assert np.array_equal(result.labels, alone.labels)
     assert result.n_segments == alone.n_segments == 6
+
+
+def test_the_python_of_the_manual_runs(client, tmp_path):
+    """As it is written, but for the address and the folder."""
+    page = (Path(__file__).parents[2] / "docs/manual_tiles.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"^```python\n(from distributed.*?)^```", page, re.MULTILINE | re.DOTALL)
+    code = code.replace("tcp://scheduler:8786", client.scheduler.address)
+    vertices, faces = shapes.cube(8)
+    names = {"tiles": tiles, "city": types.SimpleNamespace(vertices=vertices, faces=faces)}
+    exec(code.replace("/shared/work", str(tmp_path)), names)
+    assert names["result"].vertices.shape == vertices.shape
