@@ -126,7 +126,7 @@ sizes:
 	$(RUN) scripts/sizes.py
 
 docs:
-	@$(PYTHON) scripts/build_docs.py
+	$(RUN) scripts/build_docs.py
 
 # Blender notes the home folder in every file it saves, hence the neutral one; saved by the oldest Blender.
 fixtures:
