@@ -67,7 +67,7 @@ def test_a_noisy_polyhedron_comes_back(name, n, n_corners, noise):
     edges = exact.vertices[exact.faces[:, 0]] - exact.vertices[exact.faces[:, 1]]
     sigma = noise * np.linalg.norm(edges, axis=1).mean()
     corners = np.linalg.norm(found.vertices[:, None] - exact.vertices[None], axis=2).min(1)
-    assert corners.max() <= max(1.4 * sigma, 1e-6 * size), corners
+    assert corners.max() <= max(1.6 * sigma, 1e-6 * size), corners
     assert len(found.vertices) == n_corners
     assert segment_shapes.adjusted_rand_index(found.labels, exact.truth) >= 0.97
 
