@@ -36,13 +36,9 @@ class Edges:
 
         -1 where there are not two.
         """
-        starts, vertices, corner_edges = self.corners
-        face = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(vertices))))
-        order = np.argsort(corner_edges, kind="stable")
-        count = np.bincount(corner_edges, minlength=len(self.ends))
-        first = (np.cumsum(count) - count)[count == 2]
+        pairs, first, second, face = _with_two_faces(self.corners, len(self.ends))
         sides = np.full((len(self.ends), 2), -1, np.int64)
-        sides[count == 2] = of_faces[face[order[np.stack([first, first + 1], axis=1)]]]
+        sides[pairs] = of_faces[face[np.stack([first, second], axis=1)]]
         return sides
 
     def on_planes(self, coordinates: np.ndarray) -> np.ndarray:
@@ -84,6 +80,19 @@ def face_normals(coordinates: np.ndarray, starts: np.ndarray, vertices: np.ndarr
     return np.add.reduceat(np.cross(corners, corners[following]), starts, axis=0)
 
 
+def _with_two_faces(
+    corners: tuple[np.ndarray, np.ndarray, np.ndarray], n_edges: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """The edges (p,) that have two faces, the corner (p,) of either at them, the face (c,) of each corner."""
+    starts, vertices, corner_edges = corners
+    face = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(vertices))))
+    order = np.argsort(corner_edges, kind="stable")
+    count = np.bincount(corner_edges, minlength=n_edges)
+    pairs = np.flatnonzero(count == 2)
+    begin = (np.cumsum(count) - count)[pairs]
+    return pairs, order[begin], order[begin + 1], face
+
+
 def edge_angles(
     coordinates: np.ndarray, corners: tuple[np.ndarray, np.ndarray, np.ndarray], n_edges: int
 ) -> np.ndarray:
@@ -92,14 +101,9 @@ def edge_angles(
     -1 for edges with one face or more than two, and for those beside a face without area. Two faces that run
     along the edge the same way (disagreeing normals) are compared as if one was turned over.
     """
-    starts, vertices, corner_edges = corners
+    starts, vertices, _ = corners
     normals = face_normals(coordinates, starts, vertices)
-    face = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(vertices))))
-    order = np.argsort(corner_edges, kind="stable")
-    count = np.bincount(corner_edges, minlength=n_edges)
-    pairs = np.flatnonzero(count == 2)
-    first = order[(np.cumsum(count) - count)[pairs]]
-    second = order[(np.cumsum(count) - count)[pairs] + 1]
+    pairs, first, second, face = _with_two_faces(corners, n_edges)
     a, b = normals[face[first]], normals[face[second]]
     b = np.where((vertices[first] == vertices[second])[:, None], -b, b)
     # atan2 stays exact for tiny angles, where the arc cosine does not.
