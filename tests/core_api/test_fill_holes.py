@@ -168,6 +168,24 @@ def test_fills_scale_with_the_mesh():
     np.testing.assert_allclose(other.vertices, 1024 * plain.vertices, rtol=0, atol=1e-9)
 
 
+@pytest.mark.parametrize(("shape", "lengths"), [("smooth", (0.1, 0.03, 0.01, 0.005)), ("auto", (0.03, 0.01))])
+def test_shorter_edges_give_more_faces_up_to_the_most_there_are(shape, lengths):
+    mesh, _ = turned_cube(8, [1, 0, 1], 0.5)
+    counts, edges = [], []
+    for length in lengths:
+        filled = ridgeform.fill_holes(mesh, edge_length=length, shape=shape)
+        check_invariants(mesh, filled)
+        new = patch_faces(filled)
+        counts.append(len(new))
+        sides = filled.vertices[new] - filled.vertices[np.roll(new, 1, axis=1)]
+        edges.append(np.median(np.linalg.norm(sides, axis=2)))
+    assert np.all(np.diff(counts) > 0)
+    assert counts[-1] > 10_000
+    assert counts[-1] < 60_000
+    # The shortest of "smooth" would take more faces than a patch may have.
+    assert np.all(np.array(edges[:2]) < 1.3 * np.array(lengths[:2]))
+
+
 def test_the_same_input_gives_the_same_bits():
     mesh, _ = turned_cube(12, [1, 1, 0.1], 0.5)
     first, second = (ridgeform.fill_holes(mesh, threads=k) for k in (1, 2))

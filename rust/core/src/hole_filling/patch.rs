@@ -10,7 +10,7 @@ use crate::mesh::vector::{distance, norm, Point};
 use crate::remesh::curves::Keep;
 use crate::remesh::isotropic::run;
 use crate::remesh::remesher::{Reference, Remesher};
-use crate::remesh::sizing::{growth, Sizing};
+use crate::remesh::sizing::{length_and_growth, Sizing};
 use crate::remesh::{budget, guard, EditableMesh};
 use crate::{Progress, Result};
 
@@ -22,9 +22,8 @@ const FOLD_COSINE: f64 = -0.5;
 /// places from its length on are the new points.
 ///
 /// Edges are as long as those of the rim, interpolated smoothly where these differ, or `edge_length`. If that
-/// would take more faces than `max_faces` they grow with their distance from the rim: with growth g and a rim
-/// of length P some `P / (0.433 g L)` faces are made, however large the hole; a rim that needs more even so
-/// gets them.
+/// would take more faces than `max_faces` they grow with their distance from the rim, or are as short as they
+/// can be ([`length_and_growth`]); a rim that needs more even so gets them.
 pub(super) fn refined(
     polygon: &Polygon,
     flat: &Triangulation,
@@ -46,13 +45,13 @@ pub(super) fn refined(
         memory::gathered((0..n).map(|i| distance(polygon.points[i], polygon.points[(i + 1) % n])))?;
     let rim_length: f64 = rim_edges.iter().sum();
     let rim_size = |i: usize| 0.5 * (rim_edges[i] + rim_edges[(i + n - 1) % n]);
-    let typical = options.edge_length.unwrap_or(rim_length / n as f64);
     let area: f64 = mesh.faces().map(|(f, _)| norm(mesh.area_vector(f))).sum();
     if let Some(length) = options.edge_length {
         budget::check_length(mesh.faces().map(|(_, face)| mesh.corners(face)), length)?;
     }
-    let growth = growth(area, rim_length, typical, options.max_faces);
-    let size_at = |i: usize| options.edge_length.map_or(rim_size(i), |length| length.max(rim_size(i)));
+    let (typical, growth) =
+        length_and_growth(area, rim_length, rim_length / n as f64, options.edge_length, options.max_faces);
+    let size_at = |i: usize| options.edge_length.map_or(rim_size(i), |_| typical.max(rim_size(i)));
     let mut sizes = memory::sifted((0..n).map(size_at).chain(flat.extra.iter().map(|_| typical)))?;
     // Sizes that grow by as much for every unit of distance, from the nearest corner as from any other: means
     // of them would be those of the middle of the hole a third of the way from there to the rim, and leave
@@ -62,7 +61,7 @@ pub(super) fn refined(
     };
     let size_between = |sizes: [f64; 3], far: [f64; 3]| match options.edge_length {
         _ if growth > 0.0 => grown(sizes, far),
-        Some(length) => length,
+        Some(_) => typical,
         None => sizes.iter().sum::<f64>() / 3.0,
     };
     let most = budget::patch_faces(options.max_faces, n);
@@ -71,7 +70,7 @@ pub(super) fn refined(
     let fixed = memory::gathered((0..mesh.n_vertices()).map(|v| v < n))?;
     let keep = Keep { fixed: &fixed, fixed_faces: false, feature_cosine: -2.0, features: None };
     let mut remesher = Remesher::new(mesh, &surface, &keep, |mesh, curves| match options.edge_length {
-        Some(length) => Sizing::uniform(length, growth, mesh, curves),
+        Some(_) => Sizing::uniform(typical, growth, mesh, curves),
         None => Sizing::graded(memory::twin(&sizes)?, growth, mesh, curves),
     })?;
     run(&mut remesher, options.remesh_iterations, most, progress)?;

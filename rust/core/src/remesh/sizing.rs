@@ -20,16 +20,30 @@ const STEEPEST_GROWTH: f64 = 0.5;
 /// The area of an equilateral triangle of edge length 1.
 pub(crate) const EQUILATERAL: f64 = 0.433;
 
-/// How much edges must grow for every unit of distance from a rim of this length, with edges of length
-/// `edge`, so that a patch of this area has about `max_faces` faces at most; 0 if it has no more anyway.
+/// How long the edges of a patch should be that has about `max_faces` faces at most: at its rim, and by how
+/// much longer for every unit of distance from there. The patch has this area, and its rim this length, in
+/// edges of length `rim_edge`; `length` is asked for, or else that of the rim.
 ///
-/// With growth g and a rim of length P some `P / (0.433 g edge)` faces are made, however large the hole.
-pub(crate) fn growth(area: f64, rim: f64, edge: f64, max_faces: usize) -> f64 {
+/// With growth g, a rim of length P, and edges of length L there some `P / (0.433 g L)` faces are made, however
+/// large the hole. Edges shorter than the rim's cannot begin there, since nothing cuts the rim: what is asked
+/// for beyond the faces that there may be is then shared out evenly.
+pub(crate) fn length_and_growth(
+    area: f64,
+    rim: f64,
+    rim_edge: f64,
+    length: Option<f64>,
+    max_faces: usize,
+) -> (f64, f64) {
     let most = max_faces.max(1) as f64;
-    if area / (EQUILATERAL * edge * edge) > most {
-        (rim / (EQUILATERAL * edge * most)).min(STEEPEST_GROWTH)
-    } else {
-        0.0
+    let even = (area / (EQUILATERAL * most)).sqrt();
+    match length {
+        Some(length) if length < rim_edge && even <= rim_edge => (length.max(even), 0.0),
+        _ => {
+            let length = length.map_or(rim_edge, |length| length.max(rim_edge));
+            let growth =
+                if even > length { (rim / (EQUILATERAL * length * most)).min(STEEPEST_GROWTH) } else { 0.0 };
+            (length, growth)
+        }
     }
 }
 

@@ -120,15 +120,15 @@ pub fn filling_demand(mesh: &Mesh, longest: Option<usize>) -> Result<Demand> {
         Some(longest) => longest,
         None => boundary_loops(mesh.connectivity())?.iter().map(Vec::len).max().unwrap_or(0),
     };
-    Ok(demand(mesh, longest))
+    Ok(demand(mesh, longest, None))
 }
 
 /// What a patch in a rim of so many edges takes: it has as many faces as a disk with that rim has, up to the
-/// bound for all patches. The mesh itself is only looked through: a flag and a bit of bookkeeping for each
+/// bound for all patches, or that bound where an edge length is asked for. The mesh itself is only looked through: a flag and a bit of bookkeeping for each
 /// face.
-fn demand(mesh: &Mesh, n_rim_edges: usize) -> Demand {
-    let disk = n_rim_edges.saturating_mul(n_rim_edges) / 5;
+fn demand(mesh: &Mesh, n_rim_edges: usize, edge_length: Option<f64>) -> Demand {
     let most = budget::patch_faces(FillOptions::default().max_faces, n_rim_edges);
+    let disk = edge_length.map_or(n_rim_edges.saturating_mul(n_rim_edges) / 5, |_| most);
     let whole = mesh.demand(Tool::FillHoles);
     Demand { n_vertices: 0, n_faces: disk.min(most) + whole.n_faces / 200, ..whole }
 }
@@ -145,7 +145,8 @@ fn fill(working: &Working<'_>, options: &FillHolesOptions, progress: &Progress) 
     let geometry = FillOptions { edge_length: options.edge_length, lids, ..FillOptions::default() };
     let mut chosen = choice::choose(mesh, options)?;
     let loops: Vec<Vec<u32>> = chosen.iter().map(|(vertices, _)| vertices.clone()).collect();
-    demand(mesh, loops.iter().map(Vec::len).max().unwrap_or(0)).admit(options.solve.memory_limit)?;
+    let longest = loops.iter().map(Vec::len).max().unwrap_or(0);
+    demand(mesh, longest, options.edge_length).admit(options.solve.memory_limit)?;
     let at_loops = faces_at(mesh, &loops)?;
     let patches = choice::triangulate(mesh, &mut chosen, &at_loops, &geometry, progress)?;
     let mut filled = Filled::none();

@@ -11,7 +11,7 @@ use crate::remesh::curves::Keep;
 use crate::remesh::editable::{key, Edge};
 use crate::remesh::isotropic::run;
 use crate::remesh::remesher::{Reference, Remesher};
-use crate::remesh::sizing::{growth, Sizing};
+use crate::remesh::sizing::{length_and_growth, Sizing};
 use crate::remesh::EditableMesh;
 use crate::Result;
 
@@ -104,10 +104,10 @@ pub(super) fn resample(
         features: Some(&features),
     };
     let typical = typical_edge(&mesh)?;
-    let (growth, rim_edge) = growth_from_rim(&mesh, edge_length, max_faces)?;
+    let (length, growth) = lengths(&mesh, edge_length, max_faces)?;
     let mut remesher = Remesher::new(mesh, &surface, &keep, |mesh, curves| match edge_length {
-        Some(length) => Sizing::uniform(length, growth, mesh, curves),
-        None if growth > 0.0 => Sizing::grown(rim_edge, growth, mesh, curves),
+        Some(_) => Sizing::uniform(length, growth, mesh, curves),
+        None if growth > 0.0 => Sizing::grown(length, growth, mesh, curves),
         None => Sizing::graded(memory::repeated(typical, mesh.n_vertices())?, 0.0, mesh, curves),
     })?;
     run(&mut remesher, rounds, budget::patch_faces(max_faces, n), &progress.quiet())?;
@@ -115,16 +115,15 @@ pub(super) fn resample(
     region.replace_patch(&points, &faces, &rim)
 }
 
-/// By how much edges of the patch `mesh` must grow for every unit of distance from its rim,
-/// and how long those at the rim are.
-fn growth_from_rim(mesh: &EditableMesh, edge_length: Option<f64>, max_faces: usize) -> Result<(f64, f64)> {
+/// How long the edges of the patch `mesh` should be at its rim, and by how much longer for every unit of
+/// distance from there.
+fn lengths(mesh: &EditableMesh, edge_length: Option<f64>, max_faces: usize) -> Result<(f64, f64)> {
     let is_border = |&[a, b]: &[u32; 2]| matches!(mesh.edge(a, b), Edge::Border(..));
     let length = |[a, b]: [u32; 2]| distance(mesh.position(a), mesh.position(b));
     let rim = memory::sifted(mesh.edges()?.into_iter().filter(is_border).map(length))?;
     let total: f64 = rim.iter().sum();
-    let edge = edge_length.unwrap_or(total / rim.len().max(1) as f64);
     let area: f64 = mesh.faces().map(|(f, _)| norm(mesh.area_vector(f))).sum();
-    Ok((growth(area, total, edge, max_faces), edge))
+    Ok(length_and_growth(area, total, total / rim.len().max(1) as f64, edge_length, max_faces))
 }
 
 /// The mean edge length.
