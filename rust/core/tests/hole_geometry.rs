@@ -5,7 +5,7 @@ mod hole_checks;
 
 use hole_checks::{patch_corners, patched, shapeliness};
 use ridgeform_core::error::{Error, MeshError, Refusal};
-use ridgeform_core::hole_filling::{fill_loop, fill_loops, find_holes, FillOptions, Patch};
+use ridgeform_core::hole_filling::{fill_loops, find_holes, FillOptions, Patch};
 use ridgeform_core::mesh::vector::{area_vector, distance, dot, norm, quality};
 use ridgeform_core::mesh::{boundary_loops, report, Mesh};
 use ridgeform_core::shapes::{self, Shape};
@@ -29,8 +29,12 @@ fn fill_all(shape: &Shape, options: &FillOptions) -> (Mesh, Vec<Patch>) {
     (patched(&mesh, &patches).unwrap(), patches)
 }
 
+fn filled(mesh: &Mesh, rim: &[u32], options: &FillOptions) -> Result<Patch, Error> {
+    Ok(fill_loops(mesh, &[rim.to_vec()], options, &Progress::new())?.remove(0))
+}
+
 fn refusal(mesh: &Mesh, rim: &[u32]) -> Refusal {
-    match fill_loop(mesh, rim, &FillOptions::default(), &Progress::new()) {
+    match filled(mesh, rim, &FillOptions::default()) {
         Err(Error::Mesh(MeshError::Unfillable { reason, .. })) => reason,
         other => panic!("{other:?}"),
     }
@@ -107,7 +111,7 @@ fn a_hole_across_the_edge_of_a_box_gets_one_chamfer_from_end_to_end() {
     let hole =
         cube.clone().without_faces(|f| cube.faces[f].iter().all(|&v| near(&cube.vertices[v as usize])));
     let mesh = hole.mesh().unwrap();
-    let patch = fill_loop(&mesh, &fillable_loops(&mesh).unwrap()[0], &flat(), &Progress::new()).unwrap();
+    let patch = filled(&mesh, &fillable_loops(&mesh).unwrap()[0], &flat()).unwrap();
     let filled = patched(&mesh, &[patch]).unwrap();
     assert!(shapeliness(&filled, mesh.connectivity().n_faces()).cosine > -1e-9);
 }
@@ -130,9 +134,9 @@ fn a_regular_polygon_and_a_saddle_are_filled_with_even_triangles() {
         let mesh = ring(n, |angle| wave * (2.0 * angle).sin()).mesh().unwrap();
         let rim =
             find_holes(&mesh).unwrap().into_iter().map(|h| h.vertices).find(|rim| rim.contains(&0)).unwrap();
-        let simple = fill_loop(&mesh, &rim, &flat(), &Progress::new()).unwrap();
+        let simple = filled(&mesh, &rim, &flat()).unwrap();
         assert_eq!((simple.vertices.len(), simple.faces.len()), (0, n - 2));
-        let patch = fill_loop(&mesh, &rim, &FillOptions::default(), &Progress::new()).unwrap();
+        let patch = filled(&mesh, &rim, &FillOptions::default()).unwrap();
         let filled = patched(&mesh, std::slice::from_ref(&patch)).unwrap();
         let least = patch_corners(&filled, &patch).map(quality).fold(1.0, f64::min);
         assert!(least > 0.5, "{n} {wave}: {least}");
@@ -155,8 +159,7 @@ fn the_edge_length_can_be_set_and_faces_be_limited() {
     let mesh = ring(64, |_| 0.0).mesh().unwrap();
     let rim =
         find_holes(&mesh).unwrap().into_iter().map(|h| h.vertices).find(|rim| rim.contains(&0)).unwrap();
-    let count =
-        |options: &FillOptions| fill_loop(&mesh, &rim, options, &Progress::new()).unwrap().faces.len();
+    let count = |options: &FillOptions| filled(&mesh, &rim, options).unwrap().faces.len();
     let usual = count(&FillOptions::default());
     let coarse = count(&FillOptions { edge_length: Some(0.3), ..FillOptions::default() });
     let fine = count(&FillOptions { edge_length: Some(0.05), ..FillOptions::default() });
@@ -200,7 +203,7 @@ fn no_edge_is_made_that_exists_already() {
     };
     let mesh = square.mesh().unwrap();
     for options in [flat(), FillOptions::default()] {
-        let patch = fill_loop(&mesh, &[0, 1, 2, 3], &options, &Progress::new()).unwrap();
+        let patch = filled(&mesh, &[0, 1, 2, 3], &options).unwrap();
         let filled = patched(&mesh, std::slice::from_ref(&patch)).unwrap();
         assert!(patch.faces.len() >= 4 && !patch.vertices.is_empty());
         assert!(report(&filled).unwrap().nonmanifold_edges.is_empty());
@@ -307,7 +310,7 @@ fn a_budget_that_a_rim_cannot_meet_gives_way_and_the_patch_stays_bounded() {
         let mesh = wide_ring(n);
         let hole = find_holes(&mesh).unwrap().into_iter().find(|hole| hole.vertices[0] < n).unwrap();
         let options = FillOptions { max_faces, ..FillOptions::default() };
-        let patch = fill_loop(&mesh, &hole.vertices, &options, &Progress::new()).unwrap();
+        let patch = filled(&mesh, &hole.vertices, &options).unwrap();
         let most = 2 * max_faces.max(5 * n as usize);
         assert!(
             (n as usize - 2..most).contains(&patch.faces.len()),
@@ -323,7 +326,7 @@ fn lengths_that_coordinates_cannot_tell_apart_end() {
     let fine = |p: &[f64; 3]| p.map(|x| 1.0 + f64::EPSILON * (1.0 + x.round()));
     let mesh = Mesh::new(shape.vertices.iter().map(fine).collect(), shape.faces).unwrap();
     for hole in find_holes(&mesh).unwrap() {
-        if let Ok(patch) = fill_loop(&mesh, &hole.vertices, &FillOptions::default(), &Progress::new()) {
+        if let Ok(patch) = filled(&mesh, &hole.vertices, &FillOptions::default()) {
             assert!(patch.faces.len() < 10_000, "{} faces", patch.faces.len());
         }
     }
@@ -334,6 +337,6 @@ fn an_edge_length_that_asks_for_more_faces_than_there_is_memory_is_refused() {
     let mesh = wide_ring(40);
     let hole = find_holes(&mesh).unwrap().remove(0).vertices;
     let options = FillOptions { edge_length: Some(1e-12), ..FillOptions::default() };
-    let error = fill_loop(&mesh, &hole, &options, &Progress::new()).unwrap_err();
+    let error = filled(&mesh, &hole, &options).unwrap_err();
     assert!(error.to_string().starts_with("edge_length: 0.000000000001 would make"), "{error}");
 }

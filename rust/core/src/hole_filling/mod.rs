@@ -3,12 +3,11 @@
 //!
 //! 1. [`find_holes`] lists the boundary loops, says which is the outer border of an open sheet and which
 //!    cannot be filled and why ([`Refusal`]).
-//! 2. [`fill_loops`] (or [`fill_loop`] for one) makes the patches: a triangulation of minimum weight [Liepa
+//! 2. [`fill_loops`] makes the patches: a triangulation of minimum weight [Liepa
 //!    2003], his refinement, and isotropic remeshing of the patch alone [Botsch and Kobbelt 2004].
 //!
 //! ```text
 //! find_holes(mesh: &Mesh) -> Result<Vec<Hole>>
-//! fill_loop(mesh: &Mesh, boundary_loop: &[u32], options: &FillOptions, progress: &Progress) -> Result<Patch>
 //! fill_loops(mesh: &Mesh, loops: &[Vec<u32>], options: &FillOptions, progress: &Progress)
 //!     -> Result<Vec<Patch>>
 //! faces_at(mesh: &Mesh, loops: &[Vec<u32>]) -> Result<Vec<u32>>
@@ -48,19 +47,6 @@ use rims::Rims;
 /// A rim encloses nothing if its triangulation has less than this part of its squared length in area:
 /// rounding alone.
 const NO_EXTENT: f64 = 1e-13;
-
-/// Fills one hole; see [`fill_loops`].
-///
-/// # Errors
-/// Those of [`fill_loops`].
-pub fn fill_loop(
-    mesh: &Mesh,
-    boundary_loop: &[u32],
-    options: &FillOptions,
-    progress: &Progress,
-) -> Result<Patch> {
-    Ok(fill_loops(mesh, &[boundary_loop.to_vec()], options, progress)?.pop().unwrap_or_default())
-}
 
 /// Fills holes, each given as the vertices around it in either direction, without repeats ([`find_holes`]).
 ///

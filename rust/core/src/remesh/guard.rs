@@ -111,10 +111,10 @@ fn is_little_bent(mesh: &EditableMesh, v: u32) -> bool {
         |across: Option<Point>, normal: Point| across.is_none_or(|n| cosine(n, normal) > LITTLE_BENT);
     star.iter().all(|&(a, b, normal)| {
         let next = star.iter().find(|other| other.0 == b).map(|other| other.2);
-        let is_last = star.iter().all(|other| other.1 != a);
+        let has_one_before = star.iter().any(|other| other.1 == a);
         is_steady(next.or_else(|| mesh.normal_across(b, v)), normal)
             && is_steady(mesh.normal_across(a, b), normal)
-            && !(is_last && !is_steady(mesh.normal_across(v, a), normal))
+            && (has_one_before || is_steady(mesh.normal_across(v, a), normal))
     })
 }
 

@@ -24,9 +24,9 @@ pub(crate) const EQUILATERAL: f64 = 0.433;
 /// much longer for every unit of distance from there. The patch has this area, and its rim this length, in
 /// edges of length `rim_edge`; `length` is asked for, or else that of the rim.
 ///
-/// With growth g, a rim of length P, and edges of length L there some `P / (0.433 g L)` faces are made, however
-/// large the hole. Edges shorter than the rim's cannot begin there, since nothing cuts the rim: what is asked
-/// for beyond the faces that there may be is then shared out evenly.
+/// With growth g, a rim of length P, and edges of length L there some `P / (0.433 g L)` faces are made,
+/// however large the hole. Edges shorter than the rim's cannot begin there, since nothing cuts the rim: what
+/// is asked for beyond the faces that there may be is then shared out evenly.
 pub(crate) fn length_and_growth(
     area: f64,
     rim: f64,

@@ -55,7 +55,7 @@ impl Completion<'_, '_> {
     /// Forms the ridges on a coarse patch, and makes it fine after that.
     fn sharpen(&mut self, region: &mut Region) -> Result<()> {
         let is_remeshed = self.completed.sharpness > 0.0 && self.options.iterations > 0;
-        // Where a length is asked for, a patch that is coarser after its ridges have formed is made fine again.
+        // Where a length is asked for, a patch that got coarser while its ridges formed is made fine again.
         let most = if self.options.edge_length.is_some() { COARSE_FACES } else { 2 * COARSE_FACES };
         if !is_remeshed || region.mesh.n_faces() - region.n_outer <= most {
             return self.form_ridges(region);

@@ -124,8 +124,8 @@ pub fn filling_demand(mesh: &Mesh, longest: Option<usize>) -> Result<Demand> {
 }
 
 /// What a patch in a rim of so many edges takes: it has as many faces as a disk with that rim has, up to the
-/// bound for all patches, or that bound where an edge length is asked for. The mesh itself is only looked through: a flag and a bit of bookkeeping for each
-/// face.
+/// bound for all patches, or where an edge length is asked for, as that bound says. The mesh itself is only
+/// looked through: a flag and a bit of bookkeeping for each face.
 fn demand(mesh: &Mesh, n_rim_edges: usize, edge_length: Option<f64>) -> Demand {
     let most = budget::patch_faces(FillOptions::default().max_faces, n_rim_edges);
     let disk = edge_length.map_or(n_rim_edges.saturating_mul(n_rim_edges) / 5, |_| most);

@@ -178,7 +178,7 @@ fn numbered(vertices: &[u32]) -> Result<HashMap<u32, u32>> {
 pub(super) mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::hole_filling::{faces_at, fill_loop, find_holes, FillOptions};
+    use crate::hole_filling::{faces_at, fill_loops, find_holes, FillOptions};
     use crate::mesh::vector::{centroid, distance};
     use crate::shapes::Shape;
     use crate::Progress;
@@ -189,7 +189,9 @@ pub(super) mod tests {
         let away = |f: usize| distance(centroid(shape.faces[f].map(|v| shape.vertices[v as usize])), place);
         let mesh = shape.clone().without_faces(|f| away(f) < radius).mesh().unwrap();
         let hole = find_holes(&mesh).unwrap().remove(0).vertices;
-        let patch = fill_loop(&mesh, &hole, &FillOptions::default(), &Progress::new()).unwrap();
+        let patch = fill_loops(&mesh, std::slice::from_ref(&hole), &FillOptions::default(), &Progress::new())
+            .unwrap()
+            .remove(0);
         let at = faces_at(&mesh, std::slice::from_ref(&hole)).unwrap();
         let near = Neighborhoods::new(mesh.connectivity(), &at).unwrap();
         let n = mesh.connectivity().n_vertices() as u32;

@@ -140,7 +140,7 @@ mod tests {
 
     use super::super::neighborhoods::Neighborhoods;
     use super::*;
-    use crate::hole_filling::{faces_at, fill_loop, find_holes, FillOptions};
+    use crate::hole_filling::{faces_at, fill_loops, find_holes, FillOptions};
     use crate::shapes::grid;
 
     #[test]
@@ -150,7 +150,7 @@ mod tests {
         let hole =
             find_holes(&mesh).unwrap().into_iter().find(|hole| !hole.is_outer_border).unwrap().vertices;
         let (progress, coarse) = (Progress::new(), FillOptions { max_faces: 1500, ..FillOptions::default() });
-        let patch = fill_loop(&mesh, &hole, &coarse, &progress).unwrap();
+        let patch = fill_loops(&mesh, std::slice::from_ref(&hole), &coarse, &progress).unwrap().remove(0);
         let at = faces_at(&mesh, std::slice::from_ref(&hole)).unwrap();
         let near = Neighborhoods::new(mesh.connectivity(), &at).unwrap();
         let n = mesh.connectivity().n_vertices() as u32;
