@@ -40,7 +40,7 @@ const TRIED: usize = 3;
 
 /// How many allocations of ours end the process at most, in calls that have been gone through: a number may
 /// fall and not rise. Those of a library can: they have nothing to return an error with.
-const MOST: [(&str, usize); 16] = [
+const MOST: [(&str, usize); 17] = [
     ("stylize", 0),
     ("stylize by levels", 0),
     ("denoise", 0),
@@ -52,6 +52,7 @@ const MOST: [(&str, usize); 16] = [
     ("segment", 0),
     ("segment by levels", 0),
     ("parts", 0),
+    ("facet", 0),
     ("restore", 0),
     ("fill_holes", 0),
     ("remesh", 0),
@@ -60,7 +61,7 @@ const MOST: [(&str, usize); 16] = [
 ];
 
 /// What the names of the functions of libraries begin with.
-const LIBRARIES: [&str; 3] = ["clarabel::", "<clarabel::", "faer::"];
+const LIBRARIES: [&str; 5] = ["clarabel::", "<clarabel::", "faer::", "spade::", "<spade::"];
 
 /// So many functions say where an allocation was asked for.
 const NAMED: usize = 4;
@@ -102,7 +103,7 @@ enum End {
 /// The innermost functions of a backtrace that are not of the standard library, and who called them.
 fn culprit(backtrace: &str) -> String {
     let frames = backtrace.lines().filter_map(|line| line.trim().split_once(": ")).map(|(_, frame)| frame);
-    let owners = ["ridgeform_core", "faer", "clarabel", "rayon"];
+    let owners = ["ridgeform_core", "faer", "clarabel", "rayon", "spade"];
     let own = frames.filter(|frame| owners.iter().any(|name| frame.contains(name)));
     own.take(NAMED).collect::<Vec<_>>().join(" < ")
 }

@@ -260,6 +260,21 @@ pub(crate) fn extend_set<K: Eq + Hash>(
     set.try_reserve(n_further).map_err(|_| SolveError::Memory { needed, limit: None })
 }
 
+/// The different values of an iterator, in a set that grows as it must.
+///
+/// # Errors
+/// [`SolveError::Memory`] when the system does not give that much.
+pub(crate) fn distinct<K: Eq + Hash>(
+    values: impl IntoIterator<Item = K>,
+) -> std::result::Result<HashSet<K>, SolveError> {
+    let mut set = HashSet::new();
+    for value in values {
+        extend_set(&mut set, 1)?;
+        set.insert(value);
+    }
+    Ok(set)
+}
+
 /// Puts a value at the end of a queue, which grows by halves at least.
 ///
 /// # Errors

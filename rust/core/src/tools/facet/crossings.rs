@@ -26,15 +26,16 @@ impl Standing {
         let mut joined = Partition::new(faces.len())?;
         let mut first: HashMap<u32, u32> = HashMap::new();
         for (f, face) in (0..).zip(faces) {
+            memory::extend_map(&mut first, 3)?;
             face.iter().for_each(|&v| joined.unite(*first.entry(v).or_insert(f), f));
         }
-        let piece: Vec<u32> = (0..faces.len() as u32).map(|f| joined.root(f)).collect();
+        let piece: Vec<u32> = memory::gathered((0..faces.len() as u32).map(|f| joined.root(f)))?;
         let of = |[i, j]: [u32; 2]| ordered(piece[i as usize], piece[j as usize]);
         let all = crossings(faces, places)?;
-        let (within, between): (Vec<_>, Vec<_>) =
-            all.into_iter().partition(|&pair| of(pair)[0] == of(pair)[1]);
-        let pieces = between.into_iter().map(of).collect();
-        Ok(Self { pieces, piece, passing: within.into_iter().flatten().collect() })
+        let is_within = |&pair: &[u32; 2]| of(pair)[0] == of(pair)[1];
+        let pieces = memory::distinct(all.iter().filter(|pair| !is_within(pair)).map(|&pair| of(pair)))?;
+        let passing = memory::sifted(all.iter().filter(|pair| is_within(pair)).flatten().copied())?;
+        Ok(Self { pieces, piece, passing })
     }
 
     /// Whether the pieces of two faces pass through each other.
@@ -43,8 +44,8 @@ impl Standing {
     }
 
     /// The labels of faces that pass through others of their piece.
-    pub(super) fn labels(&self, labels: &[u32]) -> HashSet<u32> {
-        self.passing.iter().map(|&f| labels[f as usize]).collect()
+    pub(super) fn labels(&self, labels: &[u32]) -> Result<HashSet<u32>> {
+        Ok(memory::distinct(self.passing.iter().map(|&f| labels[f as usize]))?)
     }
 }
 
@@ -64,12 +65,16 @@ pub(super) fn crossings(triangles: &[[u32; 3]], places: &[[Point; 3]]) -> Result
                 (low[c], high[c]) = (low[c].min(corner[c]), high[c].max(corner[c]));
             }
         }
+        let mut pushed = Ok(());
         tree.visit_box(low, high, &mut |j| {
             let other = j as usize;
             if other > i && (cross(triangles, places, i, other) || cross(triangles, places, other, i)) {
-                found.push([i as u32, j]);
+                if let Err(error) = memory::push(&mut found, [i as u32, j]) {
+                    pushed = Err(error);
+                }
             }
         });
+        pushed?;
     }
     found.sort_unstable();
     Ok(found)

@@ -42,12 +42,12 @@ impl Scan {
     }
 
     /// The integrals over the faces of each of `n` labels.
-    pub(super) fn sums(&self, labels: &[u32], n: usize) -> Vec<Moments> {
-        let mut sums = vec![Moments::default(); n];
+    pub(super) fn sums(&self, labels: &[u32], n: usize) -> Result<Vec<Moments>> {
+        let mut sums = memory::repeated(Moments::default(), n)?;
         for (&label, moments) in labels.iter().zip(&self.moments) {
             sums[label as usize] = sums[label as usize].plus(moments);
         }
-        sums
+        Ok(sums)
     }
 }
 
@@ -62,15 +62,16 @@ pub(super) struct Faces<'s> {
 
 impl Faces<'_> {
     /// Facets with faces that pass through others of their piece on the mesh.
-    pub(super) fn standing(&self) -> HashSet<u32> {
+    pub(super) fn standing(&self) -> Result<HashSet<u32>> {
         self.scan.standing.labels(&self.labels)
     }
 
     /// Gives every facet the integrals over its faces; over its polygon where they are too few.
-    pub(super) fn fit(&self, shape: &mut Shape) {
-        for (k, sum) in self.scan.sums(&self.labels, shape.facets.len()).into_iter().enumerate() {
+    pub(super) fn fit(&self, shape: &mut Shape) -> Result<()> {
+        for (k, sum) in self.scan.sums(&self.labels, shape.facets.len())?.into_iter().enumerate() {
             let own = shape.polygon_moments(&shape.facets[k]);
             shape.facets[k].moments = if sum.area > LITTLE * own.area { sum } else { own };
         }
+        Ok(())
     }
 }

@@ -12,7 +12,7 @@ use crate::mesh::vector::Point;
 use crate::Result;
 
 /// The facets of a shape as triangles, and which of them are unsound.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Inspection {
     pub triangles: Vec<[u32; 3]>,
     /// The facet of each triangle.
@@ -30,48 +30,54 @@ impl Inspection {
         let mut found = Self::default();
         for (k, facet) in (0..).zip(&shape.facets) {
             let is_upright = facet.is_held || facet.moments.faces(facet.plane.normal);
-            let simple = triangles(shape, facet);
+            let simple = triangles(shape, facet)?;
             if !is_upright || simple.is_none() {
-                found.crossed.push(k);
+                memory::push(&mut found.crossed, k)?;
             }
-            let own = simple.unwrap_or_else(|| forced(facet));
+            let own = match simple {
+                Some(own) => own,
+                None => forced(facet)?,
+            };
             memory::extend(&mut found.owners, own.len())?;
             found.owners.extend(own.iter().map(|_| k));
             memory::extend(&mut found.triangles, own.len())?;
             found.triangles.extend(own);
         }
-        found.find_doubled(shape);
+        found.find_doubled(shape)?;
         if is_thorough || found.crossed.is_empty() {
             let pair = |[i, j]: [u32; 2]| {
                 let (p, q) = (found.owners[i as usize], found.owners[j as usize]);
                 [p.min(q), p.max(q)]
             };
             let all = crossings(&found.triangles, &found.places(shape)?)?;
-            let standing = faces.standing();
+            let standing = faces.standing()?;
             let of = |k: u32| shape.facets[k as usize].part;
             let is_old = |[p, q]: [u32; 2]| {
                 faces.scan.standing.has(of(p), of(q)) || (standing.contains(&p) && standing.contains(&q))
             };
-            found.pairs = all.into_iter().map(pair).filter(|&pair| !is_old(pair)).collect();
+            found.pairs = memory::distinct(all.into_iter().map(pair).filter(|&pair| !is_old(pair)))?;
         }
         Ok(found)
     }
 
     /// Facets that share two corners may both have the diagonal between them: four triangles meet there.
-    fn find_doubled(&mut self, shape: &Shape) {
-        let mut sides: HashMap<[u32; 2], u32> = HashMap::with_capacity(3 * self.triangles.len());
+    fn find_doubled(&mut self, shape: &Shape) -> Result<()> {
+        let mut sides: HashMap<[u32; 2], u32> = HashMap::new();
+        memory::extend_map(&mut sides, 3 * self.triangles.len())?;
         for (triangle, &owner) in self.triangles.iter().zip(&self.owners) {
             for side in shape::sides(triangle) {
                 let Some(other) = sides.insert(side, owner) else { continue };
                 // What meets along more than one side does so on the mesh.
                 let is_side = |k: u32| shape.facets[k as usize].sides().any(|own| own == side);
                 if !(is_side(other) && is_side(owner)) {
+                    memory::extend(&mut self.crossed, 2)?;
                     self.crossed.extend([other, owner]);
                 }
             }
         }
         self.crossed.sort_unstable();
         self.crossed.dedup();
+        Ok(())
     }
 
     /// The places of the triangles.
@@ -80,11 +86,11 @@ impl Inspection {
     }
 
     /// Facets that are crossed or pass through others.
-    pub(super) fn faults(&self) -> Vec<u32> {
-        let mut all: Vec<u32> = self.crossed.iter().chain(self.pairs.iter().flatten()).copied().collect();
+    pub(super) fn faults(&self) -> Result<Vec<u32>> {
+        let mut all = memory::sifted(self.crossed.iter().chain(self.pairs.iter().flatten()).copied())?;
         all.sort_unstable();
         all.dedup();
-        all
+        Ok(all)
     }
 }
 
@@ -98,8 +104,10 @@ pub(super) struct Unsound {
 impl Unsound {
     pub(super) fn new(shape: &Shape, faces: &Faces<'_>) -> Result<Self> {
         let inspection = Inspection::new(shape, faces, true)?;
-        let mut facets = inspection.faults();
-        facets.extend((0..shape.facets.len() as u32).filter(|&k| shape.off_plane(k) > FLAT));
+        let mut facets = inspection.faults()?;
+        for k in (0..shape.facets.len() as u32).filter(|&k| shape.off_plane(k) > FLAT) {
+            memory::push(&mut facets, k)?;
+        }
         // What stays is as it was on the mesh.
         facets.retain(|&k| !shape.facets[k as usize].is_held);
         facets.sort_unstable();
@@ -108,31 +116,29 @@ impl Unsound {
     }
 
     /// Of facets that touch or pass through each other those of highest rank.
-    pub(super) fn latest(&self, shape: &Shape, rank: impl Fn(u32) -> u32) -> Vec<u32> {
+    pub(super) fn latest(&self, shape: &Shape, rank: impl Fn(u32) -> u32) -> Result<Vec<u32>> {
         let mut highest: HashMap<u32, u32> = HashMap::new();
         for &k in &self.facets {
             for c in shape.facets[k as usize].corners() {
+                memory::extend_map(&mut highest, 1)?;
                 let most = highest.entry(c).or_default();
                 *most = (*most).max(rank(k));
             }
         }
-        let beaten: HashSet<u32> = self
-            .pairs
-            .iter()
-            .filter(|pair| pair.iter().all(|&k| !shape.facets[k as usize].is_held))
-            .filter_map(|&[p, q]| match rank(p).cmp(&rank(q)) {
-                std::cmp::Ordering::Less => Some(p),
-                std::cmp::Ordering::Greater => Some(q),
-                std::cmp::Ordering::Equal => None,
-            })
-            .collect();
+        let are_made = |pair: &&[u32; 2]| pair.iter().all(|&k| !shape.facets[k as usize].is_held);
+        let lower = |&[p, q]: &[u32; 2]| match rank(p).cmp(&rank(q)) {
+            std::cmp::Ordering::Less => Some(p),
+            std::cmp::Ordering::Greater => Some(q),
+            std::cmp::Ordering::Equal => None,
+        };
+        let beaten: HashSet<u32> = memory::distinct(self.pairs.iter().filter(are_made).filter_map(lower))?;
         let is_highest = |k: u32| shape.facets[k as usize].corners().all(|c| highest[&c] <= rank(k));
-        let chosen: Vec<u32> =
-            self.facets.iter().copied().filter(|&k| is_highest(k) && !beaten.contains(&k)).collect();
+        let is_chosen = |&k: &u32| is_highest(k) && !beaten.contains(&k);
+        let chosen: Vec<u32> = memory::sifted(self.facets.iter().copied().filter(is_chosen))?;
         // Ranks that beat each other around a circle of touching and passing.
         if chosen.is_empty() {
-            return self.facets.clone();
+            return Ok(memory::twin(&self.facets)?);
         }
-        chosen
+        Ok(chosen)
     }
 }

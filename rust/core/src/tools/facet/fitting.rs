@@ -17,13 +17,13 @@ use crate::Result;
 pub(super) fn settle(shape: &mut Shape, faces: &mut Faces<'_>, progress: &Progress) -> Result<()> {
     for round in 0..=REPAIRS {
         progress.check()?;
-        *shape = shape.at_home();
+        *shape = shape.at_home()?;
         shape.facets.iter_mut().for_each(|facet| facet.plane = facet.moments.fit().plane);
         let homes = memory::gathered(shape.corners.iter().map(|corner| corner.home))?;
         flatten(shape, STAY, &homes)?;
-        let faulty = Inspection::new(shape, faces, false)?.faults();
-        if faulty.is_empty() || round == REPAIRS || progress.is_finishing() || !repair(shape, faces, &faulty)
-        {
+        let faulty = Inspection::new(shape, faces, false)?.faults()?;
+        let is_last = faulty.is_empty() || round == REPAIRS || progress.is_finishing();
+        if is_last || !repair(shape, faces, &faulty)? {
             break;
         }
     }
@@ -35,19 +35,20 @@ pub(super) fn settle(shape: &mut Shape, faces: &mut Faces<'_>, progress: &Progre
 pub(super) fn refine(shape: &mut Shape, faces: &mut Faces<'_>, progress: &Progress) -> Result<()> {
     let mut inspection = Inspection::new(shape, faces, true)?;
     let (mut labels, distance) = measured(shape, faces, &inspection)?;
-    let mut best = (distance, shape.clone());
+    let mut best = (distance, shape.twin()?);
     let mut n_idle = 0;
     while n_idle < IDLE.count && !progress.is_finishing() {
         faces.labels = labels;
-        faces.fit(shape);
-        let Some(next) = fitted(shape, faces, &inspection.faults(), NOISE * best.0, progress)? else { break };
+        faces.fit(shape)?;
+        let faults = inspection.faults()?;
+        let Some(next) = fitted(shape, faces, &faults, NOISE * best.0, progress)? else { break };
         *shape = next;
         inspection = Inspection::new(shape, faces, true)?;
         let distance;
         (labels, distance) = measured(shape, faces, &inspection)?;
         n_idle = if distance < IDLE.factor * best.0 { 0 } else { n_idle + 1 };
         if distance < best.0 {
-            best = (distance, shape.clone());
+            best = (distance, shape.twin()?);
         }
     }
     *shape = best.1;
@@ -88,9 +89,9 @@ fn fitted(
     let aims = memory::gathered(shape.corners.iter().map(aim))?;
     for _ in 0..TRIES.count {
         progress.check()?;
-        let mut trial = shape.clone();
+        let mut trial = shape.twin()?;
         let off = flatten(&mut trial, FITTING, &aims)?;
-        let mut faulty = Inspection::new(&trial, faces, false)?.faults();
+        let mut faulty = Inspection::new(&trial, faces, false)?.faults()?;
         faulty.retain(|k| !before.contains(k));
         if faulty.is_empty() {
             return Ok((off <= FLAT.max(shape.off_planes())).then_some(trial));
@@ -112,25 +113,32 @@ pub(super) fn fold(shape: &mut Shape, faces: &mut Faces<'_>) -> Result<()> {
         let here = memory::gathered(shape.corners.iter().map(|corner| corner.point))?;
         flatten(shape, STAY, &here)?;
     }
-    let home = shape.at_home();
-    let mut facets = Vec::with_capacity(shape.facets.len());
-    let mut place = Vec::with_capacity(shape.facets.len());
+    let home = shape.at_home()?;
+    let mut facets = Vec::new();
+    let mut place = memory::room(shape.facets.len())?;
     for (k, facet) in (0..).zip(&shape.facets) {
         place.push(facets.len() as u32);
-        let here = triangles(shape, facet);
+        let here = triangles(shape, facet)?;
         if facet.is_held || facet.is_triangle() || (here.is_some() && shape.off_plane(k) <= FLAT) {
-            facets.push(facet.clone());
+            memory::push(&mut facets, facet.twin()?)?;
             continue;
         }
-        let at_home = || triangles(&home, facet).unwrap_or_else(|| forced(facet));
-        for triangle in here.unwrap_or_else(at_home) {
+        let found = match here {
+            Some(found) => Some(found),
+            None => triangles(&home, facet)?,
+        };
+        let triangles = match found {
+            Some(found) => found,
+            None => forced(facet)?,
+        };
+        for triangle in triangles {
             let corners = triangle.map(|c| shape.point(c));
             let area = area_vector(corners);
             let plane = if norm(area) > 0.0 { Plane::through(corners[0], unit(area)) } else { facet.plane };
             // One that comes out turned over is seen by where it was.
             let moments = Moments::of(triangle.map(|c| shape.home(c)));
             let loops = vec![triangle.to_vec()];
-            facets.push(Facet { loops, plane, moments, is_held: false, part: facet.part });
+            memory::push(&mut facets, Facet { loops, plane, moments, is_held: false, part: facet.part })?;
         }
     }
     // One without corners, as of two faces that lie on each other, leaves nothing; its faces go to another.
@@ -142,14 +150,17 @@ pub(super) fn fold(shape: &mut Shape, faces: &mut Faces<'_>) -> Result<()> {
 }
 
 /// Puts the facets that were made before the faces that stay; returns how many they are.
-pub(super) fn order(shape: &mut Shape, faces: &mut Faces<'_>) -> usize {
-    let (mut made, held): (Vec<u32>, Vec<u32>) =
-        (0..shape.facets.len() as u32).partition(|&k| !shape.facets[k as usize].is_held);
-    let n_made = made.len();
-    made.extend(held);
-    let mut place = vec![0; made.len()];
-    (0..).zip(&made).for_each(|(fresh, &k)| place[k as usize] = fresh);
+pub(super) fn order(shape: &mut Shape, faces: &mut Faces<'_>) -> Result<usize> {
+    let n_made = shape.facets.iter().filter(|facet| !facet.is_held).count();
+    let mut place = memory::room(shape.facets.len())?;
+    let (mut made, mut held) = (0..n_made as u32, n_made as u32..);
+    place.extend(shape.facets.iter().filter_map(|f| if f.is_held { held.next() } else { made.next() }));
     faces.labels.iter_mut().for_each(|label| *label = place[*label as usize]);
-    shape.facets = made.iter().map(|&k| shape.facets[k as usize].clone()).collect();
-    n_made
+    let (mut facets, mut held) = (memory::room(place.len())?, memory::room(place.len() - n_made)?);
+    for facet in std::mem::take(&mut shape.facets) {
+        if facet.is_held { &mut held } else { &mut facets }.push(facet);
+    }
+    facets.append(&mut held);
+    shape.facets = facets;
+    Ok(n_made)
 }

@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, HashMap};
 use super::merging::Merges;
 use super::regions::Regions;
 use crate::mesh::partition::Partition;
-use crate::Result;
+use crate::{memory, Result};
 
 /// Nodes below `n` are faces; the others come in the order in which they were made.
 #[derive(Debug)]
@@ -24,7 +24,7 @@ impl Hierarchy {
     pub(super) fn new(merges: &Merges, n: usize, n_merges: usize) -> Result<(Self, Cut)> {
         let n_merges = (0..=n_merges).rev().find(|&i| i == 0 || merges.is_last[i - 1]).unwrap_or(0);
         let mut sets = Partition::new(n)?;
-        let mut node: Vec<u32> = (0..n as u32).collect();
+        let mut node: Vec<u32> = memory::numbers(n)?;
         let mut cut: Cut = node.iter().copied().collect();
         let mut made = Vec::new();
         let (mut parts, mut first) = (BTreeSet::new(), 0);
@@ -36,7 +36,8 @@ impl Hierarchy {
             let fresh = (n + made.len()) as u32;
             node[sets.root(kept) as usize] = fresh;
             if merges.is_last[i] {
-                made.push((std::mem::take(&mut parts).into_iter().collect(), first..i + 1));
+                let whole = memory::gathered(std::mem::take(&mut parts))?;
+                memory::push(&mut made, (whole, first..i + 1))?;
                 cut.insert(fresh);
                 first = i + 1;
             }
@@ -66,61 +67,70 @@ impl Hierarchy {
     }
 
     /// The node of the cut that holds each face.
-    pub(super) fn nodes(&self, cut: &Cut) -> Vec<u32> {
-        let mut nodes = vec![0; self.n];
+    pub(super) fn nodes(&self, cut: &Cut) -> Result<Vec<u32>> {
+        let mut nodes = memory::repeated(0, self.n)?;
         for &top in cut {
             let mut stack = vec![top];
             while let Some(node) = stack.pop() {
+                memory::extend(&mut stack, self.parts(node).len())?;
                 stack.extend(self.parts(node));
                 if self.is_face(node) {
                     nodes[node as usize] = top;
                 }
             }
         }
-        nodes
+        Ok(nodes)
     }
 
     /// The regions of a cut, numbered in the order of their first faces, and their nodes.
-    pub(super) fn labels(&self, cut: &Cut) -> (Vec<u32>, Vec<u32>) {
-        let nodes = self.nodes(cut);
-        let (mut names, mut tops) = (HashMap::new(), Vec::new());
+    pub(super) fn labels(&self, cut: &Cut) -> Result<(Vec<u32>, Vec<u32>)> {
+        let nodes = self.nodes(cut)?;
+        let (mut names, mut tops) = (HashMap::new(), memory::room(cut.len())?);
+        memory::extend_map(&mut names, cut.len())?;
         let mut name = |node: &u32| {
             *names.entry(*node).or_insert_with(|| {
                 tops.push(*node);
                 tops.len() as u32 - 1
             })
         };
-        let labels = nodes.iter().map(&mut name).collect();
-        (labels, tops)
+        let labels = memory::gathered(nodes.iter().map(&mut name))?;
+        Ok((labels, tops))
     }
 
     /// Splits nodes until all can be facets beside each other, always the latest of those in the way: where
     /// all are as when a node was made, it can.
-    pub(super) fn close<'a>(&self, cut: &mut Cut, regions: impl Fn(&[u32], usize) -> Regions<'a>) {
+    pub(super) fn close<'a>(
+        &self,
+        cut: &mut Cut,
+        regions: impl Fn(&[u32], usize) -> Result<Regions<'a>>,
+    ) -> Result<()> {
         loop {
-            let (labels, tops) = self.labels(cut);
-            let regions = regions(&labels, tops.len());
+            let (labels, tops) = self.labels(cut)?;
+            let regions = regions(&labels, tops.len())?;
             let latest = |of: Vec<u32>| of.into_iter().map(|r| tops[r as usize]).max();
-            let split: BTreeSet<u32> = (0..tops.len() as u32)
-                .filter_map(|region| regions.in_the_way(region).and_then(latest))
-                .filter(|&node| !self.is_face(node))
-                .collect();
+            let mut split: BTreeSet<u32> = BTreeSet::new();
+            for region in 0..tops.len() as u32 {
+                let node = regions.in_the_way(region)?.and_then(latest);
+                split.extend(node.filter(|&node| !self.is_face(node)));
+            }
             if split.is_empty() {
-                return;
+                return Ok(());
             }
             split.into_iter().for_each(|node| self.split(cut, node));
         }
     }
 
     /// The merges within the nodes of the cut, in their order.
-    pub(super) fn within(&self, cut: &Cut) -> Vec<usize> {
+    pub(super) fn within(&self, cut: &Cut) -> Result<Vec<usize>> {
         let mut found = Vec::new();
-        let mut stack: Vec<u32> = cut.iter().copied().collect();
+        let mut stack: Vec<u32> = memory::gathered(cut.iter().copied())?;
         while let Some(node) = stack.pop() {
+            memory::extend(&mut found, self.merges(node).len())?;
             found.extend(self.merges(node));
+            memory::extend(&mut stack, self.parts(node).len())?;
             stack.extend(self.parts(node));
         }
         found.sort_unstable();
-        found
+        Ok(found)
     }
 }

@@ -3,6 +3,7 @@
 use super::options::FacetOptions;
 use super::regions::OUTSIDE;
 use crate::error::MeshError;
+use crate::memory;
 use crate::mesh::vector::{between, distance, scale, sub, Point};
 use crate::mesh::Working;
 use crate::Result;
@@ -34,11 +35,12 @@ impl<'a> Job<'a> {
         }
         let (center, diagonal) = (between(low, high, 0.5), distance(low, high));
         let is_sound = |f: &[u32; 3]| f[0] != f[1] && f[1] != f[2] && f[2] != f[0];
-        let parts: Vec<u32> = (0..).zip(faces).filter(|(_, face)| is_sound(face)).map(|(f, _)| f).collect();
+        let sound = (0..).zip(faces).filter(|(_, face)| is_sound(face));
+        let parts: Vec<u32> = memory::sifted(sound.map(|(f, _)| f))?;
         if parts.is_empty() || !(diagonal > 0.0 && diagonal.is_finite()) {
             return Err(MeshError::NoFaces.into());
         }
-        let mut is_fixed = vec![false; positions.len()];
+        let mut is_fixed = memory::repeated(false, positions.len())?;
         if let Some(mask) = &options.faces {
             let unselected = faces.iter().zip(mask).filter(|(_, &selected)| !selected);
             unselected.flat_map(|(face, _)| face).for_each(|&v| is_fixed[v as usize] = true);
@@ -48,22 +50,30 @@ impl<'a> Job<'a> {
             working,
             center,
             diagonal,
-            positions: positions.iter().map(|&p| scale(sub(p, center), 1.0 / diagonal)).collect(),
-            is_held: parts.iter().map(is_held).collect(),
+            positions: memory::gathered(positions.iter().map(|&p| scale(sub(p, center), 1.0 / diagonal)))?,
+            is_held: memory::gathered(parts.iter().map(is_held))?,
             is_fixed,
             parts,
         })
     }
 
     /// Labels of all faces from those of the parts.
-    pub(super) fn labels(&self, of_parts: impl IntoIterator<Item = u32>) -> Vec<u32> {
-        let mut labels = vec![OUTSIDE; self.working.mesh().connectivity().n_faces()];
+    ///
+    /// # Errors
+    /// [`crate::error::SolveError::Memory`].
+    pub(super) fn labels(&self, of_parts: impl IntoIterator<Item = u32>) -> Result<Vec<u32>> {
+        let mut labels = memory::repeated(OUTSIDE, self.working.mesh().connectivity().n_faces())?;
         self.parts.iter().zip(of_parts).for_each(|(&f, label)| labels[f as usize] = label);
-        labels
+        Ok(labels)
     }
 
-    pub(super) fn places(&self) -> Vec<[Point; 3]> {
+    /// The places of the parts.
+    ///
+    /// # Errors
+    /// [`crate::error::SolveError::Memory`].
+    pub(super) fn places(&self) -> Result<Vec<[Point; 3]>> {
         let faces = self.working.mesh().connectivity().faces();
-        self.parts.iter().map(|&f| faces[f as usize].map(|v| self.positions[v as usize])).collect()
+        let place = |&f: &u32| faces[f as usize].map(|v| self.positions[v as usize]);
+        Ok(memory::gathered(self.parts.iter().map(place))?)
     }
 }

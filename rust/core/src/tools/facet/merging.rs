@@ -52,11 +52,16 @@ struct Refused {
 }
 
 impl Refused {
-    fn push(&mut self, pair: [u32; 2]) {
+    fn push(&mut self, pair: [u32; 2]) -> Result<()> {
         // Once, however often it was offered: its offers would double whenever both its regions change.
+        memory::extend_set(&mut self.waiting, 1)?;
         if self.waiting.insert(pair) {
-            pair.into_iter().for_each(|region| self.at.entry(region).or_default().push(pair));
+            memory::extend_map(&mut self.at, 2)?;
+            for region in pair {
+                memory::push(self.at.entry(region).or_default(), pair)?;
+            }
         }
+        Ok(())
     }
 
     fn take(&mut self, region: u32) -> Vec<[u32; 2]> {
@@ -78,28 +83,29 @@ pub(super) fn merges(
     on_mesh: impl Fn(Point) -> Point,
     progress: &Progress,
 ) -> Result<Merges> {
-    let fits: Vec<_> = moments.iter().map(Moments::fit).collect();
+    let fits: Vec<_> = memory::gathered(moments.iter().map(Moments::fit))?;
     let mut total: f64 = fits.iter().map(|fit| fit.squared_distance).sum();
     let n = moments.len();
-    let energies = fits.iter().map(|fit| fit.energy).collect();
+    let energies = memory::gathered(fits.iter().map(|fit| fit.energy))?;
     let mut merging = Merging {
         regions,
         moments,
         energies,
-        stamps: vec![0; n],
+        stamps: memory::repeated(0, n)?,
         heap: BinaryHeap::new(),
         refused: Refused::default(),
         apart: HashMap::new(),
         weight,
     };
     for &[p, q] in apart {
-        merging.apart.entry(p).or_default().push(q);
-        merging.apart.entry(q).or_default().push(p);
+        memory::extend_map(&mut merging.apart, 2)?;
+        memory::push(merging.apart.entry(p).or_default(), q)?;
+        memory::push(merging.apart.entry(q).or_default(), p)?;
     }
     for p in (0..n as u32).filter(|&p| !held[p as usize]) {
-        for (q, border) in merging.regions.neighbors(p) {
+        for (q, border) in merging.regions.neighbors(p)? {
             if q > p && !held[q as usize] {
-                merging.propose(p, q, &border);
+                merging.propose(p, q, &border)?;
             }
         }
     }
@@ -114,27 +120,24 @@ pub(super) fn merges(
         }
         if merging.stamp(&set) != stamp {
             if !set.is_pair() {
-                merging.propose_again(set.first_two());
+                merging.propose_again(set.first_two())?;
             }
             continue;
         }
-        let Some(whole) = merging.regions.closure(set, |r| held[r as usize], |set| merging.cost(set)) else {
-            merging.refused.push(set.first_two());
+        let closed = merging.regions.closure(set, |r| held[r as usize], |set| merging.cost(set))?;
+        let Some(whole) = closed.filter(|whole| !merging.is_apart(whole)) else {
+            merging.refused.push(set.first_two())?;
             continue;
         };
-        if merging.is_apart(&whole) {
-            merging.refused.push(set.first_two());
-            continue;
-        }
         if whole != set {
-            merging.refused.push(set.first_two());
-            merging.offer(whole, cost);
+            merging.refused.push(set.first_two())?;
+            merging.offer(whole, cost)?;
             continue;
         }
         // Only now, as it takes a walk along the border: what was offered is the least that it costs.
-        let straight = of_planes + merging.regions.straightened(&set, &on_mesh);
+        let straight = of_planes + merging.regions.straightened(&set, &on_mesh)?;
         if straight > cost * (1.0 + f64::EPSILON) {
-            merging.heap.push(Reverse((Ordered(straight), set, stamp, Ordered(of_planes))));
+            merging.push(straight, set, of_planes)?;
             continue;
         }
         let mut members = set.iter();
@@ -142,28 +145,30 @@ pub(super) fn merges(
         for other in members {
             let before = [kept, other].map(|r| merging.moments[r as usize].fit().squared_distance);
             let joined = merging.moments[kept as usize].plus(&merging.moments[other as usize]);
-            let [stays, gone] = merging.regions.merge(kept, other);
+            let [stays, gone] = merging.regions.merge(kept, other)?;
             let fit = joined.fit();
             total += fit.squared_distance - before[0] - before[1];
             merging.moments[stays as usize] = joined;
             merging.energies[stays as usize] = fit.energy;
             [stays, gone].into_iter().for_each(|r| merging.stamps[r as usize] += 1);
-            merging.rename(gone, stays);
+            merging.rename(gone, stays)?;
             kept = stays;
-            made.pairs.push([stays, gone]);
-            made.costs.push(cost);
-            made.squared_distances.push(total.max(0.0));
-            made.is_whole.push(false);
-            made.is_last.push(false);
+            memory::push(&mut made.pairs, [stays, gone])?;
+            memory::push(&mut made.costs, cost)?;
+            memory::push(&mut made.squared_distances, total.max(0.0))?;
+            memory::push(&mut made.is_whole, false)?;
+            memory::push(&mut made.is_last, false)?;
         }
         made.is_whole.last_mut().into_iter().for_each(|whole| *whole = true);
         made.is_last.last_mut().into_iter().for_each(|last| *last = true);
-        for (r, border) in merging.regions.neighbors(kept) {
+        for (r, border) in merging.regions.neighbors(kept)? {
             if !held[r as usize] {
-                merging.propose(kept, r, &border);
+                merging.propose(kept, r, &border)?;
             }
             // What could not be merged beside something else may be now.
-            merging.refused.take(r).into_iter().for_each(|pair| merging.propose_again(pair));
+            for pair in merging.refused.take(r) {
+                merging.propose_again(pair)?;
+            }
         }
     }
     Ok(made)
@@ -171,28 +176,36 @@ pub(super) fn merges(
 
 impl<W: Fn(u32) -> f64> Merging<'_, '_, W> {
     /// Offers to merge two neighbors.
-    fn propose(&mut self, p: u32, q: u32, border: &[u32]) {
+    fn propose(&mut self, p: u32, q: u32, border: &[u32]) -> Result<()> {
         let weight = border.iter().map(|&h| (self.weight)(h)).sum::<f64>() / border.len().max(1) as f64;
         let set = Set::pair(p, q);
         if self.is_apart(&set) {
-            return;
+            return Ok(());
         }
         let cost = self.cost(&set) / weight.max(f64::MIN_POSITIVE);
-        self.heap.push(Reverse((Ordered(cost), set, self.stamp(&set), Ordered(cost))));
+        self.push(cost, set, cost)
     }
 
     /// Offers to merge a pair that was refused before, if both are still neighbors.
-    fn propose_again(&mut self, [p, q]: [u32; 2]) {
-        let border = self.regions.between(p, q);
-        if !border.is_empty() {
-            self.propose(p, q, &border);
+    fn propose_again(&mut self, [p, q]: [u32; 2]) -> Result<()> {
+        let border = self.regions.between(p, q)?;
+        if border.is_empty() {
+            return Ok(());
         }
+        self.propose(p, q, &border)
     }
 
     /// Offers to merge several regions, for no less than `least`.
-    fn offer(&mut self, set: Set, least: f64) {
+    fn offer(&mut self, set: Set, least: f64) -> Result<()> {
         let cost = self.cost(&set).max(least);
-        self.heap.push(Reverse((Ordered(cost), set, self.stamp(&set), Ordered(cost))));
+        self.push(cost, set, cost)
+    }
+
+    fn push(&mut self, cost: f64, set: Set, of_planes: f64) -> Result<()> {
+        let stamp = self.stamp(&set);
+        memory::extend_heap(&mut self.heap, 1)?;
+        self.heap.push(Reverse((Ordered(cost), set, stamp, Ordered(of_planes))));
+        Ok(())
     }
 
     fn joined(&self, set: &Set) -> Moments {
@@ -215,15 +228,19 @@ impl<W: Fn(u32) -> f64> Merging<'_, '_, W> {
     }
 
     /// What was to be apart from a region that is gone is to be so from the one that it became part of.
-    fn rename(&mut self, gone: u32, kept: u32) {
+    fn rename(&mut self, gone: u32, kept: u32) -> Result<()> {
         let others = self.apart.remove(&gone).unwrap_or_default();
         for other in &others {
             let named = self.apart.get_mut(other).into_iter().flatten();
             named.filter(|r| **r == gone).for_each(|r| *r = kept);
         }
         if !others.is_empty() {
-            self.apart.entry(kept).or_default().extend(others);
+            memory::extend_map(&mut self.apart, 1)?;
+            let all = self.apart.entry(kept).or_default();
+            memory::extend(all, others.len())?;
+            all.extend(others);
         }
+        Ok(())
     }
 
     /// How often the regions have changed.
@@ -233,27 +250,44 @@ impl<W: Fn(u32) -> f64> Merging<'_, '_, W> {
 }
 
 impl Merges {
+    /// The same.
+    pub(super) fn twin(&self) -> Result<Self> {
+        Ok(Self {
+            pairs: memory::twin(&self.pairs)?,
+            costs: memory::twin(&self.costs)?,
+            squared_distances: memory::twin(&self.squared_distances)?,
+            is_whole: memory::twin(&self.is_whole)?,
+            is_last: memory::twin(&self.is_last)?,
+        })
+    }
+
     /// Some of them, after which all are facets.
-    pub(super) fn only(&self, which: &[usize]) -> Self {
-        let mut is_whole = vec![false; which.len()];
+    pub(super) fn only(&self, which: &[usize]) -> Result<Self> {
+        let mut is_whole = memory::repeated(false, which.len())?;
         is_whole.last_mut().into_iter().for_each(|whole| *whole = true);
-        Self {
-            pairs: which.iter().map(|&i| self.pairs[i]).collect(),
-            costs: which.iter().map(|&i| self.costs[i]).collect(),
-            squared_distances: which.iter().map(|&i| self.squared_distances[i]).collect(),
-            is_last: which.iter().map(|&i| self.is_last[i]).collect(),
+        Ok(Self {
+            pairs: memory::gathered(which.iter().map(|&i| self.pairs[i]))?,
+            costs: memory::gathered(which.iter().map(|&i| self.costs[i]))?,
+            squared_distances: memory::gathered(which.iter().map(|&i| self.squared_distances[i]))?,
+            is_last: memory::gathered(which.iter().map(|&i| self.is_last[i]))?,
             is_whole,
-        }
+        })
     }
 
     /// The same and then others, whose regions have these `names` here.
-    pub(super) fn followed_by(mut self, others: Self, names: &[u32]) -> Self {
+    pub(super) fn followed_by(mut self, others: Self, names: &[u32]) -> Result<Self> {
+        let n = others.pairs.len();
+        memory::extend(&mut self.pairs, n)?;
+        memory::extend(&mut self.costs, n)?;
+        memory::extend(&mut self.squared_distances, n)?;
+        memory::extend(&mut self.is_whole, n)?;
+        memory::extend(&mut self.is_last, n)?;
         self.pairs.extend(others.pairs.into_iter().map(|pair| pair.map(|r| names[r as usize])));
         self.costs.extend(others.costs);
         self.squared_distances.extend(others.squared_distances);
         self.is_whole.extend(others.is_whole);
         self.is_last.extend(others.is_last);
-        self
+        Ok(self)
     }
 
     /// The regions of `n` that are `count` after the first merges,

@@ -1,12 +1,12 @@
 //! Facets: a mesh as a polyhedron of flat polygons with straight ridges, as a low-poly artist models.
 //!
-//! Faces are merged into regions, always those that cost least ([`merging`], after Garland, Willmott and
-//! Heckbert 2001), as long as the regions can be the facets of a polyhedron ([`regions`]). Where three
-//! regions meet is a corner ([`shape`]). Then planes and corners are found together, such that every corner
-//! lies on all of its planes and the planes are near the faces ([`mod@solve`]); facets that cross themselves
-//! or others ([`faults`], [`crossings`]) are repaired ([`mod@repair`]), or the merges that made them refused
-//! ([`refusals`], [`search`]); faces are given to the nearest facet, and the planes fitted anew, in turns
-//! ([`fitting`]), as in variational shape approximation [Cohen-Steiner, Alliez and Desbrun 2004].
+//! Faces are merged into regions ([`regions`]), always those that cost least ([`merging`], after Garland,
+//! Willmott and Heckbert 2001), as long as the regions can be the facets of a polyhedron ([`verdict`]). Where
+//! three regions meet is a corner ([`shape`]). Then planes and corners are found together, such that every
+//! corner lies on all of its planes and the planes are near the faces ([`mod@solve`]); facets that cross
+//! themselves or others ([`faults`], [`crossings`]) are repaired ([`mod@repair`]), or the merges that made
+//! them refused ([`refusals`], [`search`]); faces are given to the nearest facet, and the planes fitted anew,
+//! in turns ([`fitting`]), as in variational shape approximation [Cohen-Steiner, Alliez and Desbrun 2004].
 
 mod constants;
 mod count;
@@ -28,10 +28,11 @@ mod shape;
 mod solve;
 mod straight;
 mod triangulation;
+mod verdict;
 
 pub use options::FacetOptions;
 
-use crate::memory::Tool;
+use crate::memory::{self, Tool};
 use crate::mesh::vector::{add, scale, Point};
 use crate::mesh::{Mesh, Working};
 use crate::progress::Progress;
@@ -100,24 +101,25 @@ pub fn facet(
         let job = Job::new(&working, options)?;
         let scan = job.scan()?;
         let merges = match merges {
-            Some(merges) => merges.0.clone(),
+            Some(merges) => merges.0.twin()?,
             None => {
-                let refusals = Refusals::new(job.is_held.clone());
+                let refusals = Refusals::new(memory::twin(&job.is_held)?)?;
                 job.merges(Merges::default(), &scan, &refusals, options, progress)?
             }
         };
         let found = job.found(&merges, &scan, options, progress)?;
-        Ok(job.given(mesh, found, merges, progress))
+        job.given(mesh, found, merges, progress)
     })
 }
 
 impl Job<'_> {
     /// The result in the mesh's own coordinates.
-    fn given(&self, mesh: &Mesh, found: Found, merges: Merges, progress: &Progress) -> Faceted {
+    fn given(&self, mesh: &Mesh, found: Found, merges: Merges, progress: &Progress) -> Result<Faceted> {
         let Found { shape, inspection, labels, distances, n_facets, n_crossings } = found;
         let original = mesh.positions().unwrap_or_default();
-        let mut names = vec![OUTSIDE; shape.corners.len()];
-        let (mut vertices, mut origins) = (Vec::new(), Vec::new());
+        let n_corners = shape.corners.len();
+        let mut names = memory::repeated(OUTSIDE, n_corners)?;
+        let (mut vertices, mut origins) = (memory::room(n_corners)?, memory::room(n_corners)?);
         let mut name = |c: u32| {
             if names[c as usize] == OUTSIDE {
                 names[c as usize] = vertices.len() as u32;
@@ -130,17 +132,17 @@ impl Job<'_> {
             }
             names[c as usize]
         };
-        let faces: Vec<[u32; 3]> = inspection.triangles.iter().map(|t| t.map(&mut name)).collect();
+        let faces: Vec<[u32; 3]> = memory::gathered(inspection.triangles.iter().map(|t| t.map(&mut name)))?;
         let (mut polygons, mut polygon_facets) = (Vec::new(), Vec::new());
         let mut start = 0;
         for group in inspection.owners.chunk_by(|a, b| a == b) {
-            for polygon in triangulation::polygons(&faces[start..start + group.len()]) {
-                polygons.push(polygon);
-                polygon_facets.push(group[0]);
+            for polygon in triangulation::polygons(&faces[start..start + group.len()])? {
+                memory::push(&mut polygons, polygon)?;
+                memory::push(&mut polygon_facets, group[0])?;
             }
             start += group.len();
         }
-        let mut of_faces = vec![-1; mesh.connectivity().n_faces()];
+        let mut of_faces = memory::repeated(-1, mesh.connectivity().n_faces())?;
         self.parts.iter().zip(labels).for_each(|(&f, label)| of_faces[f as usize] = label as i32);
         let plane = |facet: &shape::Facet| {
             let on = self
@@ -149,7 +151,7 @@ impl Job<'_> {
             let normal = facet.plane.normal;
             [normal[0], normal[1], normal[2], crate::mesh::vector::dot(normal, on)]
         };
-        Faceted {
+        Ok(Faceted {
             vertices,
             origins,
             polygons,
@@ -157,13 +159,13 @@ impl Job<'_> {
             face_facets: inspection.owners,
             faces,
             labels: of_faces,
-            planes: shape.facets.iter().map(plane).collect(),
+            planes: memory::gathered(shape.facets.iter().map(plane))?,
             n_facets,
             rms: distances.rms * self.diagonal,
             largest: distances.largest * self.diagonal,
             n_crossings,
             status: if progress.is_finishing() { Status::Stopped } else { Status::Solved },
             merges: FacetMerges(merges),
-        }
+        })
     }
 }

@@ -9,6 +9,7 @@ use super::hierarchy::{Cut, Hierarchy};
 use super::merging::Merges;
 use super::regions::Regions;
 use super::shape::Shape;
+use crate::{memory, Result};
 
 /// What is not to be merged.
 #[derive(Debug)]
@@ -25,8 +26,9 @@ pub(super) struct Refusals {
 
 impl Refusals {
     /// None yet, beside faces that are held.
-    pub(super) fn new(is_held: Vec<bool>) -> Self {
-        Self { apart: Vec::new(), strikes: vec![0; is_held.len()], is_held, at_corners: HashMap::new() }
+    pub(super) fn new(is_held: Vec<bool>) -> Result<Self> {
+        let strikes = memory::repeated(0, is_held.len())?;
+        Ok(Self { apart: Vec::new(), strikes, is_held, at_corners: HashMap::new() })
     }
 
     pub(super) fn n_held(&self) -> usize {
@@ -50,29 +52,27 @@ impl Refusals {
         shape: &Shape,
         unsound: &Unsound,
         all: bool,
-        regions: impl Fn(&[u32], usize) -> Regions<'a>,
-    ) -> Refused {
-        let nodes = tree.nodes(&cut);
+        regions: impl Fn(&[u32], usize) -> Result<Regions<'a>>,
+    ) -> Result<Refused> {
+        let nodes = tree.nodes(&cut)?;
         let node = |k: u32| nodes[shape.facets[k as usize].part as usize];
-        let chosen = if all { unsound.facets.clone() } else { unsound.latest(shape, node) };
-        let struck: HashSet<u32> = chosen.iter().map(|&k| node(k)).collect();
+        let chosen = if all { memory::twin(&unsound.facets)? } else { unsound.latest(shape, node)? };
+        let struck = memory::distinct(chosen.iter().map(|&k| node(k)))?;
         let mut left: HashMap<u32, u32> = HashMap::new();
         let mut stay = Vec::new();
         for (f, node) in (0..).zip(&nodes).filter(|(_, node)| struck.contains(node)) {
             self.strikes[f as usize] += 1;
             let strikes = self.strikes[f as usize];
             let is_last = all || strikes > STRIKES;
+            memory::extend_map(&mut left, 1)?;
             let most = left.entry(*node).or_default();
             *most = (*most).max(if is_last { u32::MAX } else { (1 << strikes) - 1 });
             if is_last || tree.is_face(*node) {
-                stay.push(f);
+                memory::push(&mut stay, f)?;
             }
         }
-        for &c in chosen
-            .iter()
-            .flat_map(|&k| shape.facets[k as usize].loops.iter().flatten())
-            .collect::<HashSet<_>>()
-        {
+        for c in memory::distinct(chosen.iter().flat_map(|&k| shape.facets[k as usize].corners()))? {
+            memory::extend_map(&mut self.at_corners, 1)?;
             *self.at_corners.entry(shape.corners[c as usize].vertex).or_default() += 1;
         }
         for (node, most) in left {
@@ -80,7 +80,9 @@ impl Refusals {
             for _ in 0..most {
                 let Some(&latest) = within.last().filter(|node| !tree.is_face(**node)) else { break };
                 tree.split(&mut within, latest);
-                self.apart.extend(&merges.pairs[tree.merges(latest)]);
+                let pairs = &merges.pairs[tree.merges(latest)];
+                memory::extend(&mut self.apart, pairs.len())?;
+                self.apart.extend(pairs);
             }
             cut.remove(&node);
             cut.extend(within);
@@ -98,9 +100,9 @@ pub(super) struct Refused {
 }
 
 impl Refused {
-    fn closed<'a>(mut self, regions: impl Fn(&[u32], usize) -> Regions<'a>) -> Self {
-        self.tree.close(&mut self.cut, regions);
-        self
+    fn closed<'a>(mut self, regions: impl Fn(&[u32], usize) -> Result<Regions<'a>>) -> Result<Self> {
+        self.tree.close(&mut self.cut, regions)?;
+        Ok(self)
     }
 
     /// The merges that remain, `held` faces in none of them.
@@ -108,21 +110,18 @@ impl Refused {
         mut self,
         merges: &Merges,
         held: &[bool],
-        regions: impl Fn(&[u32], usize) -> Regions<'a>,
-    ) -> Merges {
+        regions: impl Fn(&[u32], usize) -> Result<Regions<'a>>,
+    ) -> Result<Merges> {
         loop {
-            let nodes = self.tree.nodes(&self.cut);
-            let merged: HashSet<u32> = (0..)
-                .zip(nodes)
-                .filter(|&(f, node)| held[f as usize] && !self.tree.is_face(node))
-                .map(|(_, node)| node)
-                .collect();
+            let nodes = self.tree.nodes(&self.cut)?;
+            let merged = (0..).zip(nodes).filter(|&(f, node)| held[f as usize] && !self.tree.is_face(node));
+            let merged: HashSet<u32> = memory::distinct(merged.map(|(_, node)| node))?;
             if merged.is_empty() {
                 break;
             }
             merged.into_iter().for_each(|node| self.tree.split(&mut self.cut, node));
         }
-        self.tree.close(&mut self.cut, regions);
-        merges.only(&self.tree.within(&self.cut))
+        self.tree.close(&mut self.cut, regions)?;
+        merges.only(&self.tree.within(&self.cut)?)
     }
 }

@@ -46,7 +46,7 @@ impl Settled<'_> {
 impl Job<'_> {
     pub(super) fn scan(&self) -> Result<Scan> {
         let faces = self.working.mesh().connectivity().faces();
-        Scan::new(&memory::gathered(self.parts.iter().map(|&f| faces[f as usize]))?, self.places())
+        Scan::new(&memory::gathered(self.parts.iter().map(|&f| faces[f as usize]))?, self.places()?)
     }
 
     /// Goes on with merges that were `begun`.
@@ -61,25 +61,25 @@ impl Job<'_> {
         let connectivity = self.working.mesh().connectivity();
         let n = self.parts.len() - begun.pairs.len();
         let labels = begun.labels(self.parts.len(), n)?;
-        let (mut names, mut is_held) = (vec![OUTSIDE; n], vec![false; n]);
-        let mut moments = vec![Moments::default(); n];
+        let (mut names, mut is_held) = (memory::repeated(OUTSIDE, n)?, memory::repeated(false, n)?);
+        let mut moments = memory::repeated(Moments::default(), n)?;
         for (f, ((&label, &held), place)) in
-            (0..).zip(labels.iter().zip(&refusals.is_held).zip(self.places()))
+            (0..).zip(labels.iter().zip(&refusals.is_held).zip(self.places()?))
         {
             names[label as usize] = names[label as usize].min(f);
             is_held[label as usize] |= held;
             moments[label as usize] = moments[label as usize].plus(&Moments::of(place));
         }
         let apart: Vec<[u32; 2]> =
-            refusals.apart.iter().map(|pair| pair.map(|f| labels[f as usize])).collect();
-        let mut regions = Regions::new(connectivity, &self.positions, self.labels(labels), n);
+            memory::gathered(refusals.apart.iter().map(|pair| pair.map(|f| labels[f as usize])))?;
+        let mut regions = Regions::new(connectivity, &self.positions, self.labels(labels)?, n)?;
         let rows = options.edge_weights.as_ref().map(|rows| self.working.corner_rows(rows)).transpose()?;
         let weight = |h: u32| {
             let of = |h: usize| rows.as_ref().map_or(1.0, |rows| rows[h / 3][h % 3]);
             connectivity.mate(h as usize).map_or(of(h as usize), |mate| of(h as usize).min(of(mate)))
         };
         let rest = merges(&mut regions, moments, &is_held, &apart, weight, |p| scan.on_mesh(p), progress)?;
-        Ok(begun.followed_by(rest, &names))
+        begun.followed_by(rest, &names)
     }
 
     /// The shape with as many facets as are wanted.
@@ -97,7 +97,7 @@ impl Job<'_> {
         };
         let n = self.parts.len();
         let mut merges = Cow::Borrowed(merges);
-        let mut refusals = Refusals::new(memory::twin(&self.is_held)?);
+        let mut refusals = Refusals::new(memory::twin(&self.is_held)?)?;
         let area = scan.area.max(f64::MIN_POSITIVE);
         let mut count = merges.count(wanted.and(refusals.n_held()), n, self.positions.len(), area);
         // Faces that stay beside those that are to are counted besides.
@@ -136,11 +136,11 @@ impl Job<'_> {
                 let all = n_refused >= REFUSALS;
                 if n_refused >= 2 * REFUSALS {
                     // The mesh itself is sound.
-                    unsound.facets = (0..settled.shape.facets.len() as u32).collect();
+                    unsound.facets = memory::numbers(settled.shape.facets.len())?;
                 }
                 Some(refusals.refuse(&merges, (tree, cut), &settled.shape, &unsound, all, |labels, n| {
                     self.regions(labels, n)
-                }))
+                })?)
             } else {
                 None
             };
@@ -151,7 +151,7 @@ impl Job<'_> {
                 let n_held = refusals.n_held();
                 self.stay(&refused.stay, &mut refusals.is_held, &mut is_fixed);
                 let begun =
-                    refused.remaining(&merges, &refusals.is_held, |labels, n| self.regions(labels, n));
+                    refused.remaining(&merges, &refusals.is_held, |labels, n| self.regions(labels, n))?;
                 // Elsewhere all stays as it was, until what is wanted is sought again.
                 let n_left = n - begun.pairs.len();
                 count = if n_refused < REFUSALS / 2 { count + refusals.n_held() - n_held } else { n_left };
@@ -171,7 +171,7 @@ impl Job<'_> {
         if !(matches!(wanted, Wanted::Error(_)) && miss.is_finite()) {
             fitting::refine(&mut settled.shape, &mut settled.faces, progress)?;
         }
-        let n_facets = fitting::order(&mut settled.shape, &mut settled.faces);
+        let n_facets = fitting::order(&mut settled.shape, &mut settled.faces)?;
         let inspection = Inspection::new(&settled.shape, &settled.faces, true)?;
         let n_crossings = inspection.pairs.len();
         let (labels, distances) = settled.faces.nearest(&settled.shape, &inspection)?;
@@ -183,14 +183,14 @@ impl Job<'_> {
         let n = self.parts.len();
         let (tree, mut cut) = Hierarchy::new(merges, n, n - count)?;
         if !merges.is_whole(n - cut.len()) {
-            tree.close(&mut cut, |labels, n| self.regions(labels, n));
+            tree.close(&mut cut, |labels, n| self.regions(labels, n))?;
         }
         Ok((tree, cut))
     }
 
     /// The regions that `labels` of the parts make.
-    fn regions(&self, labels: &[u32], n: usize) -> Regions<'_> {
-        let of_all = self.labels(labels.iter().copied());
+    fn regions(&self, labels: &[u32], n: usize) -> Result<Regions<'_>> {
+        let of_all = self.labels(labels.iter().copied())?;
         Regions::new(self.working.mesh().connectivity(), &self.positions, of_all, n)
     }
 
@@ -217,21 +217,22 @@ impl Job<'_> {
         is_fixed: &[bool],
         progress: &Progress,
     ) -> Result<Settled<'s>> {
-        let (labels, tops) = tree.labels(cut);
+        let (labels, tops) = tree.labels(cut)?;
         let n_regions = tops.len();
-        let (mut parts, mut is_held) = (vec![OUTSIDE; n_regions], vec![false; n_regions]);
+        let (mut parts, mut is_held) =
+            (memory::repeated(OUTSIDE, n_regions)?, memory::repeated(false, n_regions)?);
         for ((f, &label), &held) in (0..).zip(&labels).zip(&refusals.is_held) {
             parts[label as usize] = parts[label as usize].min(f);
             is_held[label as usize] |= held;
         }
-        let moments = scan.sums(&labels, n_regions);
-        let regions = self.regions(&labels, n_regions);
+        let moments = scan.sums(&labels, n_regions)?;
+        let regions = self.regions(&labels, n_regions)?;
         let area: f64 = moments.iter().map(|m| m.area).sum();
         let squares: f64 = moments.iter().map(|m| m.fit().squared_distance).sum();
         let tolerance = (squares / area.max(f64::MIN_POSITIVE)).sqrt().max(constants::FLAT);
         let firmness = |v: u32| (!is_fixed[v as usize]).then(|| refusals.firmness(v));
         let mut shape =
-            Shape::new(&regions, &moments, &self.positions, &parts, &is_held, firmness, 2.0 * tolerance);
+            Shape::new(&regions, &moments, &self.positions, &parts, &is_held, firmness, 2.0 * tolerance)?;
         let mut faces = Faces { scan, labels, is_held: memory::twin(&refusals.is_held)? };
         fitting::settle(&mut shape, &mut faces, progress)?;
         fitting::fold(&mut shape, &mut faces)?;

@@ -6,6 +6,7 @@ use super::moments::{Moments, Plane};
 use super::regions::{Regions, Ridge, OUTSIDE};
 use crate::mesh::vector::{add, distance, scale, Point};
 use crate::remesh::closest::closest_on_segment;
+use crate::{memory, Result};
 
 /// A point where facets meet.
 #[derive(Debug, Clone, Copy)]
@@ -22,7 +23,7 @@ pub(super) struct Corner {
 }
 
 /// A facet: its loops run counterclockwise around it, seen from outside, and clockwise around its holes.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Facet {
     pub loops: Vec<Vec<u32>>,
     pub plane: Plane,
@@ -35,6 +36,15 @@ pub(super) struct Facet {
 }
 
 impl Facet {
+    /// The same.
+    pub(super) fn twin(&self) -> Result<Self> {
+        let mut loops = memory::room(self.loops.len())?;
+        for corners in &self.loops {
+            loops.push(memory::twin(corners)?);
+        }
+        Ok(Self { loops, ..*self })
+    }
+
     /// Its corners.
     pub(super) fn corners(&self) -> impl Iterator<Item = u32> + '_ {
         self.loops.iter().flatten().copied()
@@ -56,7 +66,7 @@ pub(super) fn sides(corners: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
 }
 
 /// A surface of facets.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Shape {
     pub corners: Vec<Corner>,
     pub facets: Vec<Facet>,
@@ -73,13 +83,15 @@ impl Shape {
         is_held: &[bool],
         firmness: impl Fn(u32) -> Option<f64>,
         tolerance: f64,
-    ) -> Self {
+    ) -> Result<Self> {
         let mut shape = Self::default();
         let mut names: HashMap<u32, u32> = HashMap::new();
         for (((region, moments), &is_held), &part) in (0..).zip(moments).zip(is_held).zip(parts) {
             let mut loops = Vec::new();
-            for ridges in regions.loops(region).unwrap_or_default() {
-                let vertices = polygon(regions, region, &ridges, positions, tolerance);
+            for ridges in regions.loops(region)?.unwrap_or_default() {
+                let vertices = polygon(regions, region, &ridges, positions, tolerance)?;
+                memory::extend_map(&mut names, vertices.len())?;
+                memory::extend(&mut shape.corners, vertices.len())?;
                 let mut name = |v: u32| {
                     *names.entry(v).or_insert_with(|| {
                         let point = positions[v as usize];
@@ -88,11 +100,12 @@ impl Shape {
                         shape.corners.len() as u32 - 1
                     })
                 };
-                loops.push(vertices.into_iter().map(&mut name).collect());
+                memory::push(&mut loops, memory::gathered(vertices.into_iter().map(&mut name))?)?;
             }
-            shape.facets.push(Facet { loops, plane: moments.fit().plane, moments: *moments, is_held, part });
+            let plane = moments.fit().plane;
+            memory::push(&mut shape.facets, Facet { loops, plane, moments: *moments, is_held, part })?;
         }
-        shape
+        Ok(shape)
     }
 
     pub(super) fn point(&self, corner: u32) -> Point {
@@ -103,11 +116,20 @@ impl Shape {
         self.corners[corner as usize].home
     }
 
+    /// The same.
+    pub(super) fn twin(&self) -> Result<Self> {
+        let mut facets = memory::room(self.facets.len())?;
+        for facet in &self.facets {
+            facets.push(facet.twin()?);
+        }
+        Ok(Self { corners: memory::twin(&self.corners)?, facets })
+    }
+
     /// The same with every corner where it was on the mesh.
-    pub(super) fn at_home(&self) -> Self {
-        let mut shape = self.clone();
+    pub(super) fn at_home(&self) -> Result<Self> {
+        let mut shape = self.twin()?;
         shape.corners.iter_mut().for_each(|corner| corner.point = corner.home);
-        shape
+        Ok(shape)
     }
 
     /// The integrals over the polygon of a facet, flat or not, as a fan around the mean of its corners.
@@ -130,8 +152,8 @@ impl Shape {
     }
 
     /// Whether one of the facets has the side `[a, b]` in this direction.
-    pub(super) fn all_sides(&self) -> HashSet<[u32; 2]> {
-        self.facets.iter().flat_map(Facet::sides).collect()
+    pub(super) fn all_sides(&self) -> Result<HashSet<[u32; 2]>> {
+        Ok(memory::distinct(self.facets.iter().flat_map(Facet::sides))?)
     }
 }
 
@@ -142,26 +164,33 @@ fn polygon(
     ridges: &[Ridge],
     positions: &[Point],
     tolerance: f64,
-) -> Vec<u32> {
-    let along = |ridge: &Ridge| {
-        let run = regions.run(region, ridge);
+) -> Result<Vec<u32>> {
+    let mut corners: Vec<u32> = Vec::new();
+    for ridge in ridges {
         if ridge.neighbor == OUTSIDE {
-            simplified(&run, positions, tolerance)
+            let kept = simplified(&regions.run(region, ridge)?, positions, tolerance)?;
+            memory::extend(&mut corners, kept.len())?;
+            corners.extend(kept);
         } else {
-            vec![ridge.from]
+            memory::push(&mut corners, ridge.from)?;
         }
-    };
-    let corners: Vec<u32> = ridges.iter().flat_map(along).collect();
+    }
     if corners.len() >= 3 {
-        return corners;
+        return Ok(corners);
     }
     // Two triangles on top of each other have no corner at all.
-    ridges.iter().flat_map(|ridge| regions.run(region, ridge).split_off(1)).collect()
+    corners.clear();
+    for ridge in ridges {
+        let run = regions.run(region, ridge)?;
+        memory::extend(&mut corners, run.len())?;
+        corners.extend(&run[1..]);
+    }
+    Ok(corners)
 }
 
 /// The vertices of a run that keep it within `tolerance`, at least three of one that is closed, without the
 /// last [Douglas and Peucker 1973].
-fn simplified(run: &[u32], positions: &[Point], tolerance: f64) -> Vec<u32> {
+fn simplified(run: &[u32], positions: &[Point], tolerance: f64) -> Result<Vec<u32>> {
     let at = |i: usize| positions[run[i] as usize];
     let off = |i: usize, a: usize, b: usize| distance(at(i), closest_on_segment(at(i), at(a), at(b)));
     let last = run.len() - 1;
@@ -176,15 +205,16 @@ fn simplified(run: &[u32], positions: &[Point], tolerance: f64) -> Vec<u32> {
         marks.extend([opposite, third]);
         marks.sort_unstable();
     }
-    let mut kept = vec![false; run.len()];
+    let mut kept = memory::repeated(false, run.len())?;
     marks.iter().for_each(|&i| kept[i] = true);
     let mut pieces: Vec<(usize, usize)> = marks.windows(2).map(|pair| (pair[0], pair[1])).collect();
     while let Some((a, b)) = pieces.pop() {
         let Some(far) = farthest(a + 1, b, &|i| off(i, a, b)) else { continue };
         if off(far, a, b) > tolerance {
             kept[far] = true;
+            memory::extend(&mut pieces, 2)?;
             pieces.extend([(a, far), (far, b)]);
         }
     }
-    (0..last).filter(|&i| kept[i]).map(|i| run[i]).collect()
+    Ok(memory::sifted((0..last).filter(|&i| kept[i]).map(|i| run[i]))?)
 }

@@ -13,6 +13,7 @@ use super::triangulation::axes;
 use crate::error::SolveError;
 use crate::linear::cholesky::Cholesky;
 use crate::linear::pattern::LowerPattern;
+use crate::memory;
 use crate::mesh::vector::{add, area_vector, dot, norm, scale, sub, unit, Point};
 
 /// A facet at a corner.
@@ -36,30 +37,31 @@ struct Turning {
 /// returns the largest distance of a corner from a plane.
 pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point]) -> Result<f64, SolveError> {
     set_triangles(shape);
-    let of_facet = |(facet, f): (usize, &super::shape::Facet)| {
-        f.corners().map(|c| Incidence { facet, corner: c as usize }).collect::<Vec<_>>()
+    let of_facet = |(facet, f): (usize, _)| {
+        super::shape::Facet::corners(f).map(move |c| Incidence { facet, corner: c as usize })
     };
     // Faces that stay are triangles: they are flat wherever their corners are.
     let made = shape.facets.iter().enumerate().filter(|(_, facet)| !facet.is_held);
-    let incidences: Vec<Incidence> = made.flat_map(of_facet).collect();
-    let mut share = vec![0.0; targets.len()];
-    let mut at = (vec![Vec::new(); targets.len()], vec![Vec::new(); shape.facets.len()]);
+    let incidences: Vec<Incidence> = memory::sifted(made.flat_map(of_facet))?;
+    let (n, m) = (targets.len(), shape.facets.len());
+    let mut share = memory::repeated(0.0, n)?;
+    let mut at = (memory::repeated(Vec::new(), n)?, memory::repeated(Vec::new(), m)?);
     for (k, i) in incidences.iter().enumerate() {
         let facet = &shape.facets[i.facet];
         share[i.corner] += facet.moments.area / facet.corners().count() as f64;
-        at.0[i.corner].push(k);
-        at.1[i.facet].push(k);
+        memory::push(&mut at.0[i.corner], k)?;
+        memory::push(&mut at.1[i.facet], k)?;
     }
-    let weights: Vec<f64> =
-        shape.corners.iter().zip(&share).map(|(c, share)| c.firmness * stay * share).collect();
-    let mobility: Vec<f64> = shape
-        .corners
-        .iter()
-        .zip(&weights)
-        .map(|(corner, &weight)| if corner.is_fixed || weight <= 0.0 { 0.0 } else { 1.0 / weight })
-        .collect();
-    let pattern = pattern(&incidences, &at.0, &at.1);
-    let (starts, rows) = (pattern.starts.clone(), pattern.rows.clone());
+    let mobility: Vec<f64> = memory::gathered(shape.corners.iter().zip(&share).map(|(corner, share)| {
+        let weight = corner.firmness * stay * share;
+        if corner.is_fixed || weight <= 0.0 {
+            0.0
+        } else {
+            1.0 / weight
+        }
+    }))?;
+    let pattern = pattern(&incidences, &at.0, &at.1)?;
+    let (starts, rows) = (memory::twin(&pattern.starts)?, memory::twin(&pattern.rows)?);
     let mut cholesky = Cholesky::analyze(pattern, None)?;
     let (mut last, mut slack) = (f64::INFINITY, SLACK[usize::from(shape.off_planes() < FLAT)]);
     for step in 0..2 * STEPS {
@@ -68,11 +70,12 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point]) -> Result
         if only_flattens {
             slack = REGULAR;
         }
-        let turning: Vec<Turning> = shape.facets.iter().map(Turning::new).collect();
+        let turning: Vec<Turning> = memory::gathered(shape.facets.iter().map(Turning::new))?;
         let of_plane = |i: &Incidence| turning[i.facet].derivative(shape.corners[i.corner].point);
-        let (of_planes, of_corners): (Vec<Point>, Vec<Point>) =
-            incidences.iter().map(|i| (of_plane(i), shape.facets[i.facet].plane.normal)).unzip();
-        let mut values = vec![0.0; rows.len()];
+        let of_planes: Vec<Point> = memory::gathered(incidences.iter().map(of_plane))?;
+        let of_corners: Vec<Point> =
+            memory::gathered(incidences.iter().map(|i| shape.facets[i.facet].plane.normal))?;
+        let mut values = memory::repeated(0.0, rows.len())?;
         for k in 0..incidences.len() {
             for e in starts[k]..starts[k + 1] {
                 let (i, j) = (incidences[k], incidences[rows[e]]);
@@ -94,18 +97,15 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point]) -> Result
             }
         };
         let fall = |f: &Turning| f.inverse.map(|row| if only_flattens { 0.0 } else { -dot(row, f.gradient) });
-        let mut multipliers: Vec<[f64; 1]> = incidences
-            .iter()
-            .enumerate()
-            .map(|(k, i)| {
-                let height = shape.facets[i.facet].plane.height(shape.corners[i.corner].point);
-                [height + dot(of_planes[k], fall(&turning[i.facet])) + dot(of_corners[k], pull(i.corner))]
-            })
-            .collect();
+        let off = |(k, i): (usize, &Incidence)| {
+            let height = shape.facets[i.facet].plane.height(shape.corners[i.corner].point);
+            [height + dot(of_planes[k], fall(&turning[i.facet])) + dot(of_corners[k], pull(i.corner))]
+        };
+        let mut multipliers: Vec<[f64; 1]> = memory::gathered(incidences.iter().enumerate().map(off))?;
         cholesky.factorize(&values)?;
         cholesky.solve(&mut multipliers)?;
-        let mut moves: Vec<Point> = (0..targets.len()).map(pull).collect();
-        let mut turns: Vec<Point> = turning.iter().map(fall).collect();
+        let mut moves: Vec<Point> = memory::gathered((0..targets.len()).map(pull))?;
+        let mut turns: Vec<Point> = memory::gathered(turning.iter().map(fall))?;
         for (k, (i, [multiplier])) in incidences.iter().zip(&multipliers).enumerate() {
             moves[i.corner] = sub(moves[i.corner], scale(of_corners[k], multiplier * mobility[i.corner]));
             let turned = turning[i.facet].inverse.map(|row| dot(row, of_planes[k]));
@@ -145,17 +145,23 @@ fn set_triangles(shape: &mut Shape) {
 }
 
 /// Pairs have an entry where they share the facet or the corner.
-fn pattern(incidences: &[Incidence], at_corners: &[Vec<usize>], at_facets: &[Vec<usize>]) -> LowerPattern {
-    let (mut starts, mut rows) = (vec![0], Vec::new());
+fn pattern(
+    incidences: &[Incidence],
+    at_corners: &[Vec<usize>],
+    at_facets: &[Vec<usize>],
+) -> Result<LowerPattern, SolveError> {
+    let (mut starts, mut rows) = (memory::room(incidences.len() + 1)?, Vec::new());
+    starts.push(0);
     for (k, i) in incidences.iter().enumerate() {
         let both = at_corners[i.corner].iter().chain(&at_facets[i.facet]);
-        let mut column: Vec<usize> = both.copied().filter(|&row| row >= k).collect();
+        let mut column: Vec<usize> = memory::sifted(both.copied().filter(|&row| row >= k))?;
         column.sort_unstable();
         column.dedup();
+        memory::extend(&mut rows, column.len())?;
         rows.extend(column);
         starts.push(rows.len());
     }
-    LowerPattern { n: incidences.len(), starts, rows }
+    Ok(LowerPattern { n: incidences.len(), starts, rows })
 }
 
 impl Turning {

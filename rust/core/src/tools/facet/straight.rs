@@ -1,10 +1,10 @@
 //! Ridges along the mesh, what it costs that they become straight, and where regions lack corners.
 
-use std::collections::HashMap;
-
-use super::regions::{has_corners, Regions, Ridge, Set, OUTSIDE};
+use super::regions::{Regions, Ridge, Set, OUTSIDE};
+use super::verdict::has_corners;
 use crate::mesh::vector::{distance, Point};
 use crate::remesh::closest::closest_on_segment;
+use crate::{memory, Result};
 
 impl Regions<'_> {
     /// What it costs that ridges become straight where `set` becomes one region and corners vanish between
@@ -12,16 +12,8 @@ impl Regions<'_> {
     /// mesh evenly, up to the distance `d` of the ridge: the integral of the squared distance is
     /// `∫ |w| d² / 3` along the ridge. `on_mesh` is the nearest point of the mesh. Without it facets reach
     /// across holes: the ring on top of a torus is flat, a polygon of few corners there is no ring.
-    pub(super) fn straightened(&self, set: &Set, on_mesh: impl Fn(Point) -> Point) -> f64 {
-        let mut lost: HashMap<u32, u32> = HashMap::new();
-        let mut border = Vec::new();
-        for h in set.iter().flat_map(|r| &self.borders[r as usize]).copied() {
-            if set.contains(self.behind(h)) {
-                self.ends(h).into_iter().for_each(|v| *lost.entry(v).or_default() += 1);
-            } else {
-                border.push(h);
-            }
-        }
+    pub(super) fn straightened(&self, set: &Set, on_mesh: impl Fn(Point) -> Point) -> Result<f64> {
+        let (border, lost) = self.joined(set)?;
         let was_corner = |v: u32| self.is_corner(v, self.valence[v as usize]);
         let is_corner =
             |v: u32| self.is_corner(v, self.valence[v as usize] - lost.get(&v).copied().unwrap_or(0) / 2);
@@ -33,30 +25,37 @@ impl Regions<'_> {
                 continue;
             }
             let neighbor = self.labels[mate as usize / 3];
-            let before = self.ahead(mate, |r| r == neighbor, is_corner);
+            let before = self.ahead(mate, |r| r == neighbor, is_corner)?;
             // Once for each ridge: at the first corner on it that vanishes.
             if before[1..].iter().any(|&v| vanishes(v)) {
                 continue;
             }
-            let after = self.ahead(self.follow(h, |r| set.contains(r)), |r| set.contains(r), is_corner);
-            let run: Vec<u32> = before.into_iter().rev().chain(after.into_iter().skip(1)).collect();
+            let after = self.ahead(self.follow(h, |r| set.contains(r)), |r| set.contains(r), is_corner)?;
+            let run: Vec<u32> = memory::sifted(before.into_iter().rev().chain(after.into_iter().skip(1)))?;
             let inner = 1..run.len() - 1;
-            let ends: Vec<usize> =
-                [0].into_iter().chain(inner.filter(|&i| was_corner(run[i]))).chain([run.len() - 1]).collect();
-            let pieces: f64 = ends.windows(2).map(|ends| self.strip(&run[ends[0]..=ends[1]], &on_mesh)).sum();
-            cost += (self.strip(&run, &on_mesh) - pieces).max(0.0);
+            let ends = [0].into_iter().chain(inner.filter(|&i| was_corner(run[i]))).chain([run.len() - 1]);
+            let mut pieces = 0.0;
+            for ends in memory::sifted(ends)?.windows(2) {
+                pieces += self.strip(&run[ends[0]..=ends[1]], &on_mesh)?;
+            }
+            cost += (self.strip(&run, &on_mesh)? - pieces).max(0.0);
         }
-        cost
+        Ok(cost)
     }
 
     /// The vertices of a border from where `h` starts to the next corner, or around.
-    fn ahead(&self, h: u32, is_own: impl Fn(u32) -> bool, is_corner: impl Fn(u32) -> bool) -> Vec<u32> {
+    fn ahead(
+        &self,
+        h: u32,
+        is_own: impl Fn(u32) -> bool,
+        is_corner: impl Fn(u32) -> bool,
+    ) -> Result<Vec<u32>> {
         let [start, mut v] = self.ends(h);
         let (mut run, mut g) = (vec![start], h);
         loop {
-            run.push(v);
+            memory::push(&mut run, v)?;
             if is_corner(v) || v == start {
-                return run;
+                return Ok(run);
             }
             g = self.follow(g, &is_own);
             v = self.ends(g)[1];
@@ -64,7 +63,7 @@ impl Regions<'_> {
     }
 
     /// `∫ |w| d² / 3` along a run, beside the segment between its ends.
-    fn strip(&self, run: &[u32], on_mesh: impl Fn(Point) -> Point) -> f64 {
+    fn strip(&self, run: &[u32], on_mesh: impl Fn(Point) -> Point) -> Result<f64> {
         let at = |i: usize| self.positions[run[i] as usize];
         let last = run.len() - 1;
         let square = |i: usize| {
@@ -74,38 +73,42 @@ impl Regions<'_> {
             let ridge = closest_on_segment(at(i), at(0), at(last));
             distance(at(i), ridge) * distance(ridge, on_mesh(ridge)).powi(2)
         };
-        let squares: Vec<f64> = (0..=last).map(square).collect();
-        (0..last).map(|i| distance(at(i), at(i + 1)) * (squares[i] + squares[i + 1])).sum::<f64>() / 6.0
+        let squares: Vec<f64> = memory::gathered((0..run.len()).map(square))?;
+        let piece = |i: usize| distance(at(i), at(i + 1)) * (squares[i] + squares[i + 1]);
+        Ok((0..last).map(piece).sum::<f64>() / 6.0)
     }
 
     /// The vertices of a ridge, from its start to its end.
-    pub(super) fn run(&self, region: u32, ridge: &Ridge) -> Vec<u32> {
+    pub(super) fn run(&self, region: u32, ridge: &Ridge) -> Result<Vec<u32>> {
         let border = &self.borders[region as usize];
         let Some(mut h) = border.iter().copied().find(|&h| self.connectivity.tail(h as usize) == ridge.from)
         else {
-            return vec![ridge.from, ridge.to];
+            return Ok(vec![ridge.from, ridge.to]);
         };
         let mut run = vec![ridge.from];
         loop {
             let head = self.connectivity.head(h as usize);
-            run.push(head);
+            memory::push(&mut run, head)?;
             if head == ridge.to {
-                return run;
+                return Ok(run);
             }
             h = self.follow(h, |r| r == region);
         }
     }
 
     /// Where a region is no facet: itself and the regions that it cannot be one beside.
-    pub(super) fn in_the_way(&self, region: u32) -> Option<Vec<u32>> {
+    pub(super) fn in_the_way(&self, region: u32) -> Result<Option<Vec<u32>>> {
         let border = &self.borders[region as usize];
-        let found = match self.loops(region) {
+        let found = match self.loops(region)? {
             Some(loops) if !loops.is_empty() => match loops.iter().find(|ridges| !has_corners(ridges)) {
-                Some(ridges) => ridges.iter().map(|ridge| ridge.neighbor).collect(),
-                None => vec![self.met_off_line(border, &loops, &Set::of(region))?],
+                Some(ridges) => memory::gathered(ridges.iter().map(|ridge| ridge.neighbor))?,
+                None => match self.met_off_line(border, &loops, &Set::of(region))? {
+                    Some(met) => vec![met],
+                    None => return Ok(None),
+                },
             },
             _ => Vec::new(),
         };
-        Some(found.into_iter().filter(|&r| r != OUTSIDE).chain([region]).collect())
+        Ok(Some(memory::sifted(found.into_iter().filter(|&r| r != OUTSIDE).chain([region]))?))
     }
 }
