@@ -260,7 +260,8 @@ def _note(result: ridgeform.Stylized, settings: object, source: Source) -> str |
         f"(largest gap {result.gap.max(initial=0.0):.1g}): raise Iterations",
     }
     if not settings.use_fidelity:
-        notes["finished"] = f"all {steps} steps were done before its facets had settled: raise Steps"
+        done = "the one step was" if steps == 1 else f"all {steps} steps were"
+        notes["finished"] = f"{done} done before its facets had settled: raise Steps"
     # Other finishes make facets of anything.
     few = result.flat_share[-1] < MANY_FLAT and source.before is None
     return notes.get(result.status, HARDLY_FLAT if few else None)

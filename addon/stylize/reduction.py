@@ -91,7 +91,10 @@ def reduce(
     layers = carried(source.layers, old, surface, points, polygons, anchors=first[region], marked=marked)
     said = [f"reduced from {len(triangles)} to {len(faces)} triangles"]
     if len(faces) > MORE * wanted:
-        said.append(f"{wanted} were asked for, but borders, marks, and masks keep their vertices")
+        said.append(
+            f"{wanted} were asked for, but borders (of UV islands and materials too), marks, masks, and thin "
+            "places keep their vertices"
+        )
     normals = source.kept_normals(points, polygons, coordinates)
     said += [*_losses(source), *filter(None, [kept_normals.note(normals)])]
     return Rebuilt(points, polygons, layers, "; ".join(said), normals)

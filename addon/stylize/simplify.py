@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+import ridgeform
 
 from .collapse import Fans
 from .curves import Curve, dropped, find_curves
@@ -16,6 +17,12 @@ from .kept_edges import KeptEdges
 
 REST = 0.5
 """Away from what must stay, no fewer triangles than this part of those asked for are left."""
+STEP = 0.5
+SMALLEST_STEP = 0.95
+"""A step leaves this part of the triangles, so that what it keeps around a torn place is about as fine as
+what it leaves; smaller steps where that tears."""
+WIDENINGS = 4
+"""How often the circle around a torn place becomes twice as wide."""
 
 
 @dataclass
@@ -80,17 +87,75 @@ def _size(points: np.ndarray) -> float:
     return float(np.ptp(points, axis=0).max(initial=0.0))
 
 
+@dataclass
+class _Triangles:
+    """Points (p, 3) and triangles (q, 3)."""
+
+    points: np.ndarray
+    faces: np.ndarray
+
+    def odd(self) -> np.ndarray:
+        """The vertices (p,) bool around which triangles are no surface, or are there twice."""
+        report = ridgeform.Mesh(self.points, self.faces.astype(np.int32)).report
+        odd = np.zeros(len(self.points), bool)
+        odd[report.nonmanifold_edges] = True
+        odd[report.nonmanifold_vertices] = True
+        odd[self.faces[report.duplicate_faces]] = True
+        return odd
+
+    def longest(self, vertices: np.ndarray) -> float:
+        """The length of the longest edge of triangles with one of these vertices."""
+        corners = self.points[self.faces[np.isin(self.faces, vertices).any(axis=1)]]
+        sides = corners - np.roll(corners, 1, axis=1)
+        return float(np.linalg.norm(sides, axis=2).max(initial=0.0))
+
+
 def decimate(
     points: np.ndarray, faces: np.ndarray, locked: np.ndarray, target: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Points (p, 3), triangles (q, 3) of `target` or a few less, and the number (k,) of each locked vertex.
 
-    fast-simplification leaves open borders alone, and with them all edges that end there, when it is told to.
-    A triangle of its own at each locked vertex, a fin that hangs on it by this vertex alone, makes a border
-    of it. Fins come last, before and after: so their first vertices say where the locked ones went.
+    fast-simplification collapses edges without asking whether that ties together what is apart, as the sides
+    of a thin finger. Where it did, it begins anew in steps, each of which keeps the vertices of the last one
+    around such places; where that does not help, more triangles stay.
+    """
+    before = _Triangles(points, faces)
+    made, number = _collapsed(before, locked, target)
+    if len(_torn(made, before, number)):
+        made, number, share = before, np.arange(len(points)), STEP
+        while len(made.faces) > target and share < SMALLEST_STEP:
+            here = np.zeros(len(made.points), bool)
+            here[number[locked & (number >= 0)]] = True
+            step = _untorn(made, here, max(target, round(share * len(made.faces))))
+            if step is None or len(step[0].faces) >= len(made.faces):
+                share = np.sqrt(share)
+                continue
+            made, number = step[0], np.where(locked & (number >= 0), step[1][number], -1)
+    return made.points, made.faces, np.where(locked, number, -1)
+
+
+def _untorn(before: _Triangles, locked: np.ndarray, target: int) -> tuple[_Triangles, np.ndarray] | None:
+    """What is left with the vertices kept around which it would be torn; None where it always is."""
+    kept = locked.copy()
+    for widening in range(WIDENINGS):
+        made, number = _collapsed(before, kept, target)
+        torn = _torn(made, before, number)
+        if not len(torn):
+            return made, np.where(locked, number, -1)
+        kept |= _around(before.points, made.points[torn], 2.0**widening * made.longest(torn))
+    return None
+
+
+def _collapsed(before: _Triangles, locked: np.ndarray, target: int) -> tuple[_Triangles, np.ndarray]:
+    """What fast-simplification makes of triangles, and the number (k,) of each locked vertex in that.
+
+    It leaves open borders alone, and with them all edges that end there, when it is told to. A triangle of
+    its own at each locked vertex, a fin that hangs on it by this vertex alone, makes a border of it. Fins
+    come last, before and after: so their first vertices say where the locked ones went.
     """
     import fast_simplification  # noqa: PLC0415
 
+    points, faces = before.points, before.faces
     used = np.zeros(len(points), bool)
     used[faces] = True
     anchors = np.flatnonzero(locked & used)
@@ -98,7 +163,7 @@ def decimate(
     if target >= len(faces):
         kept = np.flatnonzero(used)
         number[kept] = np.arange(len(kept))
-        return points[kept], number[faces], np.where(locked, number, -1)
+        return _Triangles(points[kept], number[faces]), np.where(locked, number, -1)
     first = len(points) + 2 * np.arange(len(anchors))
     size = _size(points)
     tips = np.repeat(points[anchors], 2, axis=0) + np.tile(size * np.eye(3)[:2], (len(anchors), 1))
@@ -114,7 +179,26 @@ def decimate(
     place = np.full(len(new), -1)
     place[used] = np.arange(len(used))
     number[anchors] = place[made[n_faces:, 0]]
-    return new[used], faces.reshape(-1, 3), number
+    return _Triangles(new[used], faces.reshape(-1, 3)), number
+
+
+def _torn(made: _Triangles, before: _Triangles, number: np.ndarray) -> np.ndarray:
+    """The vertices at which triangles were tied together, or are there twice, unless it was so before."""
+    odd = made.odd()
+    if odd.any():
+        known = number[np.flatnonzero(before.odd())]
+        odd[known[known >= 0]] = False
+    return np.flatnonzero(odd)
+
+
+def _around(points: np.ndarray, centers: np.ndarray, reach: float) -> np.ndarray:
+    """Which points (k,) bool lie in cells of a grid of this width that have a center, or in those beside."""
+    low = points.min(axis=0) - reach
+    cells, there = (np.floor((some - low) / reach).astype(np.int64) for some in (points, centers))
+    beside = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3), axis=-1).reshape(-1, 1, 3) + there
+    height, width = cells[:, 1:].max(axis=0) + 2
+    names = [(part[..., 0] * height + part[..., 1]) * width + part[..., 2] for part in (cells, beside)]
+    return np.isin(names[0], names[1])
 
 
 def _thinned(

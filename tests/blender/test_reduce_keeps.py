@@ -5,11 +5,12 @@ import bpy
 import fast_simplification
 import numpy as np
 import pytest
+import ridgeform
 from bl_ext.user_default.ridgeform.blender import mesh_io, rebuilding
 from bl_ext.user_default.ridgeform.framework import job
 from bl_ext.user_default.ridgeform.stylize import curves, reduction, simplify
 from bl_ext.user_default.ridgeform.stylize.collapse import Fans
-from known_shapes import shapes
+from known_shapes import limbs, shapes
 from mirror_kit import half_ball, open_edges
 
 N = 24
@@ -248,6 +249,30 @@ def test_locked_vertices_are_found_again():
     assert np.array_equal(new[number[locked]], points[locked])
     assert (number[~locked] == -1).all()
     assert len(np.unique(number[locked])) == locked.sum() and set(np.unique(made)) == set(range(len(new)))
+
+
+@pytest.mark.parametrize(
+    ("vertices", "faces", "target"),
+    [(*shapes.torus(64, 16, 1.0, 0.15), 20), (*limbs.ball_with_limbs()[:2], 20)],
+)
+def test_what_is_apart_is_not_tied_together(vertices, faces, target):
+    as_given = fast_simplification.simplify(vertices, faces.astype(np.int32), target_count=target)
+    locked = np.zeros(len(vertices), bool)
+    locked[::400] = True
+    points, triangles, number = simplify.decimate(vertices, faces.astype(np.int64), locked, target)
+    assert tied(*as_given) > 0
+    assert tied(points, triangles) == 0
+    assert len(triangles) <= 3 * target
+    assert np.array_equal(points[number[locked]], vertices[locked])
+    halves = np.concatenate([triangles[:, [i, (i + 1) % 3]] for i in range(3)])
+    _, count = np.unique(np.sort(halves, axis=1), axis=0, return_counts=True)
+    assert (count == 2).all()
+
+
+def tied(points, triangles):
+    """How many edges and vertices are none of a surface, and triangles twice there."""
+    report = ridgeform.Mesh(points, triangles.astype(np.int32)).report
+    return len(report.nonmanifold_edges) + len(report.nonmanifold_vertices) + len(report.duplicate_faces)
 
 
 def test_a_collapse_must_not_fold_or_pinch():
