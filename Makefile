@@ -3,7 +3,7 @@ PYTHON ?= python3
 RUN = @$(PYTHON) scripts/setup_env.py
 
 .PHONY: help demo test test-all-blenders test-dask lint workflows notices advisories bench bench-holes bench-segments \
-	bench-memory bench-limits bench-growth bench-latency bench-files bench-parts bench-facets bench-restore \
+	bench-cad bench-memory bench-limits bench-growth bench-latency bench-files bench-parts bench-facets bench-restore \
 	bench-overnight bench-scale bench-tiles fuzz fuzz-sequences \
 	extension wheel release sizes docs fixtures pictures gallery
 
@@ -20,6 +20,7 @@ help:
 	@echo "                 ARGS=--quick: a minute, keeps nothing; ARGS=--large: a million vertices as well"
 	@echo "make bench-holes fill holes with known truth by every tool: benchmarks/holes.md"
 	@echo "make bench-segments  segment shapes of known parts: benchmarks/segments.md"
+	@echo "make bench-cad   segment CAD parts, the faces of the kernel as truth: benchmarks/cad.md"
 	@echo "make bench-facets  meshes as facets, beside quadric reduction: benchmarks/facets.md"
 	@echo "make bench-restore  restore shapes of known parts from noise: benchmarks/restore.md"
 	@echo "make bench-overnight  1000 files in two processes, after kill -9, and on Dask: benchmarks/overnight.md"
@@ -91,6 +92,9 @@ bench-overnight:
 
 bench-segments:
 	$(RUN) benchmarks/segments.py $(ARGS)
+
+bench-cad:
+	$(RUN) benchmarks/cad.py $(ARGS)
 
 # The wheel is built first; these run it where it lies.
 bench-memory bench-limits bench-growth: wheel
