@@ -5,16 +5,21 @@ import pytest
 import ridgeform
 
 
-@pytest.fixture(scope="module")
-def cones() -> ridgeform.Mesh:
-    """Two cones on one rim of 400 edges that waves."""
-    angles = 2 * np.pi * np.arange(400) / 400
+def double_cone(count: int) -> ridgeform.Mesh:
+    """Two cones on one rim of so many edges that waves."""
+    angles = 2 * np.pi * np.arange(count) / count
     rim = np.column_stack([np.cos(angles), np.sin(angles), 0.05 * np.sin(5 * angles)])
-    a, b = np.arange(400), (np.arange(400) + 1) % 400
+    a, b = np.arange(count), (np.arange(count) + 1) % count
+    tips = count, count + 1
     faces = np.concatenate(
-        [np.column_stack([np.full(400, 400), a, b]), np.column_stack([np.full(400, 401), b, a])]
+        [np.column_stack([np.full(count, tips[0]), a, b]), np.column_stack([np.full(count, tips[1]), b, a])]
     )
     return ridgeform.Mesh(np.vstack([rim, [[0, 0, 0.3], [0, 0, -0.4]]]), faces)
+
+
+@pytest.fixture(scope="module")
+def cones() -> ridgeform.Mesh:
+    return double_cone(400)
 
 
 def laplacian_squares(mesh: ridgeform.Mesh) -> np.ndarray:
@@ -65,3 +70,32 @@ def test_sums_of_absolute_values_are_solved_with_a_gap(cones: ridgeform.Mesh, n_
     )
     assert found.status == "solved"
     assert 0 <= found.gap <= 1e-3
+
+
+def test_modes_settle_at_thousands_of_neighbors() -> None:
+    # Where rows were not cut, rounding in the factor was such that they did not, after half a minute.
+    mesh = double_cone(4000)
+    found = ridgeform.vibration_modes(mesh, 4, energy="l2_hessian")
+    mass = ridgeform.voronoi_mass(mesh)
+    np.testing.assert_allclose(found.T @ (mass[:, None] * found), np.eye(4), atol=1e-8)
+    assert np.ptp(found[:, 0]) < 1e-5 * np.abs(found[:, 0]).max()
+    energies = [ridgeform.energy(mesh, mode, kind="l2_hessian") for mode in found.T]
+    assert energies == sorted(energies)
+    # Those of a mesh that is half as fine, to what that leaves out.
+    half = double_cone(2000)
+    others = ridgeform.vibration_modes(half, 4, energy="l2_hessian").T
+    coarse = [ridgeform.energy(half, mode, kind="l2_hessian") for mode in others]
+    np.testing.assert_allclose(energies[1:], coarse[1:], rtol=0.05)
+
+
+def test_a_rim_of_thousands_around_one_vertex_is_restored_onto_its_plane() -> None:
+    cones = double_cone(4000)
+    vertices = cones.vertices[:-1].copy()
+    vertices[:-1, 2] = 0.0
+    vertices += np.random.default_rng(1).normal(scale=0.002, size=vertices.shape)
+    found = ridgeform.restore(ridgeform.Mesh(vertices, cones.faces[:4000]))
+    rim = found.vertices[:-1]
+    assert [piece["kind"] for piece in found.surfaces] == ["plane"]
+    assert np.abs(rim - vertices[:-1]).max() < 0.01
+    spread = np.linalg.svd(rim - rim.mean(0), compute_uv=False)
+    assert spread[2] < 1e-9 * spread[0]

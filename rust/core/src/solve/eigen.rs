@@ -86,7 +86,9 @@ impl Pencil<'_> {
             for group in next.chunks_mut(AT_ONCE) {
                 let row =
                     |i: usize| std::array::from_fn(|c| group.get(c).map_or(0.0, |x| self.mass[i] * x[i]));
-                let mut right: Vec<[f64; AT_ONCE]> = memory::gathered((0..n).map(row))?;
+                // Zeros for the unknowns between pieces of blocks.
+                let mut right = memory::repeated([0.0; AT_ONCE], cholesky.pattern().n)?;
+                right.iter_mut().zip((0..n).map(row)).for_each(|(right, row)| *right = row);
                 cholesky.solve(&mut right)?;
                 for (c, x) in group.iter_mut().enumerate() {
                     x.iter_mut().zip(&right).for_each(|(x, row)| *x = row[c]);
@@ -120,7 +122,13 @@ impl Pencil<'_> {
 
     /// The factor of `Q + σM`.
     fn factored(&self) -> Result<Cholesky> {
-        let normal = NormalMatrix::new(self.operator)?;
+        // A cut block with a negative weight makes any matrix one that is not definite.
+        let negative = self.weights.iter().any(|w| *w < 0.0);
+        let normal = if negative {
+            NormalMatrix::new(self.operator)?
+        } else {
+            NormalMatrix::stretched(self.operator)?
+        };
         let mut cholesky = Cholesky::analyze(normal.pattern().copied()?, self.memory_limit)?;
         let mut values = memory::room(normal.pattern().rows.len())?;
         let mut shift = SHIFT * self.scale;

@@ -32,6 +32,8 @@ pub(super) fn relax(
     let slides =
         |v: usize, placement: &Placement| placement.moves[v] && !is_rim[v] && !placement.on[v].is_empty();
     let mut active = memory::repeated(false, n)?;
+    // Once for each vertex, not for each of its faces: many may meet there.
+    let mut is_spread = memory::repeated(false, n)?;
     for _ in 0..MOST_ROUNDS {
         progress.check()?;
         let faces = 0..state.labels.len();
@@ -42,14 +44,16 @@ pub(super) fn relax(
         for f in bad {
             for v in domain.connectivity.faces()[f] {
                 active[v as usize] = true;
-                neighbors(domain, v).into_iter().for_each(|w| active[w as usize] = true);
+                if !std::mem::replace(&mut is_spread[v as usize], true) {
+                    neighbors(domain, v)?.into_iter().for_each(|w| active[w as usize] = true);
+                }
             }
         }
         for (v, _) in active.iter().enumerate().filter(|(_, is_active)| **is_active) {
             if !slides(v, placement) {
                 continue;
             }
-            if let Some(point) = relaxed(domain, state, placement, v) {
+            if let Some(point) = relaxed(domain, state, placement, v)? {
                 placement.points[v] = point;
             }
         }
@@ -84,30 +88,27 @@ fn is_bad(domain: &Domain<'_>, state: &Labelling, placement: &Placement, f: usiz
 }
 
 /// The vertices that `v` has an edge with, ascending.
-fn neighbors(domain: &Domain<'_>, v: u32) -> Vec<u32> {
-    let faces = domain.faces_at(v).iter();
-    let mut around: Vec<u32> =
-        faces.flat_map(|&f| domain.connectivity.faces()[f as usize]).filter(|&w| w != v).collect();
+fn neighbors(domain: &Domain<'_>, v: u32) -> Result<Vec<u32>> {
+    let corners = domain.faces_at(v).iter().flat_map(|&f| domain.connectivity.faces()[f as usize]);
+    let mut around: Vec<u32> = memory::sifted(corners.filter(|&w| w != v))?;
     around.sort_unstable();
     around.dedup();
-    around
+    Ok(around)
 }
 
 /// The middle of the neighbors on all surfaces of `v`, taken back onto them, if that is within reach.
-fn relaxed(domain: &Domain<'_>, state: &Labelling, placement: &Placement, v: usize) -> Option<Point> {
+fn relaxed(domain: &Domain<'_>, state: &Labelling, placement: &Placement, v: usize) -> Result<Option<Point>> {
     let own = &placement.on[v];
     if own.len() > 2 {
-        return None;
+        return Ok(None);
     }
-    let around: Vec<u32> = neighbors(domain, v as u32)
-        .into_iter()
-        .filter(|&w| own.len() == 1 || own.iter().all(|k| placement.on[w as usize].contains(k)))
-        .collect();
+    let mut around = neighbors(domain, v as u32)?;
+    around.retain(|&w| own.len() == 1 || own.iter().all(|k| placement.on[w as usize].contains(k)));
     if around.len() < 2 {
-        return None;
+        return Ok(None);
     }
     let sum = around.iter().fold([0.0; 3], |sum, &w| add(sum, placement.points[w as usize]));
     let middle = scale(sum, 1.0 / around.len() as f64);
-    let point = meeting(&surfaces(state, own), middle, placement.reach)?;
-    (distance(point, domain.positions[v]) <= placement.reach).then_some(point)
+    let point = meeting(&surfaces(state, own), middle, placement.reach);
+    Ok(point.filter(|&point| distance(point, domain.positions[v]) <= placement.reach))
 }
