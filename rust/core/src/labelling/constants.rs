@@ -23,3 +23,11 @@ pub(super) const ENOUGH: usize = 1000;
 
 /// Points that a merge is judged by before it is fitted to all.
 pub(super) const JUDGED_BY: usize = 300;
+
+/// A surface turns by no more than this (radians; 46 degrees) under one face of it: cylinders have eight sides
+/// and more. The corners of any box lie on a sphere, and so do those of two caps with nothing between them.
+pub(super) const MOST_TURN: f64 = 0.8;
+
+/// The part of the way from the corners of a face to its center at which that is looked at: in the apex of a
+/// cone there is no normal.
+pub(super) const BESIDE: f64 = 0.1;

@@ -1,8 +1,10 @@
 //! Labels, what they stand for, and what both cost.
 
-use super::constants::{BORDER, FREE_MISFIT};
+use super::constants::{BESIDE, BORDER, FREE_MISFIT, MOST_TURN};
 use super::Domain;
-use crate::surfaces::{misfit, Surface};
+use crate::mesh::vector::{between, centroid, dot, norm};
+use crate::shape_guard::TURNED;
+use crate::surfaces::{misfit, Kind, Surface, MOST_MISFIT};
 use crate::{memory, Result};
 
 /// No label: the face takes no part.
@@ -71,14 +73,44 @@ impl Domain<'_> {
     /// What the corners of face `f` cost on a piece, by its share of each.
     pub(super) fn face_cost(&self, f: usize, piece: Option<&Piece>) -> f64 {
         let Some(piece) = piece else { return 0.0 };
-        let corner = |&v: &u32| {
-            let share = self.share(f, v);
-            match &piece.surface {
-                Some(surface) => share * misfit(surface.distance(self.positions[v as usize]).0, self.sigma),
-                None => share * FREE_MISFIT,
-            }
+        let corners = self.connectivity.faces()[f];
+        let each = |cost: &dyn Fn(u32) -> f64| corners.iter().map(|&v| self.share(f, v) * cost(v)).sum();
+        match &piece.surface {
+            Some(surface) if self.strays(f, surface) => each(&|_| MOST_MISFIT),
+            Some(surface) => each(&|v| misfit(surface.distance(self.positions[v as usize]).0, self.sigma)),
+            None => each(&|_| FREE_MISFIT),
+        }
+    }
+
+    /// Whether face `f` is none of `surface`, although its corners may lie on it: it stands across it, or the
+    /// surface turns by more than [`MOST_TURN`] under it.
+    fn strays(&self, f: usize, surface: &Surface) -> bool {
+        if surface.kind() == Kind::Plane {
+            return false;
+        }
+        let corners = self.connectivity.faces()[f].map(|v| self.positions[v as usize]);
+        let (center, area) = (centroid(corners), self.areas[f]);
+        if dot(surface.distance(center).1, area).abs() < TURNED * norm(area) {
+            return true;
+        }
+        let longest = self.lengths[f].into_iter().fold(0.0, f64::max);
+        if longest < MOST_TURN * surface.least_radius() {
+            return false;
+        }
+        let [a, b, c] = corners.map(|p| surface.distance(between(p, center, BESIDE)).1);
+        let least = MOST_TURN.cos();
+        dot(a, b) < least || dot(b, c) < least || dot(c, a) < least
+    }
+
+    /// What `faces` cost more than their corners say, since they are none of `surface`.
+    pub(super) fn strain(&self, faces: &[u32], surface: &Surface) -> f64 {
+        let cost = |f: usize| -> f64 {
+            let excess =
+                |v: u32| MOST_MISFIT - misfit(surface.distance(self.positions[v as usize]).0, self.sigma);
+            self.connectivity.faces()[f].iter().map(|&v| self.share(f, v) * excess(v)).sum()
         };
-        self.connectivity.faces()[f].iter().map(corner).sum()
+        let each = faces.iter().map(|&f| f as usize);
+        each.filter(|&f| self.strays(f, surface)).map(cost).sum()
     }
 
     /// What the parameters of a piece cost.

@@ -82,8 +82,9 @@ fn union(state: &Labelling, (a, b): (u32, u32)) -> Result<Vec<u32>> {
 
 /// By how much the energy would fall, about: surfaces are fitted to some of the points.
 fn judged(domain: &Domain<'_>, state: &Labelling, pair: (u32, u32), border: f64) -> Result<f64> {
-    let samples = domain.samples(&union(state, pair)?)?;
+    let faces = union(state, pair)?;
+    let samples = domain.samples(&faces)?;
     let limit = state.pieces[pair.0 as usize].energy + state.pieces[pair.1 as usize].energy + border;
     let thin = samples.thinned(JUDGED_BY)?;
-    Ok(best(domain, &thin, limit)?.map_or(0.0, |(_, energy)| limit - energy))
+    Ok(best(domain, &faces, &thin, limit)?.map_or(0.0, |(_, energy)| limit - energy))
 }

@@ -17,7 +17,7 @@ impl Piece {
     pub(super) fn of(domain: &Domain<'_>, faces: Vec<u32>) -> Result<Self> {
         let samples = domain.samples(&faces)?;
         let free = FREE_MISFIT * samples.total();
-        Ok(match best(domain, &samples, free)? {
+        Ok(match best(domain, &faces, &samples, free)? {
             Some((found, energy)) => {
                 let (side, rms) = (samples.side(&found), samples.rms(&found));
                 Self { faces, surface: Some(found), side, rms, energy }
@@ -31,7 +31,9 @@ impl Piece {
         let mut piece = Self::of(domain, faces)?;
         if let Some(old) = old {
             let samples = domain.samples(&piece.faces)?;
-            let kept = samples.cost(old, domain.sigma) + domain.kappa * old.kind().n_parameters() as f64;
+            let kept = samples.cost(old, domain.sigma)
+                + domain.strain(&piece.faces, old)
+                + domain.kappa * old.kind().n_parameters() as f64;
             if kept < piece.energy {
                 piece.surface = Some(*old);
                 piece.energy = kept;
@@ -42,8 +44,14 @@ impl Piece {
     }
 }
 
-/// The surface with the least energy, and that energy, if it is under `limit`.
-pub(super) fn best(domain: &Domain<'_>, samples: &Samples, limit: f64) -> Result<Option<(Surface, f64)>> {
+/// The surface of `faces` with the least energy, and that energy, if it is under `limit`; `samples` are their
+/// vertices, or some of them.
+pub(super) fn best(
+    domain: &Domain<'_>,
+    faces: &[u32],
+    samples: &Samples,
+    limit: f64,
+) -> Result<Option<(Surface, f64)>> {
     let thin = samples.thinned(ENOUGH)?;
     let price = |kind: Kind| domain.kappa * kind.n_parameters() as f64;
     let mut found: Option<(Kind, FittedSurface)> = None;
@@ -55,6 +63,7 @@ pub(super) fn best(domain: &Domain<'_>, samples: &Samples, limit: f64) -> Result
         }
         let Some(fitted) = fit(kind, &thin, domain.sigma)? else { continue };
         let energy = fitted.cost + price(kind);
+        let energy = if energy < least { energy + domain.strain(faces, &fitted.surface) } else { energy };
         if energy < least {
             (found, least) = (Some((kind, fitted)), energy);
         }
@@ -67,7 +76,7 @@ pub(super) fn best(domain: &Domain<'_>, samples: &Samples, limit: f64) -> Result
     if thin.len() < samples.len() {
         let Some(whole) = fit(kind, samples, domain.sigma)? else { return Ok(None) };
         fitted = whole;
-        least = fitted.cost + price(kind);
+        least = fitted.cost + price(kind) + domain.strain(faces, &fitted.surface);
     }
     Ok((least < limit).then_some((fitted.surface, least)))
 }

@@ -142,6 +142,17 @@ impl Surface {
         }
     }
 
+    /// The smallest radius that it is bent by anywhere: infinite for planes, 0 for cones.
+    #[must_use]
+    pub fn least_radius(&self) -> f64 {
+        match *self {
+            Self::Plane { .. } => f64::INFINITY,
+            Self::Sphere { radius, .. } | Self::Cylinder { radius, .. } => radius,
+            Self::Cone { .. } => 0.0,
+            Self::Torus { major, minor, .. } => minor.min((major - minor).max(0.0)),
+        }
+    }
+
     /// The signed distance of `p`, and the direction in which it grows, of length 1: the normal of the
     /// surface in the nearest point. Positive outside, for planes on the side of the normal.
     #[must_use]

@@ -1,7 +1,7 @@
 //! Vertices move within their surfaces and curves until no triangle is folded: noise along a surface folds
 //! triangles that lie on it.
 
-use super::constants::MOST_ROUNDS;
+use super::constants::{MOST_ROUNDS, THINNED};
 use super::place::{surfaces, Placement};
 use crate::labelling::{Domain, Labelling, NONE};
 use crate::mesh::vector::{add, centroid, distance, quality, scale, Point};
@@ -83,7 +83,7 @@ fn is_bad(domain: &Domain<'_>, state: &Labelling, placement: &Placement, f: usiz
         && (is_folded(domain, state, placement, f)
             || is_thinned(
                 quality(corners(domain, &placement.points, f)),
-                quality(corners(domain, domain.positions, f)),
+                THINNED * quality(corners(domain, domain.positions, f)),
             ))
 }
 
@@ -96,14 +96,30 @@ fn neighbors(domain: &Domain<'_>, v: u32) -> Result<Vec<u32>> {
     Ok(around)
 }
 
-/// The middle of the neighbors on all surfaces of `v`, taken back onto them, if that is within reach.
+/// The middle of the neighbors of `v` on its surface, or along its curve, taken back there, if that is within
+/// reach.
 fn relaxed(domain: &Domain<'_>, state: &Labelling, placement: &Placement, v: usize) -> Result<Option<Point>> {
     let own = &placement.on[v];
     if own.len() > 2 {
         return Ok(None);
     }
+    let is_curve = |w: u32| {
+        // Of the two, a hub with thousands of faces is not the one to look through.
+        let (few, other) = if domain.faces_at(w).len() < domain.faces_at(v as u32).len() {
+            (w, v as u32)
+        } else {
+            (v as u32, w)
+        };
+        let has = |label: u32| {
+            let faces = domain.faces_at(few).iter().map(|&f| f as usize);
+            faces
+                .filter(|&f| domain.connectivity.faces()[f].contains(&other))
+                .any(|f| state.labels[f] == label)
+        };
+        own.iter().all(|&label| has(label) && placement.on[w as usize].contains(&label))
+    };
     let mut around = neighbors(domain, v as u32)?;
-    around.retain(|&w| own.len() == 1 || own.iter().all(|k| placement.on[w as usize].contains(k)));
+    around.retain(|&w| own.len() == 1 || is_curve(w));
     if around.len() < 2 {
         return Ok(None);
     }
