@@ -102,6 +102,34 @@ def test_an_exact_part_stays_as_it_is():
     assert np.abs(result.vertices - part.vertices).max() < 1e-5
 
 
+@pytest.mark.parametrize("single", [False, True])
+@pytest.mark.parametrize("n", [16, 24, 32, 64])
+def test_a_cylinder_of_two_rims_is_no_sphere_and_stays_as_it_is(n, single):
+    vertices, faces = two_rims(n)
+    if single:
+        vertices = vertices.astype(np.float32).astype(float)
+    result = ridgeform.restore(ridgeform.Mesh(vertices, faces))
+    assert kinds(result)[0] == "cylinder"
+    assert set(kinds(result)[1:]) <= {"plane", "free"}
+    assert len(set(result.labels[: 2 * n])) == 1
+    assert len(set(result.labels[2 * n : 3 * n - 2])) == len(set(result.labels[3 * n - 2 :])) == 1
+    assert result.n_folded == 0
+    # Slivers of the fans that caps are made of are not relaxed.
+    assert np.abs(result.vertices - vertices).max() < 1e-6
+
+
+def two_rims(n):
+    """A cylinder of n sides without vertices between its rims; a fan of triangles is each cap."""
+    angle = 2 * np.pi * np.arange(n) / n
+    rim = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    vertices = np.concatenate([np.insert(rim, 2, height, axis=1) for height in (-1.0, 1.0)])
+    i, j = np.arange(n), (np.arange(n) + 1) % n
+    k = np.arange(1, n - 1)
+    sides = [np.stack([i, j, n + j], axis=1), np.stack([i, n + j, n + i], axis=1)]
+    caps = [np.stack([0 * k, k + 1, k], axis=1), np.stack([0 * k + n, n + k, n + k + 1], axis=1)]
+    return vertices, np.concatenate(sides + caps)
+
+
 def test_a_character_is_not_sure_and_stays_bit_by_bit():
     with np.load(SOURCES / "spot_low_resolution.npz") as data:
         vertices, faces = data["vertices"].astype(float), data["faces"].astype(np.int64)

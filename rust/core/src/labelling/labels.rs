@@ -1,8 +1,8 @@
 //! Labels, what they stand for, and what both cost.
 
-use super::constants::{BESIDE, BORDER, FREE_MISFIT, MOST_TURN};
+use super::constants::{BESIDE, BORDER, FREE_MISFIT, MOST_RISE, MOST_TURN};
 use super::Domain;
-use crate::mesh::vector::{between, centroid, dot, norm};
+use crate::mesh::vector::{between, centroid, dot, norm, sub};
 use crate::shape_guard::TURNED;
 use crate::surfaces::{misfit, Kind, Surface, MOST_MISFIT};
 use crate::{memory, Result};
@@ -82,15 +82,17 @@ impl Domain<'_> {
         }
     }
 
-    /// Whether face `f` is none of `surface`, although its corners may lie on it: it stands across it, or the
-    /// surface turns by more than [`MOST_TURN`] under it.
+    /// Whether face `f` is none of `surface`, although its corners may lie on it: it stands across it by
+    /// more than noise tilts it, or the surface turns by more than [`MOST_TURN`] under it.
     fn strays(&self, f: usize, surface: &Surface) -> bool {
         if surface.kind() == Kind::Plane {
             return false;
         }
         let corners = self.connectivity.faces()[f].map(|v| self.positions[v as usize]);
         let (center, area) = (centroid(corners), self.areas[f]);
-        if dot(surface.distance(center).1, area).abs() < TURNED * norm(area) {
+        let normal = surface.distance(center).1;
+        let rise = corners.map(|p| dot(sub(p, center), normal).abs()).into_iter().fold(0.0, f64::max);
+        if rise > MOST_RISE * self.sigma && dot(normal, area).abs() < TURNED * norm(area) {
             return true;
         }
         let longest = self.lengths[f].into_iter().fold(0.0, f64::max);

@@ -33,6 +33,6 @@ pub(super) const TURN_AND_SHIFT_ROUNDING: [f64; 2] = [1e-15, 1e-14];
 /// rounding leaves there is less than this part of the largest eigenvalue.
 pub(super) const UNDETERMINED: f64 = 1e-6;
 
-/// A sliver of the mesh is in order as long as it keeps this part of its quality: a fan of slivers, as a flat cap
-/// is made of, is no fault, and rounding thins it.
-pub(super) const THINNED: f64 = 0.5;
+/// A sliver of the mesh is in order as long as it keeps this part of its quality: rounding thins the fan of
+/// slivers that a flat cap may be made of, and so it would be relaxed.
+pub(super) const THINNED: f64 = 0.9;
