@@ -99,3 +99,17 @@ def test_a_rim_of_thousands_around_one_vertex_is_restored_onto_its_plane() -> No
     assert np.abs(rim - vertices[:-1]).max() < 0.01
     spread = np.linalg.svd(rim - rim.mean(0), compute_uv=False)
     assert spread[2] < 1e-9 * spread[0]
+
+
+def test_a_pyramid_whose_rim_is_in_hundreds_of_pieces_has_its_planes_as_facets() -> None:
+    along = np.arange(200) / 100 - 1
+    right = np.column_stack([np.ones(200), along, np.zeros(200)])
+    quarter = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    rim = np.concatenate([right @ np.linalg.matrix_power(quarter, k) for k in range(4)])
+    a, b = np.arange(800), (np.arange(800) + 1) % 800
+    top, bottom = np.column_stack([np.full(800, 800), a, b]), np.column_stack([np.full(800, 801), b, a])
+    vertices = np.vstack([rim, [[0, 0, 1.0], [0, 0, 0.0]]])
+    found = ridgeform.facet(ridgeform.Mesh(vertices, np.concatenate([top, bottom])))
+    assert found.n_facets == 5
+    assert len(found.vertices) == 5
+    assert found.largest < 1e-9

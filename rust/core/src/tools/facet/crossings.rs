@@ -59,12 +59,7 @@ pub(super) fn crossings(triangles: &[[u32; 3]], places: &[[Point; 3]]) -> Result
     let tree = ClosestPoint::new(memory::gathered(places.iter().copied())?)?;
     let mut found = Vec::new();
     for (i, triangle) in places.iter().enumerate() {
-        let (mut low, mut high) = (triangle[0], triangle[0]);
-        for corner in &triangle[1..] {
-            for c in 0..3 {
-                (low[c], high[c]) = (low[c].min(corner[c]), high[c].max(corner[c]));
-            }
-        }
+        let [low, high] = box_of(triangle);
         let mut pushed = Ok(());
         tree.visit_box(low, high, &mut |j| {
             let other = j as usize;
@@ -80,13 +75,28 @@ pub(super) fn crossings(triangles: &[[u32; 3]], places: &[[Point; 3]]) -> Result
     Ok(found)
 }
 
+/// The least and the largest coordinates of points.
+fn box_of(points: &[Point]) -> [Point; 2] {
+    let all = |c: usize| points.iter().map(move |p| p[c]);
+    let low = [0, 1, 2].map(|c| all(c).fold(f64::INFINITY, f64::min));
+    [low, [0, 1, 2].map(|c| all(c).fold(f64::NEG_INFINITY, f64::max))]
+}
+
 /// Whether an edge of triangle `i` passes through triangle `j`, from which it starts at no common corner.
 fn cross(triangles: &[[u32; 3]], places: &[[Point; 3]], i: usize, j: usize) -> bool {
     (0..3).any(|k| {
         let ends = [k, (k + 1) % 3];
         ends.iter().all(|&e| !triangles[j].contains(&triangles[i][e]))
+            && meet(&ends.map(|e| places[i][e]), &places[j])
             && passes(ends.map(|e| places[i][e]), places[j])
     })
+}
+
+/// Whether the boxes of points meet. Thin triangles around one vertex lie in each other's boxes, all of them;
+/// the edges across from it hardly do.
+fn meet(a: &[Point], b: &[Point]) -> bool {
+    let ([a_low, a_high], [b_low, b_high]) = (box_of(a), box_of(b));
+    (0..3).all(|c| a_low[c] <= b_high[c] && b_low[c] <= a_high[c])
 }
 
 fn passes([p, q]: [Point; 2], [a, b, c]: [Point; 3]) -> bool {

@@ -9,6 +9,9 @@ use crate::mesh::connectivity::{next, previous};
 use crate::mesh::vector::{cross, distance, norm, sub, unit, Point};
 use crate::{memory, Result};
 
+/// Corners that need not lie on one line.
+const OFF_LINE: usize = 3;
+
 /// Whether a set of regions can be a facet.
 enum Verdict {
     Facet,
@@ -108,21 +111,52 @@ impl Regions<'_> {
         set: &Set,
     ) -> Result<Option<u32>> {
         let corners: HashSet<u32> = memory::distinct(loops.iter().flatten().map(|ridge| ridge.from))?;
+        let tail = |h: u32| self.connectivity.tail(h as usize);
+        let at = || border.iter().copied().filter(|&h| corners.contains(&tail(h)));
+        // Vertices with more regions around them than the border is long: not all of these are looked at.
+        let is_hub = |&h: &u32| self.valence[tail(h) as usize] as usize > border.len();
+        let mut hubs: Vec<u32> = memory::sifted(at().filter(is_hub))?;
+        if hubs.len() >= OFF_LINE {
+            hubs.clear();
+        }
         let mut met: Vec<(u32, u32)> = Vec::new();
-        for &h in border.iter().filter(|&&h| corners.contains(&self.connectivity.tail(h as usize))) {
-            let v = self.connectivity.tail(h as usize);
+        for h in at().filter(|h| !hubs.contains(h)) {
             for r in self.regions_at(h)?.into_iter().filter(|r| !set.contains(*r)) {
-                memory::push(&mut met, (r, v))?;
+                memory::push(&mut met, (r, tail(h)))?;
             }
         }
         met.sort_unstable();
         met.dedup();
-        for group in met.chunk_by(|a, b| a.0 == b.0).filter(|group| group.len() > 2) {
+        self.meet_at_hubs(&mut met, &hubs)?;
+        for group in met.chunk_by(|a, b| a.0 == b.0).filter(|group| group.len() >= OFF_LINE) {
             if !self.is_on_line(group)? {
                 return Ok(Some(group[0].0));
             }
         }
         Ok(None)
+    }
+
+    /// Adds to the corners that regions were `met` at those at `hubs`, where it matters: of regions that were
+    /// met at so many others that they can be off a line.
+    fn meet_at_hubs(&self, met: &mut Vec<(u32, u32)>, hubs: &[u32]) -> Result<()> {
+        let groups = met.chunk_by(|a, b| a.0 == b.0).filter(|group| group.len() + hubs.len() >= OFF_LINE);
+        let often: Vec<u32> = memory::sifted(groups.map(|group| group[0].0))?;
+        for &h in hubs {
+            let v = self.connectivity.tail(h as usize);
+            let touches =
+                |&r: &u32| self.borders[r as usize].iter().any(|&h| self.connectivity.tail(h as usize) == v);
+            let there: HashSet<u32> = memory::distinct(often.iter().copied().filter(touches))?;
+            if there.is_empty() {
+                continue;
+            }
+            // What touches a vertex need not be met around it from here, where two sheets do.
+            for r in self.regions_at(h)?.into_iter().filter(|r| there.contains(r)) {
+                memory::push(met, (r, v))?;
+            }
+        }
+        met.sort_unstable();
+        met.dedup();
+        Ok(())
     }
 
     /// The regions around the vertex where `h` starts, as far as faces lead from that of `h`.
