@@ -118,6 +118,17 @@ def test_a_cylinder_of_two_rims_is_no_sphere_and_stays_as_it_is(n, single):
     assert np.abs(result.vertices - vertices).max() < 1e-6
 
 
+@pytest.mark.parametrize("height", [0.7, 2.0])
+def test_a_cone_without_vertices_between_is_no_plane(height):
+    rim = two_rims(32)[0][:32]
+    vertices = np.concatenate([rim, [[0, 0, height - 1.0], [0, 0, -1.0]]])
+    i, j = np.arange(32), (np.arange(32) + 1) % 32
+    faces = np.concatenate([np.stack([i, j, 0 * i + 32], 1), np.stack([j, i, 0 * i + 33], 1)])
+    result = ridgeform.restore(ridgeform.Mesh(vertices, faces))
+    assert kinds(result) == ["cone", "plane"]
+    assert np.abs(result.vertices - vertices).max() < 1e-6
+
+
 def two_rims(n):
     """A cylinder of n sides without vertices between its rims; a fan of triangles is each cap."""
     angle = 2 * np.pi * np.arange(n) / n

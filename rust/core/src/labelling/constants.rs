@@ -24,8 +24,9 @@ pub(super) const ENOUGH: usize = 1000;
 /// Points that a merge is judged by before it is fitted to all.
 pub(super) const JUDGED_BY: usize = 300;
 
-/// A surface turns by no more than this (radians; 46 degrees) under one face of it: cylinders have eight
-/// sides and more. The corners of any box lie on a sphere, and so do those of two caps and nothing between.
+/// A surface turns by no more than this (radians; 46 degrees) under one face of it, and a face is tilted
+/// against it by no more: cylinders have eight sides and more. The corners of any box lie on a sphere, and so
+/// do those of two caps and nothing between.
 pub(super) const MOST_TURN: f64 = 0.8;
 
 /// The part of the way from the corners of a face to its center at which that is looked at: in the apex of a
@@ -33,6 +34,6 @@ pub(super) const MOST_TURN: f64 = 0.8;
 pub(super) const BESIDE: f64 = 0.1;
 
 /// Noise lifts a corner of a face by no more than so many standard deviations over its center, along the
-/// normal of its surface: a face that is tilted by more stands across the surface. Without noise in it, the
-/// caps of a noisy cylinder (0.3 of an edge) took half of its side.
+/// normal of its surface, and a vertex over the surface. Without noise in the first, the caps of a noisy
+/// cylinder (0.3 of an edge) took half of its side.
 pub(super) const MOST_RISE: f64 = 4.0;

@@ -3,8 +3,7 @@
 use super::constants::{BESIDE, BORDER, FREE_MISFIT, MOST_RISE, MOST_TURN};
 use super::Domain;
 use crate::mesh::vector::{between, centroid, dot, norm, sub};
-use crate::shape_guard::TURNED;
-use crate::surfaces::{misfit, Kind, Surface, MOST_MISFIT};
+use crate::surfaces::{misfit, Surface, MOST_MISFIT};
 use crate::{memory, Result};
 
 /// No label: the face takes no part.
@@ -73,26 +72,38 @@ impl Domain<'_> {
     /// What the corners of face `f` cost on a piece, by its share of each.
     pub(super) fn face_cost(&self, f: usize, piece: Option<&Piece>) -> f64 {
         let Some(piece) = piece else { return 0.0 };
-        let corners = self.connectivity.faces()[f];
-        let each = |cost: &dyn Fn(u32) -> f64| corners.iter().map(|&v| self.share(f, v) * cost(v)).sum();
         match &piece.surface {
-            Some(surface) if self.strays(f, surface) => each(&|_| MOST_MISFIT),
-            Some(surface) => each(&|v| misfit(surface.distance(self.positions[v as usize]).0, self.sigma)),
-            None => each(&|_| FREE_MISFIT),
+            Some(surface) => self.cost_on(f, surface),
+            None => FREE_MISFIT * self.shares(f),
         }
     }
 
-    /// Whether face `f` is none of `surface`, although its corners may lie on it: it stands across it by
-    /// more than noise tilts it, or the surface turns by more than [`MOST_TURN`] under it.
-    fn strays(&self, f: usize, surface: &Surface) -> bool {
-        if surface.kind() == Kind::Plane {
-            return false;
+    fn shares(&self, f: usize) -> f64 {
+        self.connectivity.faces()[f].iter().map(|&v| self.share(f, v)).sum()
+    }
+
+    /// What face `f` costs on `surface`: its corners' misfits. One that has a corner off the surface is no
+    /// better there than free, and one that lies across it is as far off as can be.
+    fn cost_on(&self, f: usize, surface: &Surface) -> f64 {
+        if self.is_across(f, surface) {
+            return MOST_MISFIT * self.shares(f);
         }
+        let corners = self.connectivity.faces()[f];
+        let off = corners.map(|v| surface.distance(self.positions[v as usize]).0);
+        let is_off = off.iter().any(|d| d.abs() > MOST_RISE * self.sigma);
+        let least = if is_off { FREE_MISFIT } else { 0.0 };
+        corners.iter().zip(off).map(|(&v, d)| self.share(f, v) * misfit(d, self.sigma).max(least)).sum()
+    }
+
+    /// Whether face `f` lies across `surface`, although its corners may be on it: it is tilted by more than
+    /// noise explains, or the surface turns by more than [`MOST_TURN`] under it.
+    fn is_across(&self, f: usize, surface: &Surface) -> bool {
         let corners = self.connectivity.faces()[f].map(|v| self.positions[v as usize]);
         let (center, area) = (centroid(corners), self.areas[f]);
         let normal = surface.distance(center).1;
         let rise = corners.map(|p| dot(sub(p, center), normal).abs()).into_iter().fold(0.0, f64::max);
-        if rise > MOST_RISE * self.sigma && dot(normal, area).abs() < TURNED * norm(area) {
+        let least = MOST_TURN.cos();
+        if rise > MOST_RISE * self.sigma && dot(normal, area).abs() < least * norm(area) {
             return true;
         }
         let longest = self.lengths[f].into_iter().fold(0.0, f64::max);
@@ -100,19 +111,16 @@ impl Domain<'_> {
             return false;
         }
         let [a, b, c] = corners.map(|p| surface.distance(between(p, center, BESIDE)).1);
-        let least = MOST_TURN.cos();
         dot(a, b) < least || dot(b, c) < least || dot(c, a) < least
     }
 
-    /// What `faces` cost more than their corners say, since they are none of `surface`.
+    /// What `faces` cost on `surface` more than their corners alone say.
     pub(super) fn strain(&self, faces: &[u32], surface: &Surface) -> f64 {
-        let cost = |f: usize| -> f64 {
-            let excess =
-                |v: u32| MOST_MISFIT - misfit(surface.distance(self.positions[v as usize]).0, self.sigma);
-            self.connectivity.faces()[f].iter().map(|&v| self.share(f, v) * excess(v)).sum()
+        let corners = |f: usize| -> f64 {
+            let cost = |v: u32| misfit(surface.distance(self.positions[v as usize]).0, self.sigma);
+            self.connectivity.faces()[f].iter().map(|&v| self.share(f, v) * cost(v)).sum()
         };
-        let each = faces.iter().map(|&f| f as usize);
-        each.filter(|&f| self.strays(f, surface)).map(cost).sum()
+        faces.iter().map(|&f| self.cost_on(f as usize, surface) - corners(f as usize)).sum()
     }
 
     /// What the parameters of a piece cost.

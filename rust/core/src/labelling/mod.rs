@@ -7,7 +7,9 @@
 //! surfaces, shared among them by the areas of its faces: so the correlation of neighboring faces, which have
 //! corners in common, is taken into account, and `E` is the negative logarithm of a likelihood. `ρ` is
 //! [`crate::surfaces::misfit`], `κ` half the logarithm of the number of observations (Schwarz 1978). A piece
-//! without a surface of a known kind is free: its vertices cost [`FREE_MISFIT`] each.
+//! without a surface of a known kind is free: its vertices cost [`FREE_MISFIT`] each. Few vertices may carry
+//! much of a modeled shape, so faces have a say: one with a corner off its surface is no better there than
+//! free, and one that lies across it counts as far off.
 //!
 //! Moves: fit and exchange the kind ([`pieces`]), [`relabel`] faces at borders, [`merge`] neighbors; each is
 //! taken only if `E` falls.
