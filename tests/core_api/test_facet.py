@@ -263,6 +263,35 @@ def test_no_facet_passes_through_another(name, vertices, faces, facets):
     assert found.n_facets < len(faces) / 2
 
 
+def wavy_sphere(seed, *, thickness, share_of_holes=0.0):
+    """A thin sphere with waves, without some of its faces."""
+    rng = np.random.default_rng(seed)
+    vertices, faces = shapes.voxels([(0, 0, 0)], 8)
+    vertices = vertices - vertices.mean(0)
+    vertices /= np.linalg.norm(vertices, axis=1, keepdims=True)
+    vertices *= (1 + 0.2 * np.sin(4 * vertices @ rng.normal(size=3)))[:, None]
+    return vertices * [1, 0.8, thickness], faces[rng.random(len(faces)) >= share_of_holes]
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("facets", [12, 30])
+def test_thin_shapes_come_in_the_number_that_is_asked_for(seed, facets):
+    vertices, faces = wavy_sphere(seed, thickness=0.1)
+    found = ridgeform.facet(ridgeform.Mesh(vertices, faces), facets=facets)
+    check_sound(found, 2.0)
+    assert found.n_facets == facets == len(found.planes)
+    assert n_passing(found.vertices, found.faces) == 0
+
+
+@pytest.mark.parametrize(("seed", "thickness", "share"), [(1, 0.1, 0.03), (3, 0.3, 0.1), (4, 0.1, 0.1)])
+def test_no_edge_is_used_twice_where_holes_are_many(seed, thickness, share):
+    vertices, faces = wavy_sphere(seed, thickness=thickness, share_of_holes=share)
+    found = ridgeform.facet(ridgeform.Mesh(vertices, faces), facets=12)
+    for rings in (polygons(found), list(found.faces)):
+        assert set(directed_sides([ring.tolist() for ring in rings]).values()) == {1}
+    assert found.n_crossings == 0
+
+
 def test_what_passes_through_on_the_mesh_may_do_so():
     vertices, faces = shapes.voxels([(0, 0, 0)], 4)
     both = np.vstack([vertices, vertices + np.array([0.52, 0.41, 0.33])])

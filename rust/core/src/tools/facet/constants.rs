@@ -80,9 +80,13 @@ pub(super) const TRIES: Turns = Turns { count: 6, factor: 10.0 };
 /// stay as they are.
 pub(super) const STRIKES: u32 = 5;
 
-/// How many times merges are refused at what touches last, before all that is unsound stays as on the mesh:
-/// a bound on the time. After as many times again the whole mesh stays.
+/// How many times merges are refused at what touches last, before it is begun with twice as many regions; at
+/// last all that is unsound stays as on the mesh, and after as many times again the whole mesh.
 pub(super) const REFUSALS: usize = 8;
+
+/// How often the number of regions is doubled where they are not sound: a bound on the time. Whatever stays
+/// as on the mesh instead is joined face by face: a torus of 1320 faces in 6 facets took 17 s, and takes 2 s.
+pub(super) const DOUBLINGS: usize = 3;
 
 /// How many times the planes are taken anew to end at the number of facets asked for,
 /// since repairs change it.

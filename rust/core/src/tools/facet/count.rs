@@ -34,11 +34,6 @@ impl Merges {
         (squares / area).sqrt()
     }
 
-    /// Whether the regions are facets after so many merges.
-    pub(super) fn is_whole(&self, n_merges: usize) -> bool {
-        n_merges == 0 || self.is_whole[n_merges - 1]
-    }
-
     /// How many of `n` regions to leave, on a mesh of so many vertices.
     pub(super) fn count(&self, wanted: Wanted, n: usize, n_vertices: usize, area: f64) -> usize {
         let [fewest, most] = self.range(n);

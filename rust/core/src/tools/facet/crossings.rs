@@ -63,7 +63,8 @@ pub(super) fn crossings(triangles: &[[u32; 3]], places: &[[Point; 3]]) -> Result
         let mut pushed = Ok(());
         tree.visit_box(low, high, &mut |j| {
             let other = j as usize;
-            if other > i && (cross(triangles, places, i, other) || cross(triangles, places, other, i)) {
+            let of = |i: usize| (&triangles[i], &places[i]);
+            if other > i && cross(of(i), of(other)) {
                 if let Err(error) = memory::push(&mut found, [i as u32, j]) {
                     pushed = Err(error);
                 }
@@ -82,14 +83,18 @@ fn box_of(points: &[Point]) -> [Point; 2] {
     [low, [0, 1, 2].map(|c| all(c).fold(f64::NEG_INFINITY, f64::max))]
 }
 
-/// Whether an edge of triangle `i` passes through triangle `j`, from which it starts at no common corner.
-fn cross(triangles: &[[u32; 3]], places: &[[Point; 3]], i: usize, j: usize) -> bool {
-    (0..3).any(|k| {
-        let ends = [k, (k + 1) % 3];
-        ends.iter().all(|&e| !triangles[j].contains(&triangles[i][e]))
-            && meet(&ends.map(|e| places[i][e]), &places[j])
-            && passes(ends.map(|e| places[i][e]), places[j])
-    })
+/// Whether an edge of one of two triangles, given by corners and places, passes through the other, from which
+/// it starts at no common corner.
+pub(super) fn cross(first: (&[u32; 3], &[Point; 3]), second: (&[u32; 3], &[Point; 3])) -> bool {
+    let is_through = |(own, at): (&[u32; 3], &[Point; 3]), (other, place): (&[u32; 3], &[Point; 3])| {
+        (0..3).any(|k| {
+            let ends = [k, (k + 1) % 3];
+            ends.iter().all(|&e| !other.contains(&own[e]))
+                && meet(&ends.map(|e| at[e]), place)
+                && passes(ends.map(|e| at[e]), *place)
+        })
+    };
+    is_through(first, second) || is_through(second, first)
 }
 
 /// Whether the boxes of points meet. Thin triangles around one vertex lie in each other's boxes, all of them;

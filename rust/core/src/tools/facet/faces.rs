@@ -7,7 +7,7 @@ use super::crossings::Standing;
 use super::moments::Moments;
 use super::shape::Shape;
 use crate::memory;
-use crate::mesh::vector::{centroid, Point};
+use crate::mesh::vector::{area_vector, between, centroid, distance, norm, Point};
 use crate::remesh::closest::ClosestPoint;
 use crate::Result;
 
@@ -19,6 +19,8 @@ pub(super) struct Scan {
     pub moments: Vec<Moments>,
     pub area: f64,
     pub standing: Standing,
+    /// Sides that more than one face has, from vertex to vertex, sorted.
+    doubled: Vec<[u32; 2]>,
     tree: ClosestPoint,
 }
 
@@ -30,15 +32,30 @@ impl Scan {
             centers: memory::gathered(places.iter().map(|&corners| centroid(corners)))?,
             area: moments.iter().map(|m| m.area).sum(),
             standing: Standing::new(faces, &places)?,
+            doubled: doubled(faces)?,
             tree: ClosestPoint::new(memory::twin(&places)?)?,
             moments,
             places,
         })
     }
 
+    /// Whether more than one face has a side, from vertex to vertex.
+    pub(super) fn is_doubled(&self, side: [u32; 2]) -> bool {
+        self.doubled.binary_search(&side).is_ok()
+    }
+
     /// The point of the mesh nearest to another.
     pub(super) fn on_mesh(&self, point: Point) -> Point {
         self.tree.closest(point, None, |_| true).map_or(point, |near| near.point)
+    }
+
+    /// The integral of the squared distance of a triangle from the mesh, by the rule of three points, exact
+    /// for squares.
+    pub(super) fn off_mesh(&self, corners: [Point; 3]) -> f64 {
+        let middle = centroid(corners);
+        let points = corners.map(|corner| between(middle, corner, 0.5));
+        let squares = points.map(|p| distance(p, self.on_mesh(p)).powi(2));
+        norm(area_vector(corners)) / 3.0 * squares.iter().sum::<f64>()
     }
 
     /// The integrals over the faces of each of `n` labels.
@@ -74,4 +91,12 @@ impl Faces<'_> {
         }
         Ok(())
     }
+}
+
+/// The sides that more than one of the faces has, sorted.
+fn doubled(faces: &[[u32; 3]]) -> Result<Vec<[u32; 2]>> {
+    let mut all: Vec<[u32; 2]> =
+        memory::sifted(faces.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]))?;
+    all.sort_unstable();
+    Ok(memory::sifted(all.chunk_by(|a, b| a == b).filter(|group| group.len() > 1).map(|group| group[0]))?)
 }

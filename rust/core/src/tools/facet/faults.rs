@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::constants::FLAT;
 use super::crossings::crossings;
-use super::faces::Faces;
+use super::faces::{Faces, Scan};
 use super::shape::{self, Shape};
 use super::triangulation::{forced, triangles};
 use crate::memory;
@@ -43,7 +43,7 @@ impl Inspection {
             memory::extend(&mut found.triangles, own.len())?;
             found.triangles.extend(own);
         }
-        found.find_doubled(shape)?;
+        found.find_doubled(shape, faces.scan)?;
         if is_thorough || found.crossed.is_empty() {
             let pair = |[i, j]: [u32; 2]| {
                 let (p, q) = (found.owners[i as usize], found.owners[j as usize]);
@@ -60,16 +60,15 @@ impl Inspection {
         Ok(found)
     }
 
-    /// Facets that share two corners may both have the diagonal between them: four triangles meet there.
-    fn find_doubled(&mut self, shape: &Shape) -> Result<()> {
+    /// Facets that share two corners may both have the side or the diagonal between them: four triangles meet
+    /// there.
+    fn find_doubled(&mut self, shape: &Shape, scan: &Scan) -> Result<()> {
         let mut sides: HashMap<[u32; 2], u32> = HashMap::new();
         memory::extend_map(&mut sides, 3 * self.triangles.len())?;
         for (triangle, &owner) in self.triangles.iter().zip(&self.owners) {
             for side in shape::sides(triangle) {
                 let Some(other) = sides.insert(side, owner) else { continue };
-                // What meets along more than one side does so on the mesh.
-                let is_side = |k: u32| shape.facets[k as usize].sides().any(|own| own == side);
-                if !(is_side(other) && is_side(owner)) {
+                if !scan.is_doubled(side.map(|c| shape.corners[c as usize].vertex)) {
                     memory::extend(&mut self.crossed, 2)?;
                     self.crossed.extend([other, owner]);
                 }

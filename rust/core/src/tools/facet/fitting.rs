@@ -9,7 +9,7 @@ use super::shape::{Corner, Facet, Shape};
 use super::solve::flatten;
 use super::triangulation::{forced, triangles};
 use crate::memory;
-use crate::mesh::vector::{area_vector, between, centroid, distance, norm, unit};
+use crate::mesh::vector::{area_vector, between, distance, norm, unit};
 use crate::progress::Progress;
 use crate::Result;
 
@@ -61,13 +61,8 @@ fn measured(shape: &Shape, faces: &Faces<'_>, inspection: &Inspection) -> Result
     let (labels, distances) = faces.nearest(shape, inspection)?;
     let (mut squares, mut total) = (0.0, 0.0);
     for triangle in inspection.places(shape)? {
-        let area = norm(area_vector(triangle));
-        let middle = centroid(triangle);
-        // The rule of three points, exact for squares.
-        let points = triangle.map(|corner| between(middle, corner, 0.5));
-        squares +=
-            area / 3.0 * points.map(|p| distance(p, faces.scan.on_mesh(p)).powi(2)).iter().sum::<f64>();
-        total += area;
+        squares += faces.scan.off_mesh(triangle);
+        total += norm(area_vector(triangle));
     }
     Ok((labels, (distances.rms.powi(2) + squares / f64::max(total, f64::MIN_POSITIVE)).sqrt()))
 }

@@ -11,8 +11,8 @@ use crate::{memory, Result};
 #[derive(Debug)]
 pub(super) struct Hierarchy {
     n: usize,
-    /// Of each node that is no face: the nodes that it was made of, and its merges among all.
-    made: Vec<(Vec<u32>, std::ops::Range<usize>)>,
+    /// Of each node that is no face: the nodes that it was made of.
+    made: Vec<Vec<u32>>,
 }
 
 /// Disjoint nodes that hold all faces.
@@ -27,7 +27,7 @@ impl Hierarchy {
         let mut node: Vec<u32> = memory::numbers(n)?;
         let mut cut: Cut = node.iter().copied().collect();
         let mut made = Vec::new();
-        let (mut parts, mut first) = (BTreeSet::new(), 0);
+        let mut parts = BTreeSet::new();
         for (i, &[kept, gone]) in merges.pairs[..n_merges].iter().enumerate() {
             let of = [kept, gone].map(|f| node[sets.root(f) as usize]);
             // In the midst of several merges the node is not made yet.
@@ -37,9 +37,8 @@ impl Hierarchy {
             node[sets.root(kept) as usize] = fresh;
             if merges.is_last[i] {
                 let whole = memory::gathered(std::mem::take(&mut parts))?;
-                memory::push(&mut made, (whole, first..i + 1))?;
+                memory::push(&mut made, whole)?;
                 cut.insert(fresh);
-                first = i + 1;
             }
         }
         Ok((Self { n, made }, cut))
@@ -47,12 +46,7 @@ impl Hierarchy {
 
     /// What a node was made of; nothing where it is a face.
     fn parts(&self, node: u32) -> &[u32] {
-        (node as usize).checked_sub(self.n).map_or(&[], |i| self.made[i].0.as_slice())
-    }
-
-    /// The merges that made a node of its parts.
-    pub(super) fn merges(&self, node: u32) -> std::ops::Range<usize> {
-        (node as usize).checked_sub(self.n).map_or(0..0, |i| self.made[i].1.clone())
+        (node as usize).checked_sub(self.n).map_or(&[], |i| self.made[i].as_slice())
     }
 
     pub(super) fn is_face(&self, node: u32) -> bool {
@@ -118,19 +112,5 @@ impl Hierarchy {
             }
             split.into_iter().for_each(|node| self.split(cut, node));
         }
-    }
-
-    /// The merges within the nodes of the cut, in their order.
-    pub(super) fn within(&self, cut: &Cut) -> Result<Vec<usize>> {
-        let mut found = Vec::new();
-        let mut stack: Vec<u32> = memory::gathered(cut.iter().copied())?;
-        while let Some(node) = stack.pop() {
-            memory::extend(&mut found, self.merges(node).len())?;
-            found.extend(self.merges(node));
-            memory::extend(&mut stack, self.parts(node).len())?;
-            stack.extend(self.parts(node));
-        }
-        found.sort_unstable();
-        Ok(found)
     }
 }

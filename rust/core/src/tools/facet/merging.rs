@@ -6,7 +6,6 @@ use std::collections::{BinaryHeap, HashMap, HashSet};
 use super::constants::{FLAT, PATIENCE};
 use super::moments::Moments;
 use super::regions::{Regions, Set};
-use crate::mesh::partition::Partition;
 use crate::mesh::vector::Point;
 use crate::ordered::Ordered;
 use crate::progress::{Progress, Report};
@@ -25,9 +24,7 @@ pub(super) struct Merges {
     pub costs: Vec<f64>,
     /// The integral of the squared distance from the planes after each of them.
     pub squared_distances: Vec<f64>,
-    /// Whether the regions are facets after each of them: not in the midst of several that are made at once.
-    pub is_whole: Vec<bool>,
-    /// Whether each is the last of those that were made at once.
+    /// Whether each is the last of those that were made at once: the regions are facets then.
     pub is_last: Vec<bool>,
 }
 
@@ -38,8 +35,6 @@ struct Merging<'r, 'a, W> {
     stamps: Vec<u32>,
     heap: BinaryHeap<Offer>,
     refused: Refused,
-    /// Regions that are never to be in one facet with a region.
-    apart: HashMap<u32, Vec<u32>>,
     weight: W,
 }
 
@@ -72,13 +67,12 @@ impl Refused {
 }
 
 /// Merges regions, whose `moments` are given, until none can be merged with another. Regions that are `held`
-/// are none of them; nor are two that are to be `apart`. `weight` is what a border along a halfedge costs:
+/// are none of them. `weight` is what a border along a halfedge costs:
 /// cheap ones stay. `on_mesh` is the nearest point of the mesh.
 pub(super) fn merges(
     regions: &mut Regions<'_>,
     moments: Vec<Moments>,
     held: &[bool],
-    apart: &[[u32; 2]],
     weight: impl Fn(u32) -> f64,
     on_mesh: impl Fn(Point) -> Point,
     progress: &Progress,
@@ -94,14 +88,8 @@ pub(super) fn merges(
         stamps: memory::repeated(0, n)?,
         heap: BinaryHeap::new(),
         refused: Refused::default(),
-        apart: HashMap::new(),
         weight,
     };
-    for &[p, q] in apart {
-        memory::extend_map(&mut merging.apart, 2)?;
-        memory::push(merging.apart.entry(p).or_default(), q)?;
-        memory::push(merging.apart.entry(q).or_default(), p)?;
-    }
     for p in (0..n as u32).filter(|&p| !held[p as usize]) {
         for (q, border) in merging.regions.neighbors(p)? {
             if q > p && !held[q as usize] {
@@ -125,7 +113,7 @@ pub(super) fn merges(
             continue;
         }
         let closed = merging.regions.closure(set, |r| held[r as usize], |set| merging.cost(set))?;
-        let Some(whole) = closed.filter(|whole| !merging.is_apart(whole)) else {
+        let Some(whole) = closed else {
             merging.refused.push(set.first_two())?;
             continue;
         };
@@ -151,15 +139,12 @@ pub(super) fn merges(
             merging.moments[stays as usize] = joined;
             merging.energies[stays as usize] = fit.energy;
             [stays, gone].into_iter().for_each(|r| merging.stamps[r as usize] += 1);
-            merging.rename(gone, stays)?;
             kept = stays;
             memory::push(&mut made.pairs, [stays, gone])?;
             memory::push(&mut made.costs, cost)?;
             memory::push(&mut made.squared_distances, total.max(0.0))?;
-            memory::push(&mut made.is_whole, false)?;
             memory::push(&mut made.is_last, false)?;
         }
-        made.is_whole.last_mut().into_iter().for_each(|whole| *whole = true);
         made.is_last.last_mut().into_iter().for_each(|last| *last = true);
         for (r, border) in merging.regions.neighbors(kept)? {
             if !held[r as usize] {
@@ -179,9 +164,6 @@ impl<W: Fn(u32) -> f64> Merging<'_, '_, W> {
     fn propose(&mut self, p: u32, q: u32, border: &[u32]) -> Result<()> {
         let weight = border.iter().map(|&h| (self.weight)(h)).sum::<f64>() / border.len().max(1) as f64;
         let set = Set::pair(p, q);
-        if self.is_apart(&set) {
-            return Ok(());
-        }
         let cost = self.cost(&set) / weight.max(f64::MIN_POSITIVE);
         self.push(cost, set, cost)
     }
@@ -213,34 +195,10 @@ impl<W: Fn(u32) -> f64> Merging<'_, '_, W> {
     }
 
     fn cost(&self, set: &Set) -> f64 {
-        if self.is_apart(set) {
-            return f64::INFINITY;
-        }
         let joined = self.joined(set);
         // What is flat grows evenly: one region that takes a face at a time is slow.
         FLAT * FLAT * joined.area + joined.fit().energy
             - set.iter().map(|r| self.energies[r as usize]).sum::<f64>()
-    }
-
-    /// Whether two of the regions are not to be in one facet.
-    fn is_apart(&self, set: &Set) -> bool {
-        set.iter().any(|p| self.apart.get(&p).is_some_and(|others| others.iter().any(|&q| set.contains(q))))
-    }
-
-    /// What was to be apart from a region that is gone is to be so from the one that it became part of.
-    fn rename(&mut self, gone: u32, kept: u32) -> Result<()> {
-        let others = self.apart.remove(&gone).unwrap_or_default();
-        for other in &others {
-            let named = self.apart.get_mut(other).into_iter().flatten();
-            named.filter(|r| **r == gone).for_each(|r| *r = kept);
-        }
-        if !others.is_empty() {
-            memory::extend_map(&mut self.apart, 1)?;
-            let all = self.apart.entry(kept).or_default();
-            memory::extend(all, others.len())?;
-            all.extend(others);
-        }
-        Ok(())
     }
 
     /// How often the regions have changed.
@@ -256,58 +214,7 @@ impl Merges {
             pairs: memory::twin(&self.pairs)?,
             costs: memory::twin(&self.costs)?,
             squared_distances: memory::twin(&self.squared_distances)?,
-            is_whole: memory::twin(&self.is_whole)?,
             is_last: memory::twin(&self.is_last)?,
         })
-    }
-
-    /// Some of them, after which all are facets.
-    pub(super) fn only(&self, which: &[usize]) -> Result<Self> {
-        let mut is_whole = memory::repeated(false, which.len())?;
-        is_whole.last_mut().into_iter().for_each(|whole| *whole = true);
-        Ok(Self {
-            pairs: memory::gathered(which.iter().map(|&i| self.pairs[i]))?,
-            costs: memory::gathered(which.iter().map(|&i| self.costs[i]))?,
-            squared_distances: memory::gathered(which.iter().map(|&i| self.squared_distances[i]))?,
-            is_last: memory::gathered(which.iter().map(|&i| self.is_last[i]))?,
-            is_whole,
-        })
-    }
-
-    /// The same and then others, whose regions have these `names` here.
-    pub(super) fn followed_by(mut self, others: Self, names: &[u32]) -> Result<Self> {
-        let n = others.pairs.len();
-        memory::extend(&mut self.pairs, n)?;
-        memory::extend(&mut self.costs, n)?;
-        memory::extend(&mut self.squared_distances, n)?;
-        memory::extend(&mut self.is_whole, n)?;
-        memory::extend(&mut self.is_last, n)?;
-        self.pairs.extend(others.pairs.into_iter().map(|pair| pair.map(|r| names[r as usize])));
-        self.costs.extend(others.costs);
-        self.squared_distances.extend(others.squared_distances);
-        self.is_whole.extend(others.is_whole);
-        self.is_last.extend(others.is_last);
-        Ok(self)
-    }
-
-    /// The regions of `n` that are `count` after the first merges,
-    /// numbered in the order of their first members.
-    ///
-    /// # Errors
-    /// [`crate::error::SolveError::Memory`].
-    pub(super) fn labels(&self, n: usize, count: usize) -> Result<Vec<u32>> {
-        let mut sets = Partition::new(n)?;
-        self.pairs[..n - count].iter().for_each(|&[kept, gone]| sets.unite(kept, gone));
-        let mut names = memory::repeated(u32::MAX, n)?;
-        let mut next = 0;
-        let label = |f: u32| {
-            let name = &mut names[sets.root(f) as usize];
-            if *name == u32::MAX {
-                *name = next;
-                next += 1;
-            }
-            *name
-        };
-        Ok(memory::gathered((0..n as u32).map(label))?)
     }
 }

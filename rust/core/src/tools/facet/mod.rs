@@ -5,8 +5,9 @@
 //! three regions meet is a corner ([`shape`]). Then planes and corners are found together, such that every
 //! corner lies on all of its planes and the planes are near the faces ([`mod@solve`]); facets that cross
 //! themselves or others ([`faults`], [`crossings`]) are repaired ([`mod@repair`]), or the merges that made
-//! them refused ([`refusals`], [`search`]); faces are given to the nearest facet, and the planes fitted anew,
-//! in turns ([`fitting`]), as in variational shape approximation [Cohen-Steiner, Alliez and Desbrun 2004].
+//! them refused ([`refusals`], [`search`]), and what is too many then is joined ([`reducing`]); faces are
+//! given to the nearest facet, and the planes fitted anew, in turns ([`fitting`]), as in variational shape
+//! approximation [Cohen-Steiner, Alliez and Desbrun 2004].
 
 mod constants;
 mod count;
@@ -16,15 +17,18 @@ mod faults;
 mod fitting;
 mod hierarchy;
 mod job;
+mod joining;
 mod merging;
 mod moments;
 mod nearest;
 mod options;
+mod reducing;
 mod refusals;
 mod regions;
 mod repair;
 mod search;
 mod shape;
+mod skin;
 mod solve;
 mod straight;
 mod triangulation;
@@ -40,7 +44,6 @@ use crate::solve::Status;
 use crate::Result;
 use job::Job;
 use merging::Merges;
-use refusals::Refusals;
 use regions::OUTSIDE;
 use search::Found;
 
@@ -102,10 +105,7 @@ pub fn facet(
         let scan = job.scan()?;
         let merges = match merges {
             Some(merges) => merges.0.twin()?,
-            None => {
-                let refusals = Refusals::new(memory::twin(&job.is_held)?)?;
-                job.merges(Merges::default(), &scan, &refusals, options, progress)?
-            }
+            None => job.merges(&scan, options, progress)?,
         };
         let found = job.found(&merges, &scan, options, progress)?;
         job.given(mesh, found, merges, progress)

@@ -77,6 +77,14 @@ impl Moments {
         [0, 1, 2].map(|i| add(self.second[i], scale(self.first, -c[i])))
     }
 
+    /// The integral of the squared distance from any plane, with what turned faces cost.
+    pub(super) fn energy(&self, plane: &Plane) -> f64 {
+        let height = plane.height(self.center());
+        let turned = 2.0 * (self.area - dot(self.vector, plane.normal)).max(0.0);
+        quadratic(&self.spread(), plane.normal, plane.normal).max(0.0)
+            + self.area * (height * height + TURN * turned)
+    }
+
     /// The plane of least energy among that of least distance and the one along the mean normal.
     pub(super) fn fit(&self) -> PlaneFit {
         let spread = self.spread();

@@ -1,12 +1,10 @@
-//! Facets that cannot stay are not made: the merges that made them are taken back, and merging goes on
-//! without.
+//! Facets that cannot stay are not made: the merges that made them are taken back.
 
 use std::collections::{HashMap, HashSet};
 
 use super::constants::{STRIKES, TRIES};
 use super::faults::Unsound;
 use super::hierarchy::{Cut, Hierarchy};
-use super::merging::Merges;
 use super::regions::Regions;
 use super::shape::Shape;
 use crate::{memory, Result};
@@ -14,8 +12,6 @@ use crate::{memory, Result};
 /// What is not to be merged.
 #[derive(Debug)]
 pub(super) struct Refusals {
-    /// Pairs of faces that are not to be in one facet.
-    pub apart: Vec<[u32; 2]>,
     /// Faces that stay as they are, or whose neighbors do.
     pub is_held: Vec<bool>,
     /// How often each face was in a facet that could not stay.
@@ -26,13 +22,12 @@ pub(super) struct Refusals {
 
 impl Refusals {
     /// None yet, beside faces that are held.
-    pub(super) fn new(is_held: Vec<bool>) -> Result<Self> {
-        let strikes = memory::repeated(0, is_held.len())?;
-        Ok(Self { apart: Vec::new(), strikes, is_held, at_corners: HashMap::new() })
-    }
-
-    pub(super) fn n_held(&self) -> usize {
-        self.is_held.iter().filter(|held| **held).count()
+    pub(super) fn new(is_held: &[bool]) -> Result<Self> {
+        Ok(Self {
+            is_held: memory::twin(is_held)?,
+            strikes: memory::repeated(0, is_held.len())?,
+            at_corners: HashMap::new(),
+        })
     }
 
     /// How firmly a corner at this vertex is held.
@@ -44,17 +39,15 @@ impl Refusals {
     /// Takes back what made the unsound facets of `shape`, which was made of the regions of a cut: of
     /// those that touch, what was merged last. One merge of a region at first; where that does not do, three,
     /// seven, …; at last, or at once where `all` are to, all of them. What is one face then stays where it is
-    /// on the mesh: returned. Then merges are taken back that what remains cannot be facets beside.
-    pub(super) fn refuse<'a>(
+    /// on the mesh: returned.
+    pub(super) fn refuse(
         &mut self,
-        merges: &Merges,
-        (tree, mut cut): (Hierarchy, Cut),
+        (tree, cut): (&Hierarchy, &mut Cut),
         shape: &Shape,
         unsound: &Unsound,
         all: bool,
-        regions: impl Fn(&[u32], usize) -> Result<Regions<'a>>,
-    ) -> Result<Refused> {
-        let nodes = tree.nodes(&cut)?;
+    ) -> Result<Vec<u32>> {
+        let nodes = tree.nodes(cut)?;
         let node = |k: u32| nodes[shape.facets[k as usize].part as usize];
         let chosen = if all { memory::twin(&unsound.facets)? } else { unsound.latest(shape, node)? };
         let struck = memory::distinct(chosen.iter().map(|&k| node(k)))?;
@@ -80,48 +73,28 @@ impl Refusals {
             for _ in 0..most {
                 let Some(&latest) = within.last().filter(|node| !tree.is_face(**node)) else { break };
                 tree.split(&mut within, latest);
-                let pairs = &merges.pairs[tree.merges(latest)];
-                memory::extend(&mut self.apart, pairs.len())?;
-                self.apart.extend(pairs);
             }
             cut.remove(&node);
             cut.extend(within);
         }
-        Refused { tree, cut, stay }.closed(regions)
-    }
-}
-
-/// What remains of the merges, and the faces that are to stay as on the mesh.
-#[derive(Debug)]
-pub(super) struct Refused {
-    tree: Hierarchy,
-    cut: Cut,
-    pub stay: Vec<u32>,
-}
-
-impl Refused {
-    fn closed<'a>(mut self, regions: impl Fn(&[u32], usize) -> Result<Regions<'a>>) -> Result<Self> {
-        self.tree.close(&mut self.cut, regions)?;
-        Ok(self)
+        Ok(stay)
     }
 
-    /// The merges that remain, `held` faces in none of them.
-    pub(super) fn remaining<'a>(
-        mut self,
-        merges: &Merges,
-        held: &[bool],
+    /// Takes back all merges of faces that are held, and those that what remains cannot be facets beside.
+    pub(super) fn close<'a>(
+        &self,
+        (tree, cut): (&Hierarchy, &mut Cut),
         regions: impl Fn(&[u32], usize) -> Result<Regions<'a>>,
-    ) -> Result<Merges> {
+    ) -> Result<()> {
         loop {
-            let nodes = self.tree.nodes(&self.cut)?;
-            let merged = (0..).zip(nodes).filter(|&(f, node)| held[f as usize] && !self.tree.is_face(node));
-            let merged: HashSet<u32> = memory::distinct(merged.map(|(_, node)| node))?;
+            let nodes = tree.nodes(cut)?;
+            let is_merged = |&(f, node): &(usize, u32)| self.is_held[f] && !tree.is_face(node);
+            let merged = (0..).zip(nodes).filter(is_merged).map(|(_, node)| node);
+            let merged: HashSet<u32> = memory::distinct(merged)?;
             if merged.is_empty() {
-                break;
+                return tree.close(cut, regions);
             }
-            merged.into_iter().for_each(|node| self.tree.split(&mut self.cut, node));
+            merged.into_iter().for_each(|node| tree.split(cut, node));
         }
-        self.tree.close(&mut self.cut, regions)?;
-        merges.only(&self.tree.within(&self.cut)?)
     }
 }

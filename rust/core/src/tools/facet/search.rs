@@ -1,8 +1,8 @@
 //! The facets that are wanted, as many as are asked for, such that none passes through another.
 
-use std::borrow::Cow;
+use std::cmp::Ordering::Equal;
 
-use super::constants::{self, CHANGE, COUNTS, REFUSALS};
+use super::constants::{self, CHANGE, COUNTS, DOUBLINGS, REFUSALS};
 use super::count::Wanted;
 use super::faces::{Faces, Scan};
 use super::faults::{Inspection, Unsound};
@@ -10,9 +10,9 @@ use super::fitting;
 use super::hierarchy::{Cut, Hierarchy};
 use super::job::Job;
 use super::merging::{merges, Merges};
-use super::moments::Moments;
 use super::nearest::Distances;
 use super::options::FacetOptions;
+use super::reducing::reduce;
 use super::refusals::Refusals;
 use super::regions::{Regions, OUTSIDE};
 use super::shape::Shape;
@@ -37,6 +37,18 @@ struct Settled<'s> {
     faces: Faces<'s>,
 }
 
+/// The same, where what was not sound is divided.
+struct Divided<'s> {
+    n_unsound: usize,
+    is_divided: bool,
+    settled: Settled<'s>,
+    /// Twice how far the regions are off their planes.
+    tolerance: f64,
+}
+
+/// What comes nearest: unsound facets, and how far it is off what is wanted.
+type Rank = (usize, f64);
+
 impl Settled<'_> {
     fn distances(&self) -> Result<Distances> {
         Ok(self.faces.nearest(&self.shape, &Inspection::new(&self.shape, &self.faces, true)?)?.1)
@@ -49,37 +61,18 @@ impl Job<'_> {
         Scan::new(&memory::gathered(self.parts.iter().map(|&f| faces[f as usize]))?, self.places()?)
     }
 
-    /// Goes on with merges that were `begun`.
-    pub(super) fn merges(
-        &self,
-        begun: Merges,
-        scan: &Scan,
-        refusals: &Refusals,
-        options: &FacetOptions,
-        progress: &Progress,
-    ) -> Result<Merges> {
+    /// The merges of all parts but those that are held.
+    pub(super) fn merges(&self, scan: &Scan, options: &FacetOptions, progress: &Progress) -> Result<Merges> {
         let connectivity = self.working.mesh().connectivity();
-        let n = self.parts.len() - begun.pairs.len();
-        let labels = begun.labels(self.parts.len(), n)?;
-        let (mut names, mut is_held) = (memory::repeated(OUTSIDE, n)?, memory::repeated(false, n)?);
-        let mut moments = memory::repeated(Moments::default(), n)?;
-        for (f, ((&label, &held), place)) in
-            (0..).zip(labels.iter().zip(&refusals.is_held).zip(self.places()?))
-        {
-            names[label as usize] = names[label as usize].min(f);
-            is_held[label as usize] |= held;
-            moments[label as usize] = moments[label as usize].plus(&Moments::of(place));
-        }
-        let apart: Vec<[u32; 2]> =
-            memory::gathered(refusals.apart.iter().map(|pair| pair.map(|f| labels[f as usize])))?;
-        let mut regions = Regions::new(connectivity, &self.positions, self.labels(labels)?, n)?;
+        let n = self.parts.len();
+        let mut regions = self.regions(&memory::numbers(n)?, n)?;
         let rows = options.edge_weights.as_ref().map(|rows| self.working.corner_rows(rows)).transpose()?;
         let weight = |h: u32| {
             let of = |h: usize| rows.as_ref().map_or(1.0, |rows| rows[h / 3][h % 3]);
             connectivity.mate(h as usize).map_or(of(h as usize), |mate| of(h as usize).min(of(mate)))
         };
-        let rest = merges(&mut regions, moments, &is_held, &apart, weight, |p| scan.on_mesh(p), progress)?;
-        begun.followed_by(rest, &names)
+        let moments = memory::twin(&scan.moments)?;
+        merges(&mut regions, moments, &self.is_held, weight, |p| scan.on_mesh(p), progress)
     }
 
     /// The shape with as many facets as are wanted.
@@ -96,79 +89,57 @@ impl Job<'_> {
             (None, None) => Wanted::Found,
         };
         let n = self.parts.len();
-        let mut merges = Cow::Borrowed(merges);
-        let mut refusals = Refusals::new(memory::twin(&self.is_held)?)?;
+        let n_held = self.is_held.iter().filter(|held| **held).count();
+        let [fewest, most] = merges.range(n);
         let area = scan.area.max(f64::MIN_POSITIVE);
-        let mut count = merges.count(wanted.and(refusals.n_held()), n, self.positions.len(), area);
-        // Faces that stay beside those that are to are counted besides.
-        let aim = count - refusals.n_held();
-        let mut is_fixed = memory::twin(&self.is_fixed)?;
-        let mut best: Option<((usize, f64), Settled<'_>)> = None;
-        let (mut round, mut n_refused) = (0, 0);
-        while round < COUNTS {
+        let aim = merges.count(wanted.and(n_held), n, self.positions.len(), area);
+        let mut count = aim;
+        // With fewer facets than are wanted, and with as many or more.
+        let mut best: [Option<(Rank, Divided<'_>)>; 2] = [None, None];
+        for round in 0..COUNTS {
             let fraction = 0.5 + 0.5 * round as f64 / COUNTS as f64;
             progress.report(Report { fraction, stage: "fitting planes".into(), ..Report::default() });
-            let [fewest, most] = merges.range(n);
-            count = count.clamp(fewest, most);
-            let (tree, cut) = self.partition(&merges, count)?;
-            let mut settled = self.settled(scan, &tree, &cut, &refusals, &is_fixed, progress)?;
-            let mut unsound = Unsound::new(&settled.shape, &settled.faces)?;
+            let mut divided = self.sound(merges, count, scan, progress)?;
+            let Settled { shape, faces } = &mut divided.settled;
+            let n_made = shape.facets.len();
+            let off = aim as f64 - n_made as f64;
+            let is_enough = n_made >= aim || !matches!(wanted, Wanted::Facets(_));
             let (miss, next) = match wanted {
+                // What was divided is joined again: another number to begin with is no nearer.
+                Wanted::Facets(_) if divided.is_divided && n_made >= aim => (off.abs(), count as f64),
                 Wanted::Facets(_) => {
-                    let wanted = (aim + refusals.n_held()).clamp(fewest, most);
-                    let off = wanted as f64 - settled.shape.facets.len() as f64;
                     let most = CHANGE[0] + CHANGE[1] * count as f64;
-                    let further = if off == 0.0 { 1.0 } else { off.clamp(-most, most).round() };
-                    (off.abs(), count as f64 + further)
+                    (off.abs(), count as f64 + off.clamp(-most, most).round())
                 }
-                Wanted::Error(_) if !unsound.facets.is_empty() => (f64::INFINITY, count as f64),
                 Wanted::Error(error) => {
-                    fitting::refine(&mut settled.shape, &mut settled.faces, progress)?;
-                    let over = settled.distances()?.rms / error;
+                    fitting::refine(shape, faces, progress)?;
+                    let over = divided.settled.distances()?.rms / error;
                     ((over - 1.0).max(0.0), (count as f64 * over.max(1.05)).ceil())
                 }
-                Wanted::Found => (0.0, 0.0),
+                Wanted::Found => (0.0, count as f64),
             };
-            let rank = (unsound.facets.len(), miss);
-            let has_sound = best.as_ref().is_some_and(|((n_unsound, _), _)| *n_unsound == 0);
-            let is_refused = rank.0 > 0 && !progress.is_finishing() && (n_refused < REFUSALS || !has_sound);
-            let refused = if is_refused {
-                let all = n_refused >= REFUSALS;
-                if n_refused >= 2 * REFUSALS {
-                    // The mesh itself is sound.
-                    unsound.facets = memory::numbers(settled.shape.facets.len())?;
-                }
-                Some(refusals.refuse(&merges, (tree, cut), &settled.shape, &unsound, all, |labels, n| {
-                    self.regions(labels, n)
-                })?)
-            } else {
-                None
-            };
+            let (rank, best) = ((divided.n_unsound, miss), &mut best[usize::from(is_enough)]);
             if best.as_ref().is_none_or(|(least, _)| rank < *least) {
-                best = Some((rank, settled));
-            }
-            if let Some(refused) = refused {
-                let n_held = refusals.n_held();
-                self.stay(&refused.stay, &mut refusals.is_held, &mut is_fixed);
-                let begun =
-                    refused.remaining(&merges, &refusals.is_held, |labels, n| self.regions(labels, n))?;
-                // Elsewhere all stays as it was, until what is wanted is sought again.
-                let n_left = n - begun.pairs.len();
-                count = if n_refused < REFUSALS / 2 { count + refusals.n_held() - n_held } else { n_left };
-                merges = Cow::Owned(self.merges(begun, scan, &refusals, options, progress)?);
-                n_refused += 1;
-                continue;
+                *best = Some((rank, divided));
             }
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
             let next = (next as usize).clamp(fewest, most);
-            if rank == (0, 0.0) || next == count || progress.is_finishing() {
+            if miss == 0.0 || next == count || progress.is_finishing() {
                 break;
             }
             count = next;
-            round += 1;
         }
-        let ((_, miss), mut settled) = best.ok_or(MeshError::NoFaces)?;
-        if !(matches!(wanted, Wanted::Error(_)) && miss.is_finite()) {
+        let [few, mut enough] = best;
+        if let Some((rank, Divided { settled, tolerance, is_divided, .. })) = &mut enough {
+            if matches!(wanted, Wanted::Facets(_)) || (*is_divided && matches!(wanted, Wanted::Found)) {
+                reduce(&mut settled.shape, &mut settled.faces, aim, *tolerance, progress)?;
+                rank.1 = aim.abs_diff(settled.shape.facets.len()) as f64;
+            }
+        }
+        let nearest =
+            [few, enough].into_iter().flatten().min_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(Equal));
+        let (_, Divided { mut settled, .. }) = nearest.ok_or(MeshError::NoFaces)?;
+        if !matches!(wanted, Wanted::Error(_)) {
             fitting::refine(&mut settled.shape, &mut settled.faces, progress)?;
         }
         let n_facets = fitting::order(&mut settled.shape, &mut settled.faces)?;
@@ -178,14 +149,73 @@ impl Job<'_> {
         Ok(Found { shape: settled.shape, inspection, labels, distances, n_facets, n_crossings })
     }
 
-    /// The first merges such that about `count` regions remain, all of them facets.
-    fn partition(&self, merges: &Merges, count: usize) -> Result<(Hierarchy, Cut)> {
+    /// The shape of `count` regions, and of more where that is not sound.
+    fn sound<'s>(
+        &self,
+        merges: &Merges,
+        mut count: usize,
+        scan: &'s Scan,
+        progress: &Progress,
+    ) -> Result<Divided<'s>> {
+        let ([_, most], least) = (merges.range(self.parts.len()), count);
+        let mut best: Option<Divided<'_>> = None;
+        for doubling in 0..=DOUBLINGS {
+            let is_last = doubling == DOUBLINGS || count == most;
+            let divided = self.divided(merges, count, is_last, scan, progress)?;
+            if best.as_ref().is_none_or(|best| divided.n_unsound < best.n_unsound) {
+                best = Some(divided);
+            }
+            if is_last || progress.is_finishing() || best.as_ref().is_some_and(|best| best.n_unsound == 0) {
+                break;
+            }
+            count = (2 * count).min(most);
+        }
+        let mut divided = best.ok_or(MeshError::NoFaces)?;
+        let settled = &mut divided.settled;
+        divided.is_divided |= count != least;
+        // What stayed so that the rest is sound may change again.
+        for facet in &mut settled.shape.facets {
+            facet.is_held &= self.is_held[facet.part as usize];
+        }
+        settled.shape.corners.iter_mut().for_each(|c| c.is_fixed = self.is_fixed[c.vertex as usize]);
+        settled.faces.is_held = memory::twin(&self.is_held)?;
+        Ok(divided)
+    }
+
+    /// The shape of `count` regions, divided where it is not sound; where `is_last`, what is unsound even
+    /// then stays as on the mesh.
+    fn divided<'s>(
+        &self,
+        merges: &Merges,
+        count: usize,
+        is_last: bool,
+        scan: &'s Scan,
+        progress: &Progress,
+    ) -> Result<Divided<'s>> {
         let n = self.parts.len();
         let (tree, mut cut) = Hierarchy::new(merges, n, n - count)?;
-        if !merges.is_whole(n - cut.len()) {
-            tree.close(&mut cut, |labels, n| self.regions(labels, n))?;
+        let mut refusals = Refusals::new(&self.is_held)?;
+        let mut is_fixed = memory::twin(&self.is_fixed)?;
+        let mut best: Option<Divided<'_>> = None;
+        for round in 0..=if is_last { 2 * REFUSALS } else { REFUSALS } {
+            let (settled, tolerance) = self.settled(scan, &tree, &cut, &refusals, &is_fixed, progress)?;
+            let mut unsound = Unsound::new(&settled.shape, &settled.faces)?;
+            let n_unsound = unsound.facets.len();
+            if round + 1 == 2 * REFUSALS {
+                // The mesh itself is sound.
+                unsound.facets = memory::numbers(settled.shape.facets.len())?;
+            }
+            let stay = refusals.refuse((&tree, &mut cut), &settled.shape, &unsound, round >= REFUSALS)?;
+            if best.as_ref().is_none_or(|best| n_unsound < best.n_unsound) {
+                best = Some(Divided { n_unsound, is_divided: round > 0, settled, tolerance });
+            }
+            if n_unsound == 0 || progress.is_finishing() {
+                break;
+            }
+            self.stay(&stay, &mut refusals.is_held, &mut is_fixed);
+            refusals.close((&tree, &mut cut), |labels, n| self.regions(labels, n))?;
         }
-        Ok((tree, cut))
+        Ok(best.ok_or(MeshError::NoFaces)?)
     }
 
     /// The regions that `labels` of the parts make.
@@ -207,7 +237,7 @@ impl Job<'_> {
         }
     }
 
-    /// The shape made of the regions of a cut, sound where that can be had.
+    /// The shape made of the regions of a cut, sound where that can be had; twice how far it is off.
     fn settled<'s>(
         &self,
         scan: &'s Scan,
@@ -216,7 +246,7 @@ impl Job<'_> {
         refusals: &Refusals,
         is_fixed: &[bool],
         progress: &Progress,
-    ) -> Result<Settled<'s>> {
+    ) -> Result<(Settled<'s>, f64)> {
         let (labels, tops) = tree.labels(cut)?;
         let n_regions = tops.len();
         let (mut parts, mut is_held) =
@@ -229,13 +259,13 @@ impl Job<'_> {
         let regions = self.regions(&labels, n_regions)?;
         let area: f64 = moments.iter().map(|m| m.area).sum();
         let squares: f64 = moments.iter().map(|m| m.fit().squared_distance).sum();
-        let tolerance = (squares / area.max(f64::MIN_POSITIVE)).sqrt().max(constants::FLAT);
+        let tolerance = 2.0 * (squares / area.max(f64::MIN_POSITIVE)).sqrt().max(constants::FLAT);
         let firmness = |v: u32| (!is_fixed[v as usize]).then(|| refusals.firmness(v));
         let mut shape =
-            Shape::new(&regions, &moments, &self.positions, &parts, &is_held, firmness, 2.0 * tolerance)?;
+            Shape::new(&regions, &moments, &self.positions, &parts, &is_held, firmness, tolerance)?;
         let mut faces = Faces { scan, labels, is_held: memory::twin(&refusals.is_held)? };
         fitting::settle(&mut shape, &mut faces, progress)?;
         fitting::fold(&mut shape, &mut faces)?;
-        Ok(Settled { shape, faces })
+        Ok((Settled { shape, faces }, tolerance))
     }
 }

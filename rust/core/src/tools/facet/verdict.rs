@@ -129,7 +129,8 @@ impl Regions<'_> {
         met.dedup();
         self.meet_at_hubs(&mut met, &hubs)?;
         for group in met.chunk_by(|a, b| a.0 == b.0).filter(|group| group.len() >= OFF_LINE) {
-            if !self.is_on_line(group)? {
+            let places = memory::gathered(group.iter().map(|&(_, v)| self.positions[v as usize]))?;
+            if !on_line(&places) {
                 return Ok(Some(group[0].0));
             }
         }
@@ -179,13 +180,12 @@ impl Regions<'_> {
         found.retain(|&r| r != OUTSIDE);
         Ok(found)
     }
+}
 
-    fn is_on_line(&self, vertices: &[(u32, u32)]) -> Result<bool> {
-        let points: Vec<Point> = memory::gathered(vertices.iter().map(|&(_, v)| self.positions[v as usize]))?;
-        let others = |i: usize| points[i + 1..].iter().copied();
-        let pairs =
-            points.iter().enumerate().flat_map(|(i, &a)| others(i).map(move |b| (distance(a, b), a, b)));
-        let Some((span, a, b)) = pairs.max_by(|x, y| x.0.total_cmp(&y.0)) else { return Ok(true) };
-        Ok(points.iter().all(|&p| norm(cross(sub(p, a), unit(sub(b, a)))) <= BESIDE * span))
-    }
+/// Whether points lie on the line of those two that are farthest apart.
+pub(super) fn on_line(points: &[Point]) -> bool {
+    let others = |i: usize| points[i + 1..].iter().copied();
+    let pairs = points.iter().enumerate().flat_map(|(i, &a)| others(i).map(move |b| (distance(a, b), a, b)));
+    let Some((span, a, b)) = pairs.max_by(|x, y| x.0.total_cmp(&y.0)) else { return true };
+    points.iter().all(|&p| norm(cross(sub(p, a), unit(sub(b, a)))) <= BESIDE * span)
 }

@@ -1,0 +1,246 @@
+//! Facets of a sound shape are joined until as few are left as are wanted: always those two that cost least,
+//! of those after which all around them is flat and sound again.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeSet, BinaryHeap, HashMap};
+
+use super::constants::{FLAT, STAY};
+use super::faces::Faces;
+use super::joining::{joined, Joined};
+use super::shape::{Facet, Shape};
+use super::skin::Skin;
+use super::solve::flatten;
+use crate::memory;
+use crate::ordered::Ordered;
+use crate::progress::Progress;
+use crate::Result;
+
+/// Two facets that might be joined: what that costs, and how often they had changed.
+type Offer = Reverse<(Ordered, [u32; 2], u32)>;
+
+struct Reduction<'a> {
+    shape: &'a mut Shape,
+    skin: Skin<'a>,
+    /// The facets at each corner.
+    at: Vec<Vec<u32>>,
+    stamps: Vec<u32>,
+    heap: BinaryHeap<Offer>,
+    /// Pairs whose loops cannot be joined until something around them changes. What was not sound when solved
+    /// is tried again where one of both gets other corners.
+    waiting: HashMap<u32, BTreeSet<u32>>,
+    tolerance: f64,
+}
+
+/// What is around two facets once they are one, solved.
+struct Trial {
+    /// The facets of `shape` in the whole, that of both first.
+    facets: Vec<u32>,
+    /// The corners of `shape` in the whole.
+    corners: Vec<u32>,
+    shape: Shape,
+    /// Facets whose loops are others.
+    reshaped: Vec<u32>,
+    /// Facets with a corner that may move.
+    changed: Vec<u32>,
+    cost: f64,
+}
+
+/// Joins facets of `shape` until no more than `count` are left, as far as that can be sound. Corners of one
+/// facet alone that are within `tolerance` of a line need not be kept.
+///
+/// # Errors
+/// [`crate::Error::Cancelled`], [`crate::Error::Memory`].
+pub(super) fn reduce(
+    shape: &mut Shape,
+    faces: &mut Faces<'_>,
+    count: usize,
+    tolerance: f64,
+    progress: &Progress,
+) -> Result<()> {
+    let mut n_left = shape.facets.len();
+    let mut at = memory::repeated(Vec::new(), shape.corners.len())?;
+    for (k, facet) in (0..).zip(&shape.facets) {
+        facet.corners().for_each(|c| at[c as usize].push(k));
+    }
+    let mut name: Vec<u32> = memory::numbers(n_left)?;
+    let mut reduction = Reduction {
+        skin: Skin::new(shape, faces)?,
+        at,
+        stamps: memory::repeated(0, n_left)?,
+        heap: BinaryHeap::new(),
+        waiting: HashMap::new(),
+        tolerance,
+        shape,
+    };
+    let pairs = (0..n_left as u32).flat_map(|k| reduction.pairs(k)).collect();
+    reduction.offer(pairs)?;
+    while n_left > count && !progress.is_finishing() {
+        progress.check()?;
+        let Some(Reverse((cost, pair, stamp))) = reduction.heap.pop() else { break };
+        if stamp != reduction.stamp(pair) {
+            continue;
+        }
+        let trial = match reduction.trial(pair)? {
+            Some(trial) if trial.cost <= cost.0 => trial,
+            Some(trial) => {
+                reduction.heap.push(Reverse((Ordered(trial.cost), pair, stamp)));
+                continue;
+            }
+            None => continue,
+        };
+        reduction.take(pair, trial)?;
+        name[pair[1] as usize] = pair[0];
+        n_left -= 1;
+    }
+    drop(reduction);
+    let left = (0..).zip(&shape.facets).filter(|(_, facet)| !facet.loops.is_empty()).map(|(k, _)| k);
+    let mut place = memory::repeated(0, name.len())?;
+    (0..).zip(left).for_each(|(fresh, k): (u32, usize)| place[k] = fresh);
+    // Each became part of one of a lower number, which may have become part of another.
+    for k in 0..name.len() {
+        name[k] = name[name[k] as usize];
+    }
+    faces.labels.iter_mut().for_each(|label| *label = place[name[*label as usize] as usize]);
+    shape.facets.retain(|facet| !facet.loops.is_empty());
+    Ok(())
+}
+
+impl Reduction<'_> {
+    fn stamp(&self, pair: [u32; 2]) -> u32 {
+        pair.into_iter().map(|k| self.stamps[k as usize]).sum()
+    }
+
+    /// Facets and those that share a corner with one of them.
+    fn around(&self, facets: &BTreeSet<u32>) -> BTreeSet<u32> {
+        let corners = facets.iter().flat_map(|&k| self.shape.facets[k as usize].corners());
+        corners.flat_map(|c| self.at[c as usize].iter().copied()).collect()
+    }
+
+    /// A facet with each of its neighbors that it may be joined with.
+    fn pairs(&self, k: u32) -> BTreeSet<[u32; 2]> {
+        let facet = |k: u32| &self.shape.facets[k as usize];
+        let behind = |[a, b]: [u32; 2]| {
+            let others = self.at[a as usize].iter().copied().filter(|&j| j != k && !facet(j).is_held);
+            others.filter(move |&j| facet(j).sides().any(|side| side == [b, a]))
+        };
+        let neighbors = facet(k).sides().filter(|_| !facet(k).is_held).flat_map(behind);
+        neighbors.map(|j| [k.min(j), k.max(j)]).collect()
+    }
+
+    /// Offers to join them.
+    fn offer(&mut self, pairs: BTreeSet<[u32; 2]>) -> Result<()> {
+        memory::extend_heap(&mut self.heap, pairs.len())?;
+        for pair in pairs {
+            self.heap.push(Reverse((Ordered(self.least(pair)), pair, self.stamp(pair))));
+        }
+        Ok(())
+    }
+
+    /// What two facets cost as one at least.
+    fn least(&self, [p, q]: [u32; 2]) -> f64 {
+        let [p, q] = [p, q].map(|k| &self.shape.facets[k as usize]);
+        let energies: f64 = [p, q].iter().map(|facet| facet.moments.energy(&facet.plane)).sum();
+        p.moments.plus(&q.moments).fit().energy - energies
+    }
+
+    /// Joins two facets and solves what is around them; `None` where that is not sound.
+    fn trial(&mut self, pair: [u32; 2]) -> Result<Option<Trial>> {
+        let Some(all) = joined(self.shape, &self.at, pair, self.tolerance) else {
+            let [p, q] = pair;
+            self.waiting.entry(p).or_default().insert(q);
+            self.waiting.entry(q).or_default().insert(p);
+            return Ok(None);
+        };
+        let mut trial = self.patch(pair, &all)?;
+        let homes: Vec<_> = trial.shape.corners.iter().map(|corner| corner.home).collect();
+        let off = flatten(&mut trial.shape, STAY, &homes)?;
+        if off.is_nan() || off > FLAT {
+            return Ok(None);
+        }
+        let Some(off_mesh) =
+            self.skin.tried(&trial.shape, &trial.facets, &trial.corners, &trial.changed, pair[1])?
+        else {
+            return Ok(None);
+        };
+        let energy = |facet: &Facet| facet.moments.energy(&facet.plane);
+        let now: f64 = trial.shape.facets.iter().map(energy).sum();
+        let all = trial.facets.iter().chain([&pair[1]]);
+        let before: f64 = all.map(|&k| energy(&self.shape.facets[k as usize])).sum();
+        trial.cost = now - before + off_mesh;
+        Ok(trial.cost.is_finite().then_some(trial))
+    }
+
+    /// Two facets as one, with those around them and those around these. Corners of others do not move.
+    fn patch(&self, [p, q]: [u32; 2], all: &Joined) -> Result<Trial> {
+        let near = self.around(&self.around(&[p, q].into()));
+        let facets: Vec<u32> =
+            [p].into_iter().chain(near.iter().copied().filter(|k| *k != p && *k != q)).collect();
+        let (mut names, mut corners) = (HashMap::new(), Vec::new());
+        let mut shape = Shape::default();
+        let mut changed = Vec::new();
+        for (i, &k) in (0..).zip(&facets) {
+            let mut facet = self.shape.facets[k as usize].twin()?;
+            if let Some((_, loops)) = all.iter().find(|(other, _)| *other == k) {
+                facet.loops.clone_from(loops);
+            }
+            if k == p {
+                let other = &self.shape.facets[q as usize];
+                facet.moments = facet.moments.plus(&other.moments);
+                facet.plane = facet.moments.fit().plane;
+            }
+            let mut is_changed = all.iter().any(|(other, _)| *other == k);
+            for c in facet.loops.iter_mut().flatten() {
+                let name = *names.entry(*c).or_insert_with(|| {
+                    let mut corner = self.shape.corners[*c as usize];
+                    corner.is_fixed |= !self.at[*c as usize].iter().all(|k| near.contains(k));
+                    corners.push(*c);
+                    shape.corners.push(corner);
+                    corners.len() as u32 - 1
+                });
+                is_changed |= !shape.corners[name as usize].is_fixed;
+                *c = name;
+            }
+            if is_changed {
+                changed.push(i);
+            }
+            shape.facets.push(facet);
+        }
+        let reshaped = all.iter().map(|(k, _)| *k).collect();
+        Ok(Trial { facets, corners, shape, reshaped, changed, cost: 0.0 })
+    }
+
+    /// Puts what was tried in its place.
+    fn take(&mut self, [p, q]: [u32; 2], trial: Trial) -> Result<()> {
+        for (&c, corner) in trial.corners.iter().zip(&trial.shape.corners) {
+            self.shape.corners[c as usize].point = corner.point;
+        }
+        let before: BTreeSet<u32> =
+            trial.facets.iter().chain([&q]).flat_map(|&k| self.shape.facets[k as usize].corners()).collect();
+        self.shape.facets[q as usize].loops = Vec::new();
+        self.skin.remove(q, p);
+        for (&k, facet) in trial.facets.iter().zip(trial.shape.facets) {
+            let mut facet = facet;
+            facet.loops.iter_mut().flatten().for_each(|c| *c = trial.corners[*c as usize]);
+            self.shape.facets[k as usize] = facet;
+        }
+        for c in before {
+            let facets = &self.shape.facets;
+            self.at[c as usize].retain(|&k| facets[k as usize].corners().any(|corner| corner == c));
+            if facets[p as usize].corners().any(|corner| corner == c) && !self.at[c as usize].contains(&p) {
+                self.at[c as usize].push(p);
+            }
+        }
+        for &i in &trial.changed {
+            self.skin.set(self.shape, trial.facets[i as usize])?;
+        }
+        self.waiting.remove(&q);
+        trial.reshaped.iter().chain([&q]).for_each(|&k| self.stamps[k as usize] += 1);
+        let mut pairs: BTreeSet<[u32; 2]> = trial.reshaped.iter().flat_map(|&k| self.pairs(k)).collect();
+        for k in self.around(&[p].into()) {
+            let waiting = self.waiting.remove(&k).unwrap_or_default();
+            pairs.extend(waiting.into_iter().map(|j| [k.min(j), k.max(j)]));
+        }
+        pairs.retain(|pair| pair.iter().all(|&k| !self.shape.facets[k as usize].loops.is_empty()));
+        self.offer(pairs)
+    }
+}
