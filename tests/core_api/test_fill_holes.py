@@ -168,6 +168,33 @@ def test_fills_scale_with_the_mesh():
     np.testing.assert_allclose(other.vertices, 1024 * plain.vertices, rtol=0, atol=1e-9)
 
 
+def passes_through(vertices, faces):
+    """How many edges of faces pass through the inside of other faces."""
+    count = 0
+    for tail, head in np.concatenate([faces[:, [i, (i + 1) % 3]] for i in range(3)]):
+        other = faces[~((faces == tail) | (faces == head)).any(axis=1)]
+        start, way = vertices[tail], vertices[head] - vertices[tail]
+        a, b, c = (vertices[other[:, i]] for i in range(3))
+        across = np.cross(way, c - a)
+        det = ((b - a) * across).sum(axis=1)
+        det[np.abs(det) < 1e-12] = np.nan
+        u = ((start - a) * across).sum(axis=1) / det
+        along = np.cross(start - a, b - a)
+        v, t = (along @ way) / det, ((c - a) * along).sum(axis=1) / det
+        count += ((u > 1e-9) & (v > 1e-9) & (u + v < 1 - 1e-9) & (t > 1e-9) & (t < 1 - 1e-9)).sum()
+    return count
+
+
+@pytest.mark.parametrize("sharpness", [0.5, 0.6, 0.8, 1.0])
+def test_no_sharp_lid_passes_through_itself(sharpness):
+    vertices, faces = shapes.cube(3, 2.0)
+    open_box = faces[vertices[faces].mean(axis=1)[:, 2] > -1 + 1e-9]
+    mesh = ridgeform.Mesh(vertices, open_box)
+    filled = ridgeform.fill_holes(mesh, shape="sharp", sharpness=sharpness)
+    assert (filled.patch >= 0).any()
+    assert passes_through(filled.vertices, filled.faces) == 0
+
+
 @pytest.mark.parametrize(("shape", "lengths"), [("smooth", (0.1, 0.03, 0.01, 0.005)), ("auto", (0.03, 0.01))])
 def test_shorter_edges_give_more_faces_up_to_the_most_there_are(shape, lengths):
     mesh, _ = turned_cube(8, [1, 0, 1], 0.5)

@@ -6,6 +6,7 @@
 pub(crate) mod budget;
 pub mod closest;
 mod collapse;
+pub(crate) mod crossings;
 pub(crate) mod curves;
 mod edge;
 pub mod editable;

@@ -1,13 +1,11 @@
-//! Triangles of a surface that pass through each other, and which of them do on the mesh already.
+//! Which parts of a mesh pass through each other already.
 
 use std::collections::{HashMap, HashSet};
-
-use robust::{orient3d, Coord3D};
 
 use crate::memory;
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::Point;
-use crate::remesh::closest::ClosestPoint;
+use crate::remesh::crossings::crossings;
 use crate::Result;
 
 /// What passes through itself on the mesh: facets may do so as well.
@@ -51,68 +49,4 @@ impl Standing {
 
 fn ordered(p: u32, q: u32) -> [u32; 2] {
     [p.min(q), p.max(q)]
-}
-
-/// The pairs of triangles, given by corners and places, that cross: an edge of one passes through the inside
-/// of the other. What only touches does not.
-pub(super) fn crossings(triangles: &[[u32; 3]], places: &[[Point; 3]]) -> Result<Vec<[u32; 2]>> {
-    let tree = ClosestPoint::new(memory::gathered(places.iter().copied())?)?;
-    let mut found = Vec::new();
-    for (i, triangle) in places.iter().enumerate() {
-        let [low, high] = box_of(triangle);
-        let mut pushed = Ok(());
-        tree.visit_box(low, high, &mut |j| {
-            let other = j as usize;
-            let of = |i: usize| (&triangles[i], &places[i]);
-            if other > i && cross(of(i), of(other)) {
-                if let Err(error) = memory::push(&mut found, [i as u32, j]) {
-                    pushed = Err(error);
-                }
-            }
-        });
-        pushed?;
-    }
-    found.sort_unstable();
-    Ok(found)
-}
-
-/// The least and the largest coordinates of points.
-fn box_of(points: &[Point]) -> [Point; 2] {
-    let all = |c: usize| points.iter().map(move |p| p[c]);
-    let low = [0, 1, 2].map(|c| all(c).fold(f64::INFINITY, f64::min));
-    [low, [0, 1, 2].map(|c| all(c).fold(f64::NEG_INFINITY, f64::max))]
-}
-
-/// Whether an edge of one of two triangles, given by corners and places, passes through the other, from which
-/// it starts at no common corner.
-pub(super) fn cross(first: (&[u32; 3], &[Point; 3]), second: (&[u32; 3], &[Point; 3])) -> bool {
-    let is_through = |(own, at): (&[u32; 3], &[Point; 3]), (other, place): (&[u32; 3], &[Point; 3])| {
-        (0..3).any(|k| {
-            let ends = [k, (k + 1) % 3];
-            ends.iter().all(|&e| !other.contains(&own[e]))
-                && meet(&ends.map(|e| at[e]), place)
-                && passes(ends.map(|e| at[e]), *place)
-        })
-    };
-    is_through(first, second) || is_through(second, first)
-}
-
-/// Whether the boxes of points meet. Thin triangles around one vertex lie in each other's boxes, all of them;
-/// the edges across from it hardly do.
-fn meet(a: &[Point], b: &[Point]) -> bool {
-    let ([a_low, a_high], [b_low, b_high]) = (box_of(a), box_of(b));
-    (0..3).all(|c| a_low[c] <= b_high[c] && b_low[c] <= a_high[c])
-}
-
-fn passes([p, q]: [Point; 2], [a, b, c]: [Point; 3]) -> bool {
-    let side = |a: Point, b: Point, c: Point, d: Point| {
-        let [a, b, c, d] = [a, b, c, d].map(|[x, y, z]| Coord3D { x, y, z });
-        orient3d(a, b, c, d)
-    };
-    let ends = [side(a, b, c, p), side(a, b, c, q)];
-    if ends[0] * ends[1] >= 0.0 {
-        return false;
-    }
-    let around = [side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)];
-    around.iter().all(|s| *s > 0.0) || around.iter().all(|s| *s < 0.0)
 }

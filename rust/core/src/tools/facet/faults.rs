@@ -3,12 +3,12 @@
 use std::collections::{HashMap, HashSet};
 
 use super::constants::FLAT;
-use super::crossings::crossings;
 use super::faces::{Faces, Scan};
 use super::shape::{self, Shape};
 use super::triangulation::{forced, triangles};
 use crate::memory;
 use crate::mesh::vector::Point;
+use crate::remesh::crossings::crossings;
 use crate::Result;
 
 /// The facets of a shape as triangles, and which of them are unsound.

@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use super::crossings::cross;
 use super::faces::{Faces, Scan};
 use super::shape::{sides, Shape};
 use super::triangulation::{forced, triangles};
