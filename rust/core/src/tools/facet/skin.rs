@@ -6,6 +6,7 @@ use super::faces::{Faces, Scan};
 use super::shape::{sides, Shape};
 use super::triangulation::{forced, triangles};
 use crate::mesh::vector::Point;
+use crate::remesh::crossings::cross;
 use crate::{memory, Result};
 
 /// The triangles of one facet.
