@@ -69,13 +69,23 @@ pub(super) fn refined(
     let refined = (mesh.twin()?, guard::worst_bend(&mesh));
     let fixed = memory::gathered((0..mesh.n_vertices()).map(|v| v < n))?;
     let keep = Keep { fixed: &fixed, fixed_faces: false, feature_cosine: -2.0, features: None };
-    let mut remesher = Remesher::new(mesh, &surface, &keep, |mesh, curves| match options.edge_length {
-        Some(_) => Sizing::uniform(typical, growth, mesh, curves),
-        None => Sizing::graded(memory::twin(&sizes)?, growth, mesh, curves),
-    })?;
-    run(&mut remesher, options.remesh_iterations, most, progress)?;
-    let bend = guard::worst_bend(&remesher.mesh);
-    let mesh = if bend < FOLD_COSINE && bend < refined.1 { refined.0 } else { remesher.mesh };
+    let remeshed = |mesh: EditableMesh| {
+        let mut remesher = Remesher::new(mesh, &surface, &keep, |mesh, curves| match options.edge_length {
+            Some(_) => Sizing::uniform(typical, growth, mesh, curves),
+            None => Sizing::graded(memory::twin(&sizes)?, growth, mesh, curves),
+        })?;
+        run(&mut remesher, options.remesh_iterations, most, progress)?;
+        let bend = guard::worst_bend(&remesher.mesh);
+        Ok::<_, crate::Error>((remesher.mesh, bend < FOLD_COSINE && bend < refined.1))
+    };
+    let (mut mesh, mut is_folded) = remeshed(mesh)?;
+    if is_folded && options.edge_length.is_some() {
+        // Short edges beside long ones of the rim take many small moves.
+        let mut again = refined.0.twin()?;
+        again.look_at_every_bend();
+        (mesh, is_folded) = remeshed(again)?;
+    }
+    let mesh = if is_folded { refined.0 } else { mesh };
     let (points, faces, _) = mesh.into_parts(|v| (v as usize) < n)?;
     Ok((memory::twin(&points[n..])?, faces))
 }

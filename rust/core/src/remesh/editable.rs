@@ -35,6 +35,7 @@ pub struct EditableMesh {
     pub(super) faces_of: Vec<Vec<u32>>,
     forbidden: HashSet<[u32; 2]>,
     beyond: HashMap<[u32; 2], Point>,
+    is_strict: bool,
 }
 
 impl EditableMesh {
@@ -50,6 +51,7 @@ impl EditableMesh {
             faces,
             forbidden: HashSet::new(),
             beyond: HashMap::new(),
+            is_strict: false,
         };
         for (f, corners) in mesh.faces.iter_mut().enumerate() {
             let n_vertices = mesh.positions.len();
@@ -80,7 +82,19 @@ impl EditableMesh {
             faces_of,
             forbidden: self.forbidden.clone(),
             beyond: self.beyond.clone(),
+            is_strict: self.is_strict,
         })
+    }
+
+    /// Asks for every bend to be looked at, also where an edit turns faces by little: many such add up.
+    pub fn look_at_every_bend(&mut self) {
+        self.is_strict = true;
+    }
+
+    /// Whether that was asked for.
+    #[must_use]
+    pub fn looks_at_every_bend(&self) -> bool {
+        self.is_strict
     }
 
     /// Forbids an edge: no operation will make it. For edges that exist in a larger mesh of which this is a

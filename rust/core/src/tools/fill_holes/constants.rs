@@ -163,3 +163,7 @@ pub(super) const UNTANGLE_PASSES: usize = 30;
 pub(super) const RIDGE_STIFFNESS: f64 = 100.0;
 
 // In order or not.
+
+/// A face passes through another if it reaches so far through it, in its edges: on a concave edge in exact
+/// planes faces overlapped by a millionth.
+pub(super) const DEEP: f64 = 1e-4;
