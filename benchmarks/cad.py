@@ -21,6 +21,7 @@ from pathlib import Path
 import numpy as np
 from build_wheel import build_wheel
 from cells import duration, grid
+from environments import python_of
 from known_shapes.segment_shapes import Part, adjusted_rand_index
 from numpy.typing import NDArray
 from workspace import STATE, WHEEL_SITE, digest, is_current
@@ -30,25 +31,10 @@ ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks/cad.md"
 REQUIREMENTS = ROOT / "benchmarks/requirements-cad.txt"
 SOURCES = [ROOT / f"benchmarks/{name}.py" for name in ("cad_parts", "cad_meshes")]
-ENVIRONMENT = STATE / "bench-cad"
 MESHES = STATE / "bench-cad-meshes"
 NOISES = (0.0, 0.1, 0.2)
 KINDS = ("coarse", "fine", *(f"{noise:g}" for noise in NOISES))
 SEED = 10
-
-
-def cad_python() -> Path:
-    """The interpreter of the environment that holds cadquery, made on first use."""
-    python = ENVIRONMENT / "bin/python"
-    stamp = STATE / "bench-cad.stamp"
-    wanted = digest([REQUIREMENTS], sys.version)
-    if not (is_current(stamp, wanted) and python.exists()):
-        print("== environment for cadquery", flush=True)
-        subprocess.run([sys.executable, "-m", "venv", "--clear", str(ENVIRONMENT)], check=True)
-        install = [str(python), "-m", "pip", "install", "--disable-pip-version-check", "--quiet"]
-        subprocess.run([*install, "-r", str(REQUIREMENTS)], check=True)
-        stamp.write_text(wanted, encoding="utf-8")
-    return python
 
 
 def make_meshes(site: Path) -> None:
@@ -57,7 +43,7 @@ def make_meshes(site: Path) -> None:
     wanted = digest([REQUIREMENTS, *SOURCES], sys.version)
     if is_current(stamp, wanted) and MESHES.is_dir():
         return
-    python = cad_python()
+    python = python_of("bench-cad", REQUIREMENTS, "cadquery")
     print("== parts", flush=True)
     paths = os.pathsep.join([str(site), str(ROOT / "benchmarks")])
     script = [str(python), str(ROOT / "benchmarks/cad_meshes.py"), str(MESHES)]
@@ -114,7 +100,9 @@ def draw(path: Path, title: str, part: Part, labels: NDArray[np.int64]) -> None:
     arrays = {"vertices": part.vertices, "faces": part.faces, "truth": part.truth, "labels": labels}
     np.savez(path.with_suffix(".npz"), **arrays)
     script = ROOT / "benchmarks/cad_picture.py"
-    subprocess.run([str(cad_python()), str(script), str(path), title], check=True)
+    subprocess.run(
+        [str(python_of("bench-cad", REQUIREMENTS, "cadquery")), str(script), str(path), title], check=True
+    )
     path.with_suffix(".npz").unlink()
 
 

@@ -21,16 +21,16 @@ from pathlib import Path
 import numpy as np
 from build_wheel import build_wheel
 from cells import duration, grid
+from environments import python_of
 from known_shapes import segment_shapes, shapes
 from known_shapes.segment_shapes import SHAPES, Part, adjusted_rand_index
 from numpy.typing import NDArray
-from workspace import STATE, WHEEL_SITE, digest, is_current
+from workspace import WHEEL_SITE
 
 ROOT = Path(__file__).resolve().parents[1]
 
 RESULTS = ROOT / "benchmarks/segments.md"
 REQUIREMENTS = ROOT / "benchmarks/requirements-segments.txt"
-ENVIRONMENT = STATE / "bench-segments"
 SEEDS = (0, 1)
 """Noises and rotations; the table has the worst of them."""
 ANGLES = (1.0, 5.0, 10.0, 20.0, 30.0, 45.0)
@@ -42,27 +42,15 @@ Indices = NDArray[np.int64]
 TITLES = ("ridgeform", "as the paper", "trimesh facets", "linked flat")
 
 
-def peer_python() -> Path:
-    """The interpreter of the environment that holds trimesh, made on first use."""
-    python = ENVIRONMENT / "bin/python"
-    stamp = STATE / "bench-segments.stamp"
-    wanted = digest([REQUIREMENTS], sys.version)
-    if not (is_current(stamp, wanted) and python.exists()):
-        print("== environment for the peers", flush=True)
-        subprocess.run([sys.executable, "-m", "venv", "--clear", str(ENVIRONMENT)], check=True)
-        install = [str(python), "-m", "pip", "install", "--disable-pip-version-check", "--quiet"]
-        subprocess.run([*install, "-r", str(REQUIREMENTS)], check=True)
-        stamp.write_text(wanted, encoding="utf-8")
-    return python
-
-
 def facets(parts: list[Part]) -> list[Indices]:
     """The facets of trimesh, faces in none each by themselves."""
     with tempfile.TemporaryDirectory() as scratch:
         for k, part in enumerate(parts):
             np.savez(Path(scratch) / f"{k}.npz", vertices=part.vertices, faces=part.faces)
         script = ROOT / "benchmarks/segments_peer.py"
-        subprocess.run([str(peer_python()), str(script), scratch], check=True)
+        subprocess.run(
+            [str(python_of("bench-segments", REQUIREMENTS, "the peers")), str(script), scratch], check=True
+        )
         return [np.load(Path(scratch) / f"{k}.labels.npy") for k in range(len(parts))]
 
 

@@ -164,6 +164,6 @@ pub(super) const RIDGE_STIFFNESS: f64 = 100.0;
 
 // In order or not.
 
-/// A face passes through another if it reaches so far through it, in its edges: on a concave edge in exact
-/// planes faces overlapped by a millionth.
+/// A face passes through another if it reaches so far through it, in its edges. Less is not seen, and may be
+/// rounding where faces fill one plane.
 pub(super) const DEEP: f64 = 1e-4;
