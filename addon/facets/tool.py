@@ -111,7 +111,6 @@ class Faceting(Run):
         return [
             f"{entry['name']}: {counted(entry['facets'], 'facet')}",
             f"{100.0 * entry['rms']:.2g} % of the size off, {entry['seconds']:.1f} s",
-            *entry["warnings"],
         ]
 
     def headline(self, done: Sequence[dict[str, object]]) -> str:

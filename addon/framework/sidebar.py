@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import bpy
 
-from . import bound, former, job, manual, rows
+from . import bound, former, job, manual, rows, wrapping
 from .run import NO_RESULT
 from .settings import properties_of
 from .shared_settings import EXPERT
@@ -59,7 +59,7 @@ class _ToolPanel(InTab):
             layout.menu(tool.presets_menu, text=getattr(bpy.types, tool.presets_menu).bl_label, icon="PRESET")
         rows.draw_section(layout, settings, tool.settings, self.section, context.object)
         if self.section == EXPERT:
-            draw_last_run(layout, tool, tool.run.numbers)
+            draw_last_run(context, layout, tool, tool.run.numbers)
         if self.section:
             return
         for draw_line in _lines:
@@ -74,10 +74,12 @@ class _ToolPanel(InTab):
             layout.label(text="A change starts from the original", icon="FILE_REFRESH")
         if tool.draw_more is not None:
             tool.draw_more(layout, settings)
-        draw_last_run(layout, tool, tool.run.lines)
+        draw_last_run(context, layout, tool, lambda entry: tool.run.lines(entry) + _notes(entry))
 
 
-def draw_last_run(layout: bpy.types.UILayout, tool: Tool, said: Callable[[dict], list[str]]) -> None:
+def draw_last_run(
+    context: bpy.types.Context, layout: bpy.types.UILayout, tool: Tool, said: Callable[[dict], list[str]]
+) -> None:
     """Say of each mesh what there is to be `said` of it in the last run, if that was one of this tool."""
     column = layout.column(align=True)
     done = [
@@ -88,10 +90,15 @@ def draw_last_run(layout: bpy.types.UILayout, tool: Tool, said: Callable[[dict],
         and entry["name"] in bpy.data.objects
     ]
     for entry in done[:LAST_RUN_LINES]:
-        for line, text in enumerate(said(entry)):
+        lines = [line for text in said(entry) for line in wrapping.panel_lines(context, text)]
+        for line, text in enumerate(lines):
             column.label(text=text, icon="BLANK1" if line else "INFO")
     if len(done) > LAST_RUN_LINES:
         column.label(text=f"… and {len(done) - LAST_RUN_LINES} more")
+
+
+def _notes(entry: dict[str, object]) -> list[str]:
+    return [note[:1].upper() + note[1:] for note in entry["warnings"]]
 
 
 def group_class(tool: Tool) -> type:

@@ -152,11 +152,10 @@ class HoleFilling(Run):
 
     @classmethod
     def lines(cls, entry: dict[str, object]) -> list[str]:
-        """How many holes, faces and ridge edges there are, and what was left out."""
+        """How many holes, faces and ridge edges there are, and how long it took."""
         return [
             f"{entry['name']}: {entry['holes']} filled, {counted(entry['faces_added'], 'face')}",
             f"{counted(entry['ridge_edges'], 'ridge edge')}, {entry['seconds']:.1f} s",
-            *entry["warnings"],
         ]
 
     def headline(self, done: Sequence[dict[str, object]]) -> str:

@@ -138,9 +138,9 @@ class Restoring(Run):
 
     @classmethod
     def lines(cls, entry: dict[str, object]) -> list[str]:
-        """How many surfaces of which kind there are, and what is to be said of them."""
+        """How many surfaces of which kind there are, the noise, and what is parallel or equal."""
         noise = f"noise {entry['noise']:.3g}, {entry['seconds']:.1f} s"
-        return [f"{entry['name']}: {_kinds_phrase([entry])}", noise, *entry["relations"], *entry["warnings"]]
+        return [f"{entry['name']}: {_kinds_phrase([entry])}", noise, *entry["relations"]]
 
     @classmethod
     def phrases(cls, done: Sequence[dict[str, object]]) -> list[str]:

@@ -231,12 +231,11 @@ class Segmenting(Run):
 
     @classmethod
     def lines(cls, entry: dict[str, object]) -> list[str]:
-        """How many segments there are, how many there might be, and what was left out."""
+        """How many segments there are, how many there might be, and how long it took."""
         fewest, most = entry["possible"]
         return [
             f"{entry['name']}: {counted(entry['segments'], 'segment')}",
             f"{fewest} to {most} are possible, {entry['seconds']:.1f} s",
-            *entry["warnings"],
         ]
 
     def headline(self, done: Sequence[dict[str, object]]) -> str:

@@ -17,12 +17,17 @@ from .kept_edges import KeptEdges
 
 REST = 0.5
 """Away from what must stay, no fewer triangles than this part of those asked for are left."""
-STEP = 0.5
-SMALLEST_STEP = 0.95
-"""A step leaves this part of the triangles, so that what it keeps around a torn place is about as fine as
-what it leaves; smaller steps where that tears."""
+REACH = 0.125
+"""A torn place is first kept within this part of the longest edge there. Of a skull with thin walls, reduced
+to 2 %, what is left lies 0.009 of its size off in the mean with 0.1, 0.025 with 0.25, and 0.029 with 0.5; at
+12 % the three differ by a tenth."""
 WIDENINGS = 4
 """How often the circle around a torn place becomes twice as wide."""
+TOO_LITTLE = 0.95
+"""A step that leaves more than this part of the triangles was asked for too much, and the next is asked for
+less."""
+LEAST_STEP = 0.99
+"""A step that is to leave this part of the triangles away from torn places is the smallest."""
 
 
 @dataclass
@@ -116,33 +121,49 @@ def decimate(
     """Points (p, 3), triangles (q, 3) of `target` or a few less, and the number (k,) of each locked vertex.
 
     fast-simplification collapses edges without asking whether that ties together what is apart, as the sides
-    of a thin finger. Where it did, it begins anew in steps, each of which keeps the vertices of the last one
-    around such places; where that does not help, more triangles stay.
+    of a thin finger. Where it did, it begins anew, and the vertices around such places are kept; what they
+    are too many is for further steps. Where that does not help, more triangles stay.
     """
-    before = _Triangles(points, faces)
-    made, number = _collapsed(before, locked, target)
-    if len(_torn(made, before, number)):
-        made, number, share = before, np.arange(len(points)), STEP
-        while len(made.faces) > target and share < SMALLEST_STEP:
-            here = np.zeros(len(made.points), bool)
-            here[number[locked & (number >= 0)]] = True
-            step = _untorn(made, here, max(target, round(share * len(made.faces))))
-            if step is None or len(step[0].faces) >= len(made.faces):
-                share = np.sqrt(share)
-                continue
+    whole = made = _Triangles(points, faces)
+    number = np.arange(len(points))
+    share = target / max(1, len(faces))
+    while len(made.faces) > target and share < LEAST_STEP:
+        here = np.zeros(len(made.points), bool)
+        here[number[locked & (number >= 0)]] = True
+        step = _untorn(made, here, max(share, target / len(made.faces)), whole, target)
+        if step is None or len(step[0].faces) > TOO_LITTLE * len(made.faces):
+            share = np.sqrt(share)
+        if step is not None and len(step[0].faces) < len(made.faces):
             made, number = step[0], np.where(locked & (number >= 0), step[1][number], -1)
+            if step[2] <= target:
+                break
     return made.points, made.faces, np.where(locked, number, -1)
 
 
-def _untorn(before: _Triangles, locked: np.ndarray, target: int) -> tuple[_Triangles, np.ndarray] | None:
-    """What is left with the vertices kept around which it would be torn; None where it always is."""
-    kept = locked.copy()
+def _untorn(
+    before: _Triangles, locked: np.ndarray, share: float, whole: _Triangles, target: int
+) -> tuple[_Triangles, np.ndarray, int] | None:
+    """What is left with the vertices kept around which it would be torn, and how many triangles that was to
+    be; None where it always is.
+
+    They are to be `target`. But away from vertices that are kept, no less than `share` of them is left, and
+    no less than `REST` of what `target` triangles of the `whole` would be there: the rest does not make up
+    for what those have too many, however many steps there are.
+    """
+    kept, torn_there = locked.copy(), np.zeros(len(whole.points), bool)
     for widening in range(WIDENINGS):
-        made, number = _collapsed(before, kept, target)
-        torn = _torn(made, before, number)
-        if not len(torn):
-            return made, np.where(locked, number, -1)
-        kept |= _around(before.points, made.points[torn], 2.0**widening * made.longest(torn))
+        beside = int((kept & ~locked)[before.faces].any(axis=1).sum())
+        away = len(whole.faces) - int(torn_there[whole.faces].any(axis=1).sum())
+        rest = max(share * (len(before.faces) - beside), REST * target * away / len(whole.faces))
+        asked = max(target, beside + round(rest))
+        made, number = _collapsed(before, kept, asked)
+        torn, lost = _torn(made, before, number), _lost(before, kept, number)
+        if not len(torn) + len(lost):
+            return made, np.where(locked, number, -1), asked
+        places = np.concatenate([made.points[torn], before.points[lost]])
+        reach = REACH * 2.0**widening * max(made.longest(torn), before.longest(lost))
+        kept |= _around(before.points, places, reach)
+        torn_there |= _around(whole.points, places, reach)
     return None
 
 
@@ -189,6 +210,14 @@ def _torn(made: _Triangles, before: _Triangles, number: np.ndarray) -> np.ndarra
         known = number[np.flatnonzero(before.odd())]
         odd[known[known >= 0]] = False
     return np.flatnonzero(odd)
+
+
+def _lost(before: _Triangles, kept: np.ndarray, number: np.ndarray) -> np.ndarray:
+    """The vertices that were to stay, but have no triangle left: all of theirs closed up."""
+    gone = kept & (number < 0)
+    return (
+        np.flatnonzero(gone & np.isin(np.arange(len(gone)), before.faces)) if gone.any() else np.empty(0, int)
+    )
 
 
 def _around(points: np.ndarray, centers: np.ndarray, reach: float) -> np.ndarray:

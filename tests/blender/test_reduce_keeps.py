@@ -1,6 +1,7 @@
 """Reducing triangles: borders, marks, borders of materials and UV islands, and held vertices stay."""
 
 import addon_kit as kit
+import bmesh
 import bpy
 import fast_simplification
 import numpy as np
@@ -267,6 +268,47 @@ def test_what_is_apart_is_not_tied_together(vertices, faces, target):
     halves = np.concatenate([triangles[:, [i, (i + 1) % 3]] for i in range(3)])
     _, count = np.unique(np.sort(halves, axis=1), axis=0, return_counts=True)
     assert (count == 2).all()
+
+
+def lattice(n=12, wall=2, gap=5, thickness=0.03):
+    """The thin sides of a box with windows: what a reduction ties together in many places."""
+    bpy.ops.mesh.primitive_cube_add(size=2)
+    obj = bpy.context.object
+    box = bmesh.new()
+    box.from_mesh(obj.data)
+    bmesh.ops.subdivide_edges(box, edges=box.edges, cuts=n - 1, use_grid_fill=True)
+
+    def is_window(face):
+        cells = sorted(face.calc_center_median(), key=abs)[:2]
+        return all(wall <= (cell := int((x + 1) / 2 * n)) < n - wall and cell % gap >= wall for x in cells)
+
+    bmesh.ops.delete(box, geom=[face for face in box.faces if is_window(face)], context="FACES")
+    box.to_mesh(obj.data)
+    box.free()
+    obj.modifiers.new("Thick", "SOLIDIFY").thickness = thickness
+    bpy.ops.object.modifier_apply(modifier="Thick")
+    return kit.coordinates(obj).astype(float), mesh_io.triangles(obj.data)
+
+
+@pytest.mark.parametrize(("ratio", "share"), [(0.12, 0.4), (0.05, 0.4)])
+def test_what_must_stay_in_one_place_is_not_paid_for_in_another(ratio, share):
+    thin, around = lattice()
+    ball, triangles = shapes.icosphere(3)
+    points = np.concatenate([thin, np.add(ball, [4.0, 0.0, 0.0])])
+    faces = np.concatenate([around, triangles + len(thin)]).astype(np.int64)
+    target = round(ratio * len(faces))
+    free = np.zeros(len(points), bool)
+    assert tied(*fast_simplification.simplify(points, faces.astype(np.int32), target_count=target)) > 0
+    made, left, _ = simplify.decimate(points, faces, free, target)
+    assert tied(made, left) == 0
+    # The ball has its part of the triangles, although the lattice keeps more than it was to have.
+    of_ball = made[left][:, :, 0].mean(axis=1) > 2.0
+    assert of_ball.sum() >= share * ratio * len(triangles)
+    assert np.abs(np.linalg.norm(made[left[of_ball]] - [4.0, 0.0, 0.0], axis=2) - 1.0).max() < 0.15
+    area = (
+        np.linalg.norm(np.cross(*np.diff(made[left[of_ball]], axis=1).transpose(1, 0, 2)), axis=1).sum() / 2
+    )
+    assert area == pytest.approx(4.0 * np.pi, rel=0.25)
 
 
 def tied(points, triangles):

@@ -1,0 +1,48 @@
+"""What the panel says of the last run: in full, in as many lines as it takes."""
+
+from itertools import pairwise
+
+import addon_kit as kit
+import bpy
+import layout_kit
+import pytest
+from bl_ext.user_default.ridgeform import registry
+from bl_ext.user_default.ridgeform.framework import job, sidebar, wrapping
+
+SENTENCE = "hardly anything became flat: choose the finish Facets, or subdivide it first"
+
+
+def labels(tool):
+    layout = layout_kit.Layout()
+    panel = type("Panel", (), {"layout": layout, "tool": tool, "section": ""})()
+    sidebar._ToolPanel.draw_all(panel, bpy.context)
+    return layout.labels
+
+
+@pytest.mark.parametrize("width", [0, 5, 20, 30, 1000])
+def test_no_line_is_wider_than_it_may_be_and_no_word_is_lost(width):
+    lines = wrapping.wrapped(SENTENCE, width, len)
+    assert " ".join(lines) == SENTENCE
+    assert all(len(line) <= width or " " not in line for line in lines)
+    # No word would have had room in the line above.
+    assert all(len(f"{a} {b.split()[0]}") > width for a, b in pairwise(lines))
+
+
+def test_nothing_is_no_line():
+    assert wrapping.wrapped("", 10.0, len) == []
+
+
+@pytest.mark.parametrize("tool", registry.TOOLS, ids=lambda tool: tool.name)
+def test_every_tool_says_what_was_noticed(tool, monkeypatch):
+    kit.bumpy_box()
+    monkeypatch.setattr(tool.run, "lines", classmethod(lambda cls, entry: [entry["name"]]))
+    job.store_summary([{"tool": tool.run.name, "name": "Box", "status": "solved", "warnings": [SENTENCE]}])
+    said = labels(tool)
+    assert said[said.index("Box") + 1] == SENTENCE[0].upper() + SENTENCE[1:]
+
+
+def test_a_torus_that_hardly_changes_says_in_the_panel_what_helps():
+    bpy.ops.mesh.primitive_torus_add()
+    bpy.ops.ridgeform.stylize()
+    stylize = next(tool for tool in registry.TOOLS if tool.name == "stylize")
+    assert any(text.startswith("Hardly anything became flat") for text in labels(stylize))
