@@ -15,10 +15,8 @@ from ..blender.rebuilding import Before, Rebuilt
 from ..blender.surface_map import SurfaceMap
 from ..blender.welding import weld_seams
 from .kept_edges import kept_edges, regions_of
-from .simplify import Simplified, simplify
+from .simplify import FEWEST, Simplified, simplify
 
-FEWEST = 4
-"""The triangles of a tetrahedron, the least that enclose anything."""
 MORE = 1.1
 """So many times as many triangles as were asked for are worth a word."""
 

@@ -15,6 +15,8 @@ from .collapse import Fans
 from .curves import Curve, dropped, find_curves
 from .kept_edges import KeptEdges
 
+FEWEST = 4
+"""The triangles of a tetrahedron, the least that enclose anything."""
 REST = 0.5
 """Away from what must stay, no fewer triangles than this part of those asked for are left."""
 REACH = 0.125
@@ -59,7 +61,7 @@ def simplify(
     off the curves as the edges of the surface become longer. The rest makes up for what stays, unless less
     than a share of `REST` were left of it: there are more triangles then.
     """
-    wanted = max(4, round(ratio * len(faces)))
+    wanted = max(FEWEST, round(ratio * len(faces)))
     curves = find_curves(kept, points, held)
     locked = held.copy()
     locked[kept.ends] = True
@@ -76,8 +78,9 @@ def simplify(
     number = np.where(locked, number, -1)
     still = np.zeros(len(points), bool)
     still[number[number >= 0]] = True
-    stay = worth[locked].sum()
-    target = max(wanted, round(stay + REST * (wanted - ratio * stay)))
+    # Triangles beside what stays do so too, more than its vertices tell.
+    least = len(_collapsed(_Triangles(points, faces), still, FEWEST)[0].faces)
+    target = max(wanted, round(least + REST * (wanted - ratio * least)))
     points, faces, again = decimate(points, faces, still, target)
     number = np.where(number >= 0, again[number], -1)
     rows = [_edges_of(curve, number) for curve in curves]
