@@ -112,6 +112,7 @@ class Job:
 
 
 _last_summary: list[dict[str, object]] = []
+_last_uids: list[int] = []
 _is_shown = False
 
 
@@ -129,10 +130,16 @@ def shown_summary() -> list[dict[str, object]]:
     return last_summary() if _is_shown else []
 
 
-def store_summary(entries: Sequence[dict[str, object]]) -> None:
-    """Make this the answer of `last_summary`."""
+def is_of(entry: dict[str, object], uid: int) -> bool:
+    """Whether an entry of the last summary is of the object with this session UID."""
+    return any(entry == one and own == uid for one, own in zip(_last_summary, _last_uids, strict=False))
+
+
+def store_summary(entries: Sequence[dict[str, object]], uids: Sequence[int] = ()) -> None:
+    """Make this the answer of `last_summary`, of objects with these session UIDs."""
     global _is_shown  # noqa: PLW0603
     _last_summary[:] = [dict(entry) for entry in entries]
+    _last_uids[:] = uids
     _is_shown = True
 
 

@@ -274,7 +274,7 @@ class Run(ABC):
             self._take_states()
             self.remember()
         self.summary = [self._summary_of(part) for part in self.parts]
-        store_summary(self.summary)
+        store_summary(self.summary, [part.object.session_uid for part in self.parts])
 
     def report(self) -> str:
         """What happened, in one line, with what was skipped and why."""

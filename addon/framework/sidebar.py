@@ -87,7 +87,8 @@ def draw_last_run(
         for entry in job.shown_summary()
         if entry["tool"] == tool.run.name
         and entry["status"] not in NO_RESULT
-        and entry["name"] in bpy.data.objects
+        and (obj := bpy.data.objects.get(entry["name"])) is not None
+        and job.is_of(entry, obj.session_uid)
     ]
     for entry in done[:LAST_RUN_LINES]:
         lines = [line for text in said(entry) for line in wrapping.panel_lines(context, text)]

@@ -34,9 +34,10 @@ def test_nothing_is_no_line():
 
 @pytest.mark.parametrize("tool", registry.TOOLS, ids=lambda tool: tool.name)
 def test_every_tool_says_what_was_noticed(tool, monkeypatch):
-    kit.bumpy_box()
+    uid = kit.bumpy_box().session_uid
     monkeypatch.setattr(tool.run, "lines", classmethod(lambda cls, entry: [entry["name"]]))
-    job.store_summary([{"tool": tool.run.name, "name": "Box", "status": "solved", "warnings": [SENTENCE]}])
+    entry = {"tool": tool.run.name, "name": "Box", "status": "solved", "warnings": [SENTENCE]}
+    job.store_summary([entry], [uid])
     said = labels(tool)
     assert said[said.index("Box") + 1] == SENTENCE[0].upper() + SENTENCE[1:]
 
@@ -46,3 +47,14 @@ def test_a_torus_that_hardly_changes_says_in_the_panel_what_helps():
     bpy.ops.ridgeform.stylize()
     stylize = next(tool for tool in registry.TOOLS if tool.name == "stylize")
     assert any(text.startswith("Hardly anything became flat") for text in labels(stylize))
+
+
+def test_an_object_that_takes_the_name_of_another_does_not_take_its_line():
+    stylize = next(tool for tool in registry.TOOLS if tool.name == "stylize")
+    bpy.ops.mesh.primitive_uv_sphere_add()
+    bpy.ops.ridgeform.stylize(steps=1)
+    assert any("facets" in text for text in labels(stylize))
+    bpy.data.objects.remove(bpy.context.object)
+    bpy.ops.mesh.primitive_uv_sphere_add()
+    assert bpy.context.object.name == "Sphere"
+    assert not any("facets" in text for text in labels(stylize))
