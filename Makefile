@@ -82,7 +82,7 @@ bench-restore:
 	$(RUN) benchmarks/restore.py $(ARGS)
 
 bench-scale: wheel
-	@PYTHONPATH=.ridgeform/wheel-site .ridgeform/py311/bin/python benchmarks/scale.py $(ARGS)
+	@PYTHONPATH=.ridgeform/wheel-site:scripts .ridgeform/py311/bin/python benchmarks/scale.py $(ARGS)
 
 bench-tiles: wheel
 	@PYTHONPATH=.ridgeform/wheel-site .ridgeform/py311/bin/python benchmarks/tiles.py $(ARGS)

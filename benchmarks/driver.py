@@ -12,10 +12,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from workspace import ROOT, STATE, digest, is_current, run
+from environments import python_of
+from workspace import ROOT, run
 
 MEASURE = ROOT / "target/release/examples/measure"
-ENVIRONMENT = STATE / "bench"
 REQUIREMENTS = ROOT / "benchmarks/requirements.txt"
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "RAYON_NUM_THREADS": "1"}
 CLARABEL = ("qdldl", "faer")
@@ -38,18 +38,9 @@ def build() -> None:
     run(command, "the program that measures", {"PYO3_PYTHON": sys.executable})
 
 
-@functools.cache
 def peer_python() -> Path:
     """The interpreter of the environment that holds the peers; made on first use."""
-    python = ENVIRONMENT / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
-    stamp = STATE / "bench.stamp"
-    wanted = digest([REQUIREMENTS], sys.version)
-    if not (is_current(stamp, wanted) and python.exists()):
-        run([sys.executable, "-m", "venv", "--clear", ENVIRONMENT], "environment for the peers")
-        install = [python, "-m", "pip", "install", "--disable-pip-version-check", "--quiet"]
-        run([*install, "-r", REQUIREMENTS], "packages of the peers")
-        stamp.write_text(wanted, encoding="utf-8")
-    return python
+    return python_of("bench", REQUIREMENTS, "the peers")
 
 
 def _answer(command: list[str | Path]) -> Record:

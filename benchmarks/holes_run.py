@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import json
 import os
 import subprocess
@@ -12,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from driver import Record
+from environments import python_with
 from known_shapes.fill_measures import (
     mean_and_rms,
     new_faces,
@@ -21,11 +21,10 @@ from known_shapes.fill_measures import (
     samples,
 )
 from known_shapes.holed_shapes import Holed
-from workspace import ROOT, STATE, WHEEL_SITE, digest, is_current, python_path
+from workspace import ROOT, WHEEL_SITE, python_path
 
 PEER = ROOT / "benchmarks/holes_peer.py"
 REQUIREMENTS = ROOT / "benchmarks/requirements-holes.txt"
-ENVIRONMENT = STATE / "bench-holes"
 OURS = "ridgeform"
 LIMIT = 120.0
 """Seconds for one hole."""
@@ -35,29 +34,9 @@ SAME = 1e-4
 """A face whose center moved by less, in edge lengths, is an old one: some tools store single precision."""
 
 
-@functools.cache
 def peers_python() -> tuple[Path, dict[str, str]]:
-    """The interpreter of the environment that holds the peers, made on first use.
-
-    With what pip said of each package that could not be installed: the others are measured all the same.
-    """
-    python = ENVIRONMENT / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
-    stamp = STATE / "bench-holes.stamp"
-    wanted = digest([REQUIREMENTS], sys.version)
-    if is_current(stamp, wanted) and python.exists():
-        return python, {}
-    print("== environment for the peers", flush=True)
-    subprocess.run([sys.executable, "-m", "venv", "--clear", str(ENVIRONMENT)], check=True)
-    failed = {}
-    for package in REQUIREMENTS.read_text(encoding="utf-8").split():
-        command = [str(python), "-m", "pip", "install", "--disable-pip-version-check", "--quiet", package]
-        done = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
-        if done.returncode:
-            failed[package] = done.stderr.strip().splitlines()[-1]
-            print(f"   {failed[package]}", flush=True)
-    if not failed:
-        stamp.write_text(wanted, encoding="utf-8")
-    return python, failed
+    """The interpreter of the environment that holds the peers, and what pip said of those it lacks."""
+    return python_with("bench-holes", REQUIREMENTS, "the peers")
 
 
 def fill(tool: str, folder: Path, site: Path = WHEEL_SITE) -> None:

@@ -12,14 +12,14 @@ import json
 import math
 import subprocess
 import sys
-import venv
 from pathlib import Path
+
+from environments import python_of
 
 HERE = Path(__file__).resolve().parent
 SIZES = [9_000, 35_000, 140_000, 560_000, 1_000_000]
 KEPT = HERE / "scale.json"
 PAGE = HERE / "scale.md"
-STATE = HERE.parent / ".ridgeform"
 
 HEAD = """# How Stylize scales
 
@@ -52,13 +52,7 @@ def run(*arguments: object, python: str = sys.executable, script: str = "scale_r
 
 def peer_python() -> str:
     """The interpreter of an environment for the peer, made on first use."""
-    folder = STATE / "bench-scale"
-    python = folder / ("Scripts/python.exe" if sys.platform == "win32" else "bin/python")
-    if not python.exists():
-        venv.create(folder, with_pip=True)
-        install = [python, "-m", "pip", "install", "--disable-pip-version-check", "--quiet"]
-        subprocess.run([*install, "-r", HERE / "requirements-scale.txt"], check=True)
-    return str(python)
+    return str(python_of("bench-scale", HERE / "requirements-scale.txt", "the peer"))
 
 
 def growth(kept: dict[str, dict[str, float]], noise: float) -> float | None:
