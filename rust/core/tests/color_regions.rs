@@ -4,7 +4,7 @@
 use ridgeform_core::linear::Columns;
 use ridgeform_core::shapes::{self, Shape};
 use ridgeform_core::tools::{
-    color_regions, diffusion_curves, follow_colors, DiffusionCurves, DiffusionCurvesOptions, SegmentOptions,
+    color_regions, diffusion_curves, DiffusionCurves, DiffusionCurvesOptions, SegmentOptions,
 };
 use ridgeform_core::Progress;
 
@@ -126,16 +126,6 @@ fn small_patches_and_strips_of_one_vertex_are_kept() {
     let labels = regions(&shape, &colors, SegmentOptions::default(), None);
     assert_eq!(count(&labels), 4);
     assert!(curves(&shape, &colors, &labels).error < 1e-20);
-    // Regions of two sides of a strip that goes on to where it is wide.
-    let flag = |p: [f64; 3]| (p[0] - 15.0).abs() < 0.5 || p[1] > 20.0;
-    let colors = painted(&shape, |p| PALETTE[if flag(p) { 4 } else { usize::from(p[0] > 15.0) }]);
-    let center =
-        |f: &[u32; 3]| [0, 1].map(|i| f.iter().map(|&v| shape.vertices[v as usize][i]).sum::<f64>() / 3.0);
-    let label = |[x, y]: [f64; 2]| if y > 20.0 { 2 } else { i32::from(x > 15.0) };
-    let before: Vec<i32> = shape.faces.iter().map(|f| label(center(f))).collect();
-    let after = follow_colors(&shape.mesh().unwrap(), &colors, &before, None, 1e3, &Progress::new()).unwrap();
-    assert!(curves(&shape, &colors, &before).error > 1e-4);
-    assert!(curves(&shape, &colors, &after).error < 1e-20);
 }
 
 #[test]

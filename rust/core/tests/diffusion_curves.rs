@@ -5,7 +5,7 @@ use ridgeform_core::linear::Columns;
 use ridgeform_core::mesh::{CutMesh, EdgeTable, Mesh};
 use ridgeform_core::shapes::{self, Random, Shape};
 use ridgeform_core::tools::{
-    diffusion_curves, follow_colors, redraw, ColoredCurves, DiffusionCurves, DiffusionCurvesOptions,
+    diffusion_curves, redraw, ColoredCurves, DiffusionCurves, DiffusionCurvesOptions,
 };
 use ridgeform_core::{Error, Progress};
 
@@ -123,26 +123,6 @@ fn blends_on_the_border_belong_to_no_side() {
     let found = run(&shape, &colors, &labels, DiffusionCurvesOptions::default());
     assert!(found.error < 1e-20, "{}", found.error);
     assert_eq!(found.sides.iter().filter(|side| side.is_none()).count(), 13);
-}
-
-#[test]
-fn borders_follow_the_paint() {
-    let shape = shapes::grid(20, 20);
-    let mesh = shape.mesh().unwrap();
-    let inside = |p: [f64; 3]| (p[0] - 10.0).hypot(p[1] - 10.0) < 6.0;
-    let colors = painted(&shape, |p| if inside(p) { [0.9, 0.3, 0.1] } else { [0.1, 0.4, 0.8] });
-    // Regions that are off by up to three rows of faces; in pairs, as the triangles of squares.
-    let shifted = labeled(&shape, |p| i32::from((p[0].floor() - 8.0).hypot(p[1].floor() - 9.0) < 6.5));
-    let groups: Vec<u32> = (0..shape.faces.len() as u32).map(|f| f / 2).collect();
-    for (groups, least) in [(None, 1e-20), (Some(&groups[..]), 1e-20)] {
-        let labels = follow_colors(&mesh, &colors, &shifted, groups, 1e3, &Progress::new()).unwrap();
-        let error = |labels: &[i32]| run(&shape, &colors, labels, DiffusionCurvesOptions::default()).error;
-        assert!(error(&shifted) > 1e-3);
-        assert!(error(&labels) < least, "{}", error(&labels));
-        assert!(groups.is_none() || labels.chunks(2).all(|pair| pair[0] == pair[1]));
-        let again = follow_colors(&mesh, &colors, &labels, groups, 1e3, &Progress::new()).unwrap();
-        assert_eq!(again, labels);
-    }
 }
 
 #[test]

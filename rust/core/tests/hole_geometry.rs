@@ -3,13 +3,12 @@
 
 mod hole_checks;
 
-use hole_checks::{patch_corners, patched, shapeliness};
+use hole_checks::{patch_corners, patched, patches_of, shapeliness};
 use ridgeform_core::error::{Error, MeshError, Refusal};
-use ridgeform_core::hole_filling::{fill_loops, find_holes, FillOptions, Patch};
+use ridgeform_core::hole_filling::{find_holes, FillOptions, Patch};
 use ridgeform_core::mesh::vector::{area_vector, distance, dot, norm, quality};
 use ridgeform_core::mesh::{boundary_loops, report, Mesh};
 use ridgeform_core::shapes::{self, Shape};
-use ridgeform_core::Progress;
 
 fn flat() -> FillOptions {
     FillOptions { refine: false, ..FillOptions::default() }
@@ -25,12 +24,12 @@ fn fillable_loops(mesh: &Mesh) -> Result<Vec<Vec<u32>>, Error> {
 fn fill_all(shape: &Shape, options: &FillOptions) -> (Mesh, Vec<Patch>) {
     let mesh = shape.mesh().unwrap();
     let loops = fillable_loops(&mesh).unwrap();
-    let patches = fill_loops(&mesh, &loops, options, &Progress::new()).unwrap();
+    let patches = patches_of(&mesh, &loops, options).unwrap();
     (patched(&mesh, &patches).unwrap(), patches)
 }
 
 fn filled(mesh: &Mesh, rim: &[u32], options: &FillOptions) -> Result<Patch, Error> {
-    Ok(fill_loops(mesh, &[rim.to_vec()], options, &Progress::new())?.remove(0))
+    Ok(patches_of(mesh, &[rim.to_vec()], options)?.remove(0))
 }
 
 fn refusal(mesh: &Mesh, rim: &[u32]) -> Refusal {

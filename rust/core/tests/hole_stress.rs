@@ -3,10 +3,9 @@
 
 mod hole_checks;
 
-use hole_checks::{patched, shapeliness, with_random_holes};
-use ridgeform_core::hole_filling::{fill_loops, find_holes, FillOptions};
+use hole_checks::{patched, patches_of, shapeliness, with_random_holes};
+use ridgeform_core::hole_filling::{find_holes, FillOptions};
 use ridgeform_core::shapes::{self, Random, Shape};
-use ridgeform_core::Progress;
 
 /// Smooth and sharp, even and uneven, closed and open, clean and rough.
 fn ten_meshes() -> [Shape; 10] {
@@ -40,7 +39,7 @@ fn stress(first: u64, count: u64) -> usize {
                 .filter(|hole| !hole.is_outer_border && hole.refusal.is_none())
                 .map(|hole| hole.vertices.clone())
                 .collect();
-            let patches = fill_loops(&mesh, &wanted, &FillOptions::default(), &Progress::new())
+            let patches = patches_of(&mesh, &wanted, &FillOptions::default())
                 .unwrap_or_else(|error| panic!("mesh {which}, seed {seed}: {error}"));
             let filled =
                 patched(&mesh, &patches).unwrap_or_else(|why| panic!("mesh {which}, seed {seed}: {why}"));

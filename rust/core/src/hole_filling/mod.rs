@@ -8,9 +8,9 @@
 //!
 //! ```text
 //! find_holes(mesh: &Mesh) -> Result<Vec<Hole>>
-//! fill_loops(mesh: &Mesh, loops: &[Vec<u32>], options: &FillOptions, progress: &Progress)
-//!     -> Result<Vec<Patch>>
 //! faces_at(mesh: &Mesh, loops: &[Vec<u32>]) -> Result<Vec<u32>>
+//! fill_loops(mesh: &Mesh, loops: &[Vec<u32>], at: &[u32], options: &FillOptions, progress: &Progress)
+//!     -> Result<Vec<Result<Patch, MeshError>>>
 //! ```
 //!
 //! The mesh with its patches is its vertices, then those of each patch; its faces, then those of each patch.
@@ -48,24 +48,13 @@ use rims::Rims;
 /// rounding alone.
 const NO_EXTENT: f64 = 1e-13;
 
-/// Fills holes, each given as the vertices around it in either direction, without repeats ([`find_holes`]).
+/// Fills holes, each given as the vertices around it in either direction, without repeats ([`find_holes`]),
+/// with the faces at them ([`faces_at`]) or at more than those. For each a patch, or
+/// [`MeshError::Unfillable`] with the reason.
 ///
 /// # Errors
-/// [`MeshError::NoPositions`]; [`MeshError::Unfillable`] for the first loop that cannot be filled, with the
-/// reason; [`crate::Error::Cancelled`].
+/// [`MeshError::NoPositions`]; [`crate::Error::Cancelled`].
 pub fn fill_loops(
-    mesh: &Mesh,
-    loops: &[Vec<u32>],
-    options: &FillOptions,
-    progress: &Progress,
-) -> Result<Vec<Patch>> {
-    let patches = fill_loops_at(mesh, loops, &faces_at(mesh, loops)?, options, progress)?;
-    Ok(patches.into_iter().collect::<std::result::Result<_, MeshError>>()?)
-}
-
-/// [`fill_loops`], given the faces at the loops ([`faces_at`]) or at more than those; those that cannot be
-/// filled are left out, with the reason.
-pub(crate) fn fill_loops_at(
     mesh: &Mesh,
     loops: &[Vec<u32>],
     at: &[u32],

@@ -9,7 +9,8 @@
 //! `− u_f/h_f − u_g/h_g]`,
 //!
 //! so the composition of the gradient (28), the hinge map (29) and the tensor product needs neither a basis
-//! for the neighbor nor a rotation. The matrices one by one are in [`super::factors`].
+//! for the neighbor nor a rotation. Tests compare the matrices one by one
+//! (`factors.rs`).
 
 use crate::block_rows::{BlockRows, BLOCK};
 use crate::error::{Error, MeshError, SolveError};

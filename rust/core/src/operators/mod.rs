@@ -5,7 +5,8 @@ mod dual;
 mod edge_laplacian;
 mod energy;
 mod face_laplacian;
-pub mod factors;
+#[cfg(test)]
+mod factors;
 mod hessian;
 mod hinge;
 mod laplacian;

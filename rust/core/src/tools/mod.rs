@@ -23,8 +23,8 @@ mod unseen;
 
 pub use denoise::{denoise, DenoiseOptions};
 pub use diffusion_curves::{
-    color_regions, diffusion_curves, follow_colors, redraw, smooth_curves, trace_curves, ColoredCurves,
-    DiffusionCurves, DiffusionCurvesOptions, Redrawn, TracedCurve,
+    color_regions, diffusion_curves, redraw, smooth_curves, trace_curves, ColoredCurves, DiffusionCurves,
+    DiffusionCurvesOptions, Redrawn, TracedCurve,
 };
 pub use energy_options::EnergyOptions;
 pub use facet::{facet, FacetMerges, FacetOptions, Faceted};

@@ -3,10 +3,21 @@
 
 use std::collections::HashSet;
 
-use ridgeform_core::hole_filling::Patch;
+use ridgeform_core::hole_filling::{faces_at, fill_loops, FillOptions, Patch};
 use ridgeform_core::mesh::vector::{area_vector, dot, quality, unit, Point};
 use ridgeform_core::mesh::{invariants, report, Connectivity, Mesh, MeshReport};
 use ridgeform_core::shapes::{Random, Shape};
+use ridgeform_core::{Error, Progress};
+
+/// A patch for each of the loops, or why the first that has none has none.
+pub(crate) fn patches_of(
+    mesh: &Mesh,
+    loops: &[Vec<u32>],
+    options: &FillOptions,
+) -> Result<Vec<Patch>, Error> {
+    let patches = fill_loops(mesh, loops, &faces_at(mesh, loops)?, options, &Progress::new())?;
+    Ok(patches.into_iter().collect::<Result<_, _>>()?)
+}
 
 /// The mesh with its patches; the connectivity is sound, and nothing is non-manifold,
 /// degenerate or double that was not.

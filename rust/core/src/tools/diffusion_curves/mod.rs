@@ -25,7 +25,7 @@ mod trace;
 mod weak;
 
 pub use redraw::{redraw, ColoredCurves, Redrawn};
-pub use regions::{color_regions, follow_colors};
+pub use regions::color_regions;
 pub use smooth::smooth_curves;
 pub use trace::{trace_curves, TracedCurve};
 

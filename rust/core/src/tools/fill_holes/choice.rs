@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::options::{FillHolesOptions, LoopChoice};
 use crate::error::{MeshError, Refusal};
-use crate::hole_filling::{fill_loops_at, holes_of, FillOptions, Patch};
+use crate::hole_filling::{fill_loops, holes_of, FillOptions, Patch};
 use crate::mesh::Mesh;
 use crate::progress::Progress;
 use crate::{Error, Result};
@@ -67,7 +67,7 @@ pub(super) fn triangulate(
         .filter(|(_, refusal)| refusal.is_none())
         .map(|(vertices, _)| vertices.clone())
         .collect();
-    let mut patches = fill_loops_at(mesh, &loops, at, options, progress)?.into_iter();
+    let mut patches = fill_loops(mesh, &loops, at, options, progress)?.into_iter();
     let mut next = |(_, refusal): &mut Chosen| {
         if refusal.is_some() {
             return Ok(Patch::default());

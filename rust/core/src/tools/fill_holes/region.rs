@@ -189,10 +189,9 @@ pub(super) mod tests {
         let away = |f: usize| distance(centroid(shape.faces[f].map(|v| shape.vertices[v as usize])), place);
         let mesh = shape.clone().without_faces(|f| away(f) < radius).mesh().unwrap();
         let hole = find_holes(&mesh).unwrap().remove(0).vertices;
-        let patch = fill_loops(&mesh, std::slice::from_ref(&hole), &FillOptions::default(), &Progress::new())
-            .unwrap()
-            .remove(0);
         let at = faces_at(&mesh, std::slice::from_ref(&hole)).unwrap();
+        let (options, progress) = (FillOptions::default(), Progress::new());
+        let patch = fill_loops(&mesh, &[hole], &at, &options, &progress).unwrap().remove(0).unwrap();
         let near = Neighborhoods::new(mesh.connectivity(), &at).unwrap();
         let n = mesh.connectivity().n_vertices() as u32;
         Region::new(&mesh, &near, &patch, n, super::super::constants::REGION_RINGS, &HashSet::new()).unwrap()

@@ -150,8 +150,8 @@ mod tests {
         let hole =
             find_holes(&mesh).unwrap().into_iter().find(|hole| !hole.is_outer_border).unwrap().vertices;
         let (progress, coarse) = (Progress::new(), FillOptions { max_faces: 1500, ..FillOptions::default() });
-        let patch = fill_loops(&mesh, std::slice::from_ref(&hole), &coarse, &progress).unwrap().remove(0);
         let at = faces_at(&mesh, std::slice::from_ref(&hole)).unwrap();
+        let patch = fill_loops(&mesh, &[hole], &at, &coarse, &progress).unwrap().remove(0).unwrap();
         let near = Neighborhoods::new(mesh.connectivity(), &at).unwrap();
         let n = mesh.connectivity().n_vertices() as u32;
         let mut region = Region::new(&mesh, &near, &patch, n, 2, &HashSet::new()).unwrap();
