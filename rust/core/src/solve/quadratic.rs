@@ -16,29 +16,8 @@ use crate::solve::normal_matrix::NormalMatrix;
 use crate::solve::problem::{Problem, Settings, Solution, Solver, Status};
 use crate::{memory, Error, Result};
 
-/// The shift as a part of the diagonal: above rounding in the factorization, below the smallest eigenvalue of
-/// well posed problems up to some 100k vertices.
-const SHIFT: f64 = 1e-13;
-
-/// The same with linear constraints that may have to hold the kernel of the energy: small dense pivots of the
-/// constraints are told from dependent ones down to 1e-12.
-const SHIFT_UNDER_CONSTRAINTS: f64 = 1e-9;
-
-/// How much larger a shift is tried when the factorization fails, and how large it gets.
-const SHIFT_GROWTH: f64 = 100.0;
-const LARGEST_SHIFT: f64 = 1e-6;
-
 /// Steps stop when one more would lower the objective by less than this part of it.
 const ENOUGH: f64 = 1e-14;
-
-/// What rounding leaves of a sum of squares whose terms cancel, as a part of their size: 1e-9 squared.
-const ROUNDING: f64 = 1e-18;
-
-/// Times that the multipliers of the constraints are taken out of a gradient: the second leaves rounding.
-const PROJECTIONS: usize = 2;
-
-/// Steps at most after the first; well posed problems take one or two, those with a large shift some ten.
-const MOST_STEPS: usize = 299;
 
 /// Minimizes the quadratic reading of `problem`, column by column (its coupling does not matter).
 ///
@@ -95,6 +74,15 @@ struct Newton<'a> {
 
 impl<'a> Newton<'a> {
     fn new(problem: &'a Problem<'a>, free: &'a FreeOperator, memory_limit: Option<usize>) -> Result<Self> {
+        /// The shift as a part of the diagonal: above rounding in the factorization, below the smallest
+        /// eigenvalue of well posed problems up to some 100k vertices.
+        const SHIFT: f64 = 1e-13;
+        /// The same with linear constraints that may have to hold the kernel of the energy: small dense
+        /// pivots of the constraints are told from dependent ones down to 1e-12.
+        const SHIFT_UNDER_CONSTRAINTS: f64 = 1e-9;
+        /// How much larger a shift is tried when the factorization fails, and how large it gets.
+        const SHIFT_GROWTH: f64 = 100.0;
+        const LARGEST_SHIFT: f64 = 1e-6;
         // Negative weights tell of a matrix that may not be definite,
         // and a cut block with one makes any that is not.
         let negative = problem.weights.iter().any(|w| *w < 0.0);
@@ -144,6 +132,12 @@ impl<'a> Newton<'a> {
 
     /// Minimizes over the free rows of column `c`; `u` holds the target before.
     fn column(&mut self, c: usize, u: &mut [f64], total: &mut Totals, progress: &Progress) -> Result<()> {
+        /// What rounding leaves of a sum of squares whose terms cancel, as a part of their size: 1e-9
+        /// squared.
+        const ROUNDING: f64 = 1e-18;
+        /// Steps at most after the first; well posed problems take one or two, those with a large shift some
+        /// ten.
+        const MOST_STEPS: usize = 299;
         let target = self.problem.target.column(c);
         let at_target = self.objective(u, target);
         let rounding = ROUNDING * self.without_cancelling(target);
@@ -238,6 +232,9 @@ impl Quadratic<1> for Descending<'_, '_> {
     /// What the constraints hold is taken out of the residual first: left in, its rounding would outgrow the
     /// rest (Gould, Hribar and Nocedal 2001, section 6).
     fn precondition(&mut self, residual: &mut [[f64; 1]]) -> Result<Vec<[f64; 1]>> {
+        /// Times that the multipliers of the constraints are taken out of a gradient: the second leaves
+        /// rounding.
+        const PROJECTIONS: usize = 2;
         let mut z = memory::twin(residual)?;
         self.newton.cholesky.solve(&mut z)?;
         if let Some(constraints) = &self.constraints {

@@ -9,15 +9,6 @@ use crate::random::Random;
 /// The side that stands for the separator; the others are 0 and 1.
 pub(super) const SEPARATOR: u8 = 2;
 
-/// Graphs are coarsened to so many vertices.
-const COARSEST: usize = 40;
-
-/// A coarser graph with more than this part of the vertices is not worth its while.
-const WORTH_COARSENING: f64 = 0.95;
-
-/// First separators that are tried on the coarsest graph.
-const TRIES: usize = 4;
-
 /// The heavier side may have this part of the weight.
 const HEAVIER_SIDE: f64 = 0.6;
 
@@ -28,6 +19,10 @@ const PASSES: usize = 8;
 /// The side of each vertex: 0, 1 or [`SEPARATOR`]; no edge joins 0 and 1.
 #[must_use]
 pub(super) fn separator(graph: &Graph, random: &mut Random) -> Vec<u8> {
+    /// Graphs are coarsened to so many vertices.
+    const COARSEST: usize = 40;
+    /// A coarser graph with more than this part of the vertices is not worth its while.
+    const WORTH_COARSENING: f64 = 0.95;
     let total: u64 = graph.weights.iter().map(|&w| u64::from(w)).sum();
     let heaviest = (1.5 * total as f64 / COARSEST as f64).max(2.0) as u32;
     let (mut levels, mut maps): (Vec<Graph>, Vec<Vec<u32>>) = (Vec::new(), Vec::new());
@@ -54,6 +49,8 @@ pub(super) fn separator(graph: &Graph, random: &mut Random) -> Vec<u8> {
 
 /// The best of a few separators grown from random vertices.
 fn first(graph: &Graph, random: &mut Random) -> Vec<u8> {
+    /// First separators that are tried on the coarsest graph.
+    const TRIES: usize = 4;
     let mut best: Option<((bool, u64), Vec<u8>)> = None;
     for _ in 0..TRIES {
         let mut side = grown(graph, random);

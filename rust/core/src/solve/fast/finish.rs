@@ -13,38 +13,6 @@ use crate::solve::primal_dual::{clip, dual_point, follow, Model, Stiffness};
 use crate::solve::problem::Settings;
 use crate::{Error, Result};
 
-/// What the objective fell since the last look, this many times over,
-/// is an estimate of what it has still to fall.
-const STILL_TO_FALL: f64 = 10.0;
-
-/// The part of the gap asked for that the central path aims at: the rest is for the distance from the path.
-const AIM: f64 = 0.8;
-
-/// The aim of the next step, in gaps reached so far.
-const NEXT_AIM: f64 = 0.1;
-
-/// Factorizations' worth of steps that a run takes which begins with the objective still, and more for each
-/// digit that the objective has to fall (measured from 8k to 200k vertices; they are what decides, not what
-/// is done).
-const STEPS_WHEN_STILL: f64 = 3.0;
-const STEPS_A_DIGIT: f64 = 3.0;
-
-/// A step that leaves more than this part of the gap is idle. Steps stop after this many idle ones in a row.
-const IDLE: f64 = 0.7;
-const MOST_IDLE: usize = 6;
-
-/// Iterations of conjugate gradients for a step with an older factor, and the part of the residual that is
-/// enough. They cost as much as the factorization they save; a run longer than [`LONG`] says that the factor
-/// is too old for the next step.
-const MOST_GRADIENTS: usize = 10;
-const LONG: usize = 7;
-const GRADIENT_GOAL: f64 = 0.05;
-
-/// How often the dual point is corrected for what rounding and inexact steps leave over of its equations, and
-/// the part of the gap asked for that needs no correction.
-const MOST_CORRECTIONS: usize = 2;
-const NEGLIGIBLE: f64 = 0.1;
-
 /// The dual point that steps keep, and what the linear system holds.
 struct Steps<const K: usize> {
     z: Vec<Block<K>>,
@@ -63,6 +31,11 @@ impl<const K: usize> Run<'_, '_, K> {
         last_primal: f64,
         left: f64,
     ) -> bool {
+        /// Factorizations' worth of steps that a run takes which begins with the objective still, and more
+        /// for each digit that the objective has to fall (measured from 8k to 200k vertices; they are what
+        /// decides, not what is done).
+        const STEPS_WHEN_STILL: f64 = 3.0;
+        const STEPS_A_DIGIT: f64 = 3.0;
         // A joint norm of several columns would couple them in the matrix.
         if self.reduced.n_columns != 1 || settings.tolerance.is_none() || iterations < self.next_steps {
             return false;
@@ -74,6 +47,9 @@ impl<const K: usize> Run<'_, '_, K> {
     /// The relative gap of the point of the central path to start at:
     /// the objective is as far from its minimum there.
     fn first_aim(&self, settings: &Settings, last_primal: f64) -> f64 {
+        /// What the objective fell since the last look, this many times over,
+        /// is an estimate of what it has still to fall.
+        const STILL_TO_FALL: f64 = 10.0;
         let fell = (last_primal - self.best.primal) / self.scale();
         let least = least_aim(settings);
         (STILL_TO_FALL * fell).clamp(least, self.gap().max(least))
@@ -87,6 +63,12 @@ impl<const K: usize> Run<'_, '_, K> {
         last_primal: f64,
         progress: &Progress,
     ) -> Result<()> {
+        /// The aim of the next step, in gaps reached so far.
+        const NEXT_AIM: f64 = 0.1;
+        /// A step that leaves more than this part of the gap is idle. Steps stop after this many idle ones in
+        /// a row.
+        const IDLE: f64 = 0.7;
+        const MOST_IDLE: usize = 6;
         let multipliers = |b| self.sweep.split(&self.reduced.weights, &self.r, b).1;
         let z = memory::gathered((0..self.r.len()).map(multipliers))?;
         let mut steps = Steps { z, factored: Vec::new(), is_near: false };
@@ -123,6 +105,12 @@ impl<const K: usize> Run<'_, '_, K> {
 
     /// One step and the bounds that come with it; `false` when no step downwards was found.
     fn step(&mut self, settings: &Settings, steps: &mut Steps<K>, barrier: f64) -> Result<bool> {
+        /// Iterations of conjugate gradients for a step with an older factor, and the part of the residual
+        /// that is enough. They cost as much as the factorization they save; a run longer than [`LONG`] says
+        /// that the factor is too old for the next step.
+        const MOST_GRADIENTS: usize = 10;
+        const LONG: usize = 7;
+        const GRADIENT_GOAL: f64 = 0.05;
         let model = Model::new(&self.reduced, &self.u, &steps.z, barrier)?;
         let mut z = memory::twin(model.slope())?;
         let is_new = !steps.is_near;
@@ -185,6 +173,10 @@ impl<const K: usize> Run<'_, '_, K> {
         step: &[[f64; K]],
         z: &mut [Block<K>],
     ) -> Result<()> {
+        /// How often the dual point is corrected for what rounding and inexact steps leave over of its
+        /// equations, and the part of the gap asked for that needs no correction.
+        const MOST_CORRECTIONS: usize = 2;
+        const NEGLIGIBLE: f64 = 0.1;
         let spread = spread(&self.u);
         let negligible = NEGLIGIBLE * settings.tolerance.unwrap_or(RESIDUAL_GOAL) * self.scale();
         for _ in 0..MOST_CORRECTIONS {
@@ -230,5 +222,8 @@ impl<const K: usize> Run<'_, '_, K> {
 
 /// The relative gap at which the central path ends for a run.
 fn least_aim(settings: &Settings) -> f64 {
+    /// The part of the gap asked for that the central path aims at: the rest is for the distance from the
+    /// path.
+    const AIM: f64 = 0.8;
     AIM * settings.tolerance.unwrap_or(RESIDUAL_GOAL)
 }
