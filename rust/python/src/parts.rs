@@ -5,9 +5,10 @@ use pyo3::prelude::*;
 use ridgeform_core::tools::{self, Hierarchy};
 
 use crate::mesh::Mesh;
+use crate::nested::nested_divisions;
 use crate::numbers::at_least_if;
 use crate::progress::{handle, Progress};
-use crate::{arrays, doorway, nested, options};
+use crate::{arrays, doorway, options};
 
 /// What `parts` returns: a label for every face, and finer and coarser divisions nested with it.
 #[pyclass(frozen, module = "ridgeform")]
@@ -28,33 +29,7 @@ pub struct Parts {
     hierarchy: Hierarchy,
 }
 
-#[pymethods]
-impl Parts {
-    /// The division into `n_parts` parts, or the nearest number that `range` allows, from the hierarchy:
-    /// at once, and nested.
-    ///
-    /// Parameters
-    /// ----------
-    /// n_parts : number of parts, ≥ 1
-    ///
-    /// Returns
-    /// -------
-    /// (m,) int32, from 0 in the order of their first faces; -1 for faces that took no part
-    ///
-    /// Raises
-    /// ------
-    /// ArgumentError
-    fn labels_at<'py>(&self, py: Python<'py>, n_parts: i64) -> PyResult<Bound<'py, PyArray1<i32>>> {
-        nested::labels_at(py, &self.hierarchy, "n_parts", n_parts)
-    }
-
-    /// Fewest and most parts that `labels_at` has.
-    #[getter]
-    fn range(&self) -> (usize, usize) {
-        let [most, fewest] = self.hierarchy.range();
-        (fewest, most)
-    }
-
+nested_divisions! { Parts, n_parts, "parts";
     /// What the cuts cost that make two parts of one, three of two, and so on, float64. They come in the
     /// order of how much they are worth, which grows with the areas that they part: not ascending.
     #[getter]
@@ -62,10 +37,6 @@ impl Parts {
         let costs: Vec<f64> =
             self.hierarchy.strengths().iter().rev().map(|strength| 1.0 / strength).collect();
         costs.into_pyarray(py)
-    }
-
-    fn __repr__(&self) -> String {
-        nested::text("Parts", self.n_parts, "parts", &self.hierarchy, self.status)
     }
 }
 

@@ -6,8 +6,9 @@ use ridgeform_core::tools::{self, Hierarchy, Scale, SegmentMethod};
 
 use crate::columns::{self, Values};
 use crate::mesh::Mesh;
+use crate::nested::nested_divisions;
 use crate::numbers::at_least_if;
-use crate::{arrays, doorway, nested, options};
+use crate::{arrays, doorway, options};
 
 /// What `segment` returns: a label for every face, and finer and coarser segmentations nested with it.
 #[pyclass(frozen, module = "ridgeform")]
@@ -47,42 +48,12 @@ pub struct Segmentation {
     hierarchy: Hierarchy,
 }
 
-#[pymethods]
-impl Segmentation {
-    /// The segmentation with `n_segments` segments, or the nearest number that `range` allows, from the
-    /// hierarchy: at once, and nested.
-    ///
-    /// Parameters
-    /// ----------
-    /// n_segments : number of segments, ≥ 1
-    ///
-    /// Returns
-    /// -------
-    /// (m,) int32, from 0 in the order of their first faces; -1 for faces that took no part
-    ///
-    /// Raises
-    /// ------
-    /// ArgumentError
-    fn labels_at<'py>(&self, py: Python<'py>, n_segments: i64) -> PyResult<Bound<'py, PyArray1<i32>>> {
-        nested::labels_at(py, &self.hierarchy, "n_segments", n_segments)
-    }
-
-    /// Fewest and most segments that `labels_at` has.
-    #[getter]
-    fn range(&self) -> (usize, usize) {
-        let [most, fewest] = self.hierarchy.range();
-        (fewest, most)
-    }
-
+nested_divisions! { Segmentation, n_segments, "segments";
     /// The strength of the border that falls with each merge, ascending, from `range[1]` segments down to
     /// `range[0]`, float64. For shapes radians, the mean bend across the border.
     #[getter]
     fn strengths<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.hierarchy.strengths().to_vec().into_pyarray(py)
-    }
-
-    fn __repr__(&self) -> String {
-        nested::text("Segmentation", self.n_segments, "segments", &self.hierarchy, self.status)
     }
 }
 
