@@ -81,15 +81,7 @@ def segment(
     """
     if noise is not None and not 0.0 <= noise < np.inf:
         raise ArgumentError(f"noise: is {noise}; it must be finite and at least 0")
-    with _shape.prepared(
-        vertices,
-        faces,
-        max_vertices=max_vertices,
-        rings=rings,
-        executor=executor,
-        folder=folder,
-        report=report,
-    ) as work:
+    with _shape.prepared((vertices, faces), (max_vertices, rings), executor, folder, report) as work:
         level = work.level(0)
         _shape.setting(level, "face_weights", "ridges", face_weights, len(get(level, "faces")))
         unit = _shape.unit(_shape.sizes(level), scale)

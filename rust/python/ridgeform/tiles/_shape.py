@@ -34,22 +34,23 @@ def working_folder(folder: str | Path | None) -> Iterator[Path]:
 
 @contextmanager
 def prepared(
-    vertices: ArrayLike,
-    faces: ArrayLike,
-    *,
-    max_vertices: int,
-    rings: int,
+    mesh: tuple[ArrayLike, ArrayLike],
+    blocks: tuple[int, int],
     executor: Executor | None,
     folder: str | Path | None,
     report: Report | None,
 ) -> Iterator[Work]:
-    """The mesh laid out to be worked on in blocks. Raises ArgumentError."""
+    """Vertices and faces laid out to be worked on in blocks of so many vertices, with so many rings around.
+
+    Raises ArgumentError.
+    """
+    max_vertices, rings = blocks
     for name, given, least in (("max_vertices", max_vertices, 100), ("rings", rings, 2)):
         if not isinstance(given, int) or given < least:
             raise ArgumentError(f"{name}: is {given}; give a whole number of at least {least}")
     with working_folder(folder) as made:
         work = Work(made, max_vertices, rings, checked(executor), report)
-        lay_out(work.level(0), vertices, faces)
+        lay_out(work.level(0), *mesh)
         yield work
 
 

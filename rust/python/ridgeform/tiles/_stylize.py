@@ -96,15 +96,7 @@ def stylize(
     ArgumentError, MeshError (no faces, none with area), SolveError, MemoryLimitError (a smaller
     `max_vertices` helps), RidgeformError where a process of the executor ended
     """
-    with _shape.prepared(
-        vertices,
-        faces,
-        max_vertices=max_vertices,
-        rings=rings,
-        executor=executor,
-        folder=folder,
-        report=report,
-    ) as work:
+    with _shape.prepared((vertices, faces), (max_vertices, rings), executor, folder, report) as work:
         level = work.level(0)
         n, m = len(get(level, "vertices")), len(get(level, "faces"))
         _shape.setting(level, "strength", "strength", strength, n, most=1.0)
