@@ -110,7 +110,6 @@ class Segmenting(Run):
 
     name = "segment"
     takes = SegmentSettings
-    sums = ("segments", "segment", "")
     needs = Needs(coordinates=False)
 
     @property
@@ -205,7 +204,8 @@ class Segmenting(Run):
         notes = []
         if by_count(self.settings) and part.n_segments != self.settings.count:
             fewest, most = part.possible()
-            notes.append(f"{self.settings.count} segments were asked for, {fewest} to {most} are possible")
+            asked = f"{self.settings.count} {self._called}s were asked for"
+            notes.append(f"{asked}, {fewest} to {most} are possible")
         if part.task.result.status == "inaccurate":
             notes.append("the tolerance was not reached")
         elif part.task.result.status == "stopped":
@@ -215,8 +215,13 @@ class Segmenting(Run):
         if of_parts(self.settings) and self.settings.source == "ATTRIBUTE":
             notes.append("parts are found on the shape, not on an attribute")
         if "OBJECTS" in self.settings.outputs and self._in_edit_mode:
-            notes.append("segments become objects only in Object Mode")
+            notes.append(f"{self._called}s become objects only in Object Mode")
         return notes
+
+    @property
+    def _called(self) -> str:
+        """What users call a segment of this kind."""
+        return "part" if of_parts(self.settings) else "segment"
 
     def figures(self, part: SegmentPart) -> dict[str, object]:
         """How many segments there are, and from how few to how many there might be."""
@@ -224,6 +229,7 @@ class Segmenting(Run):
         return {
             "attribute": part.source.name if part.source is not None else None,
             "segments": part.n_segments,
+            "called": self._called,
             "possible": part.possible(),
             **({} if of_parts(self.settings) else _course(found)),
             "status": str(found.status),
@@ -234,17 +240,26 @@ class Segmenting(Run):
         """How many segments there are, how many there might be, and how long it took."""
         fewest, most = entry["possible"]
         return [
-            f"{entry['name']}: {counted(entry['segments'], 'segment')}",
+            f"{entry['name']}: {_counted([entry])}",
             f"{fewest} to {most} are possible, {entry['seconds']:.1f} s",
         ]
 
+    @classmethod
+    def phrases(cls, done: Sequence[dict[str, object]]) -> list[str]:
+        """How many segments there are."""
+        return [_counted(done)] if done else []
+
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """How many segments of which mesh, how many there might be, time."""
-        count = total(done, "segments")
         fewest, most = (sum(ends) for ends in zip(*(entry["possible"] for entry in done), strict=True))
         seconds = total(done, "seconds")
         where = meshes_phrase(done)
-        return f"{counted(count, 'segment')} on {where} ({fewest} to {most} are possible), {seconds:.1f} s"
+        return f"{_counted(done)} on {where} ({fewest} to {most} are possible), {seconds:.1f} s"
+
+
+def _counted(done: Sequence[dict[str, object]]) -> str:
+    """How many segments or parts there are."""
+    return counted(total(done, "segments"), done[0]["called"] if done else "segment")
 
 
 def _course(found: ridgeform.Segmentation) -> dict[str, object]:
