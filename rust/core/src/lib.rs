@@ -8,6 +8,7 @@ pub mod hole_filling;
 pub mod intrinsic;
 pub mod labelling;
 pub mod levels;
+pub mod limits;
 pub mod linear;
 pub mod memory;
 pub mod mesh;

@@ -15,8 +15,8 @@ use crate::remesh::{budget, guard, EditableMesh};
 use crate::{Progress, Result};
 
 /// A patch with a bend beyond this (120 degrees) that was not there before it was remeshed is taken as it
-/// was: narrow tongues of surface that reach into a hole can make the passes lay faces against them.
-const FOLD_COSINE: f64 = -0.5;
+/// was: narrow tongues of surface that reach into a hole can make the passes lay faces back against them.
+const LAID_BACK: f64 = -0.5;
 
 /// Refines and remeshes a triangulation. Returns the new points, and the faces as places in the polygon;
 /// places from its length on are the new points.
@@ -76,7 +76,7 @@ pub(super) fn refined(
         })?;
         run(&mut remesher, options.remesh_iterations, most, progress)?;
         let bend = guard::worst_bend(&remesher.mesh);
-        Ok::<_, crate::Error>((remesher.mesh, bend < FOLD_COSINE && bend < refined.1))
+        Ok::<_, crate::Error>((remesher.mesh, bend < LAID_BACK && bend < refined.1))
     };
     let (mut mesh, mut is_folded) = remeshed(mesh)?;
     if is_folded && options.edge_length.is_some() {

@@ -7,7 +7,7 @@ use crate::mesh::vector::{centroid, distance, dot, norm, quality};
 use crate::mesh::{lengths_of, triangle};
 use crate::remesh::guard;
 use crate::remesh::{budget, EditableMesh};
-use crate::shape_guard::SLIVER;
+use crate::shape_guard::{SLIVER, TURNED};
 use crate::{Progress, Result};
 
 /// A face is split if its center is this much farther from each corner than the lengths wanted there:
@@ -24,10 +24,6 @@ const FLIPS_PER_EDGE: usize = 20;
 /// Two angles opposite an edge must exceed π by this for a flip,
 /// so that four points on a circle do not flip forever.
 const ANGLE_TOLERANCE: f64 = 1e-9;
-
-/// Edges whose faces turn by more than this (60 degrees) are the patch's shape, not its mesh,
-/// and are not flipped.
-const FOLD_COSINE: f64 = 0.5;
 
 /// Inserts vertices at the centers of faces that are too large and flips edges to be Delaunay,
 /// in turns, until no face is.
@@ -101,9 +97,10 @@ fn excess(mesh: &EditableMesh, a: u32, b: u32) -> f64 {
     mesh.wings(a, b).map_or(-1.0, |wings| wings.tips.into_iter().map(angle).sum::<f64>() - PI)
 }
 
-/// Whether the two faces make no fold, or one of them is so thin that its normal says nothing.
+/// Whether the two faces turn by no more than [`TURNED`], so that their edge is the patch's mesh, not its shape,
+/// or one of them is so thin that its normal says nothing.
 fn is_flat(mesh: &EditableMesh, faces: [u32; 2]) -> bool {
     let [m, n] = faces.map(|f| mesh.area_vector(f));
     let thin = |f: u32| mesh.face(f).is_some_and(|face| quality(mesh.corners(face)) < SLIVER);
-    dot(m, n) > FOLD_COSINE * norm(m) * norm(n) || faces.into_iter().any(thin)
+    dot(m, n) > TURNED * norm(m) * norm(n) || faces.into_iter().any(thin)
 }

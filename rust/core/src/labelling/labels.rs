@@ -85,14 +85,27 @@ impl Domain<'_> {
     /// What face `f` costs on `surface`: its corners' misfits. One that has a corner off the surface is no
     /// better there than free, and one that lies across it is as far off as can be.
     fn cost_on(&self, f: usize, surface: &Surface) -> f64 {
+        self.cost_so_far_off(f, surface, || self.off(f, surface))
+    }
+
+    fn cost_so_far_off(&self, f: usize, surface: &Surface, off: impl FnOnce() -> [f64; 3]) -> f64 {
         if self.is_across(f, surface) {
             return MOST_MISFIT * self.shares(f);
         }
-        let corners = self.connectivity.faces()[f];
-        let off = corners.map(|v| surface.distance(self.positions[v as usize]).0);
+        let off = off();
         let is_off = off.iter().any(|d| d.abs() > MOST_RISE * self.sigma);
-        let least = if is_off { FREE_MISFIT } else { 0.0 };
-        corners.iter().zip(off).map(|(&v, d)| self.share(f, v) * misfit(d, self.sigma).max(least)).sum()
+        self.misfits(f, off, if is_off { FREE_MISFIT } else { 0.0 })
+    }
+
+    /// How far the corners of face `f` are from `surface`.
+    fn off(&self, f: usize, surface: &Surface) -> [f64; 3] {
+        self.connectivity.faces()[f].map(|v| surface.distance(self.positions[v as usize]).0)
+    }
+
+    /// What the corners of face `f` cost so far off, each at least `least`.
+    fn misfits(&self, f: usize, off: [f64; 3], least: f64) -> f64 {
+        let corners = self.connectivity.faces()[f].into_iter().zip(off);
+        corners.map(|(v, d)| self.share(f, v) * misfit(d, self.sigma).max(least)).sum()
     }
 
     /// Whether face `f` lies across `surface`, although its corners may be on it: it is tilted by more than
@@ -116,11 +129,11 @@ impl Domain<'_> {
 
     /// What `faces` cost on `surface` more than their corners alone say.
     pub(super) fn strain(&self, faces: &[u32], surface: &Surface) -> f64 {
-        let corners = |f: usize| -> f64 {
-            let cost = |v: u32| misfit(surface.distance(self.positions[v as usize]).0, self.sigma);
-            self.connectivity.faces()[f].iter().map(|&v| self.share(f, v) * cost(v)).sum()
+        let strain = |f: usize| {
+            let off = self.off(f, surface);
+            self.cost_so_far_off(f, surface, || off) - self.misfits(f, off, 0.0)
         };
-        faces.iter().map(|&f| self.cost_on(f as usize, surface) - corners(f as usize)).sum()
+        faces.iter().map(|&f| strain(f as usize)).sum()
     }
 
     /// What the parameters of a piece cost.

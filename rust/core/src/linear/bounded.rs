@@ -6,20 +6,12 @@
 //! One product a step.
 
 use super::Columns;
+use crate::limits::Limits;
 use crate::Result;
 
 /// Products to estimate the norm of `A`, by power iteration from the first gradient; the estimate is from
 /// below, so the fixed step is half of the longest that surely descends.
 const NORM_STEPS: usize = 10;
-
-/// When to stop.
-#[derive(Debug, Clone, Copy)]
-pub struct Limits {
-    /// At most so many products with `A`.
-    pub products: usize,
-    /// Stop where the projected gradient of every column has fallen to this part of its first length.
-    pub fall: f64,
-}
 
 /// What one column does next, and so which vector it wants multiplied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,7 +40,8 @@ struct Column {
 ///
 /// `x` is the start and the result, `descent` is `b − A x` at the start, 0 in rows that are not to move;
 /// `multiply` replaces columns by `A` times them and is only given columns that are 0 in those rows. The
-/// objective never rises.
+/// objective never rises. A step is a product; it rests where the projected gradient of every column has
+/// fallen to that part of its first length.
 ///
 /// # Errors
 /// Those of `multiply`.
@@ -63,10 +56,10 @@ pub fn minimize(
     let mut columns: Vec<Column> = (0..x.n_columns)
         .map(|c| {
             let gradient = descent.column(c).iter().map(|d| -d).collect();
-            Column::new(x.column(c).to_vec(), gradient, bounds[c], limits.fall)
+            Column::new(x.column(c).to_vec(), gradient, bounds[c], limits.rest)
         })
         .collect();
-    for _ in 0..limits.products {
+    for _ in 0..limits.steps {
         if columns.iter().all(|column| column.step == Step::Done) {
             break;
         }
@@ -252,7 +245,7 @@ mod tests {
             let bounds = [[-0.5, 0.5], [-100.0, 100.0]];
             let mut x = Columns::zeros(n, 2);
             let descent = Columns { data: b.clone(), ..x };
-            let limits = Limits { products: 2000, fall: 1e-9 };
+            let limits = Limits { steps: 2000, rest: 1e-9 };
             minimize(&mut x, &descent, &bounds, limits, |columns| {
                 (0..2).for_each(|c| {
                     let product = times(&a, columns.column(c));
@@ -281,7 +274,7 @@ mod tests {
     fn leaves_rows_without_descent_alone() {
         let mut x = Columns::from_column(vec![7.0, 0.0]);
         let descent = Columns::from_column(vec![0.0, 1.0]);
-        let limits = Limits { products: 10, fall: 1e-9 };
+        let limits = Limits { steps: 10, rest: 1e-9 };
         minimize(&mut x, &descent, &[[0.0, 0.25]], limits, |columns| {
             assert!(columns.data[0] == 0.0);
             Ok(())

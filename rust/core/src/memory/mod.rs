@@ -18,7 +18,7 @@ pub use model::Tool;
 pub use threads::processors;
 pub(crate) use threads::room_for_threads;
 
-use std::collections::{BinaryHeap, HashMap, HashSet, VecDeque};
+use std::collections::{BinaryHeap, HashMap, HashSet, TryReserveError, VecDeque};
 use std::hash::Hash;
 
 use rayon::prelude::*;
@@ -102,14 +102,19 @@ pub fn reserved<T>(what: &'static str, n: usize) -> Result<Vec<T>> {
     Ok(array)
 }
 
+/// The error where the `n` entries that something holds cannot become `n_further` more.
+fn refused<T>(n: usize, n_further: usize) -> impl Fn(TryReserveError) -> SolveError {
+    let needed = n.saturating_add(n_further).saturating_mul(size_of::<T>());
+    move |_| SolveError::Memory { needed, limit: None }
+}
+
 /// An empty array with room for `n` entries of what a linear system takes.
 ///
 /// # Errors
 /// [`SolveError::Memory`] when the system does not give that much.
 pub(crate) fn room<T>(n: usize) -> std::result::Result<Vec<T>, SolveError> {
     let mut array = Vec::new();
-    let refused = |_| SolveError::Memory { needed: n.saturating_mul(size_of::<T>()), limit: None };
-    array.try_reserve_exact(n).map_err(refused)?;
+    array.try_reserve_exact(n).map_err(refused::<T>(0, n))?;
     Ok(array)
 }
 
@@ -205,8 +210,7 @@ pub(crate) fn push<T>(array: &mut Vec<T>, value: T) -> std::result::Result<(), S
 /// # Errors
 /// [`SolveError::Memory`] when the system does not give that much.
 pub(crate) fn extend<T>(array: &mut Vec<T>, n_further: usize) -> std::result::Result<(), SolveError> {
-    let needed = array.len().saturating_add(n_further).saturating_mul(size_of::<T>());
-    array.try_reserve(n_further).map_err(|_| SolveError::Memory { needed, limit: None })
+    array.try_reserve(n_further).map_err(refused::<T>(array.len(), n_further))
 }
 
 /// Makes a map have room for so many further entries.
@@ -217,8 +221,7 @@ pub(crate) fn extend_map<K: Eq + Hash, V>(
     map: &mut HashMap<K, V>,
     n_further: usize,
 ) -> std::result::Result<(), SolveError> {
-    let needed = map.len().saturating_add(n_further).saturating_mul(size_of::<(K, V)>());
-    map.try_reserve(n_further).map_err(|_| SolveError::Memory { needed, limit: None })
+    map.try_reserve(n_further).map_err(refused::<(K, V)>(map.len(), n_further))
 }
 
 /// The entries of a map that grows as it must.
@@ -244,8 +247,7 @@ pub(crate) fn extend_heap<T: Ord>(
     heap: &mut BinaryHeap<T>,
     n_further: usize,
 ) -> std::result::Result<(), SolveError> {
-    let needed = heap.len().saturating_add(n_further).saturating_mul(size_of::<T>());
-    heap.try_reserve(n_further).map_err(|_| SolveError::Memory { needed, limit: None })
+    heap.try_reserve(n_further).map_err(refused::<T>(heap.len(), n_further))
 }
 
 /// Makes a set have room for so many further entries.
@@ -256,8 +258,7 @@ pub(crate) fn extend_set<K: Eq + Hash>(
     set: &mut HashSet<K>,
     n_further: usize,
 ) -> std::result::Result<(), SolveError> {
-    let needed = set.len().saturating_add(n_further).saturating_mul(size_of::<K>());
-    set.try_reserve(n_further).map_err(|_| SolveError::Memory { needed, limit: None })
+    set.try_reserve(n_further).map_err(refused::<K>(set.len(), n_further))
 }
 
 /// The different values of an iterator, in a set that grows as it must.
@@ -280,8 +281,7 @@ pub(crate) fn distinct<K: Eq + Hash>(
 /// # Errors
 /// [`SolveError::Memory`] when the system does not give that much.
 pub(crate) fn push_back<T>(queue: &mut VecDeque<T>, value: T) -> std::result::Result<(), SolveError> {
-    let needed = queue.len().saturating_add(1).saturating_mul(size_of::<T>());
-    queue.try_reserve(1).map_err(|_| SolveError::Memory { needed, limit: None })?;
+    queue.try_reserve(1).map_err(refused::<T>(queue.len(), 1))?;
     queue.push_back(value);
     Ok(())
 }
@@ -291,8 +291,7 @@ pub(crate) fn push_back<T>(queue: &mut VecDeque<T>, value: T) -> std::result::Re
 /// # Errors
 /// [`SolveError::Memory`] when the system does not give that much.
 pub(crate) fn make_room<T>(array: &mut Vec<T>, n: usize) -> std::result::Result<(), SolveError> {
-    let refused = |_| SolveError::Memory { needed: n.saturating_mul(size_of::<T>()), limit: None };
-    array.try_reserve_exact(n.saturating_sub(array.len())).map_err(refused)
+    array.try_reserve_exact(n.saturating_sub(array.len())).map_err(refused::<T>(0, n))
 }
 
 /// Makes an array have at least `n` entries, further ones of `value`; it grows by halves at least.

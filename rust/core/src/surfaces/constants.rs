@@ -1,18 +1,18 @@
 //! Every number that fits and meetings of surfaces depend on, with its reason.
 
+use crate::limits::Limits;
+
 /// The most that one point's misfit counts: noise is off by more than 3.5 standard deviations once in two
 /// thousand points, and what is off by more belongs to something else.
 pub const MOST_MISFIT: f64 = 6.0;
-
-/// Steps at most; fits settle after five to fifteen.
-pub(super) const MOST_STEPS: usize = 30;
 
 /// Starts that are followed to the end, the best of some twenty: the median distance that ranks them is blind
 /// to which of two close ones has the better end.
 pub(super) const FOLLOWED: usize = 3;
 
-/// A step that lowers the cost by less than this part of it is the last.
-pub(super) const SETTLED: f64 = 1e-10;
+/// Steps of a fit, which rests after five to fifteen: where one lowers the cost by no more than this part of
+/// it.
+pub(super) const FIT: Limits = Limits { steps: 30, rest: 1e-10 };
 
 /// No radius is larger than this many times the size of what is fitted: beyond,
 /// the surface is a plane as far as doubles tell.
@@ -40,10 +40,9 @@ pub(super) const UNDETERMINED: f64 = 1e-13;
 /// along the normals' bisecting plane a point lies. That is the ratio of the eigenvalues, `tan²(θ / 2)`.
 pub(super) const TANGENT: f64 = 1e-3;
 
-/// Newton's steps toward a meeting at most; five do for a part's surfaces. They end where one is as short as
-/// rounding has it.
-pub(super) const MEETING_STEPS: usize = 20;
-pub(super) const MEETING_ROUNDING: f64 = 1e-13;
+/// Newton's steps toward a meeting; five do for a part's surfaces. They rest where one is as short as rounding
+/// has it, as a part of how far the point is.
+pub(super) const MEETING: Limits = Limits { steps: 20, rest: 1e-13 };
 
 /// So many points are enough for a median that starts are ranked by and widths begin with:
 /// it is off by a twenty-fifth of a standard deviation.

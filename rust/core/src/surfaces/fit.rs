@@ -1,9 +1,7 @@
 //! The surface of a kind that fits points best: robust least squares by the method of Levenberg and
 //! Marquardt.
 
-use super::constants::{
-    DAMPING, FOLLOWED, LARGEST, LEAST_DAMPING, MOST_STEPS, QUARTILE, SETTLED, TAIL, UNDETERMINED,
-};
+use super::constants::{DAMPING, FIT, FOLLOWED, LARGEST, LEAST_DAMPING, QUARTILE, TAIL, UNDETERMINED};
 use super::motion::COUNT;
 use super::samples::Samples;
 use super::starts::starts;
@@ -65,7 +63,7 @@ fn refined(start: Surface, samples: &Samples, sigma: f64) -> (Surface, f64) {
     let (mut best, mut least) = (start, samples.cost(&start, sigma));
     let mut width = (samples.spread(&start) / QUARTILE).max(sigma);
     let mut before = soft_cost(samples, &surface, width);
-    for _ in 0..MOST_STEPS {
+    for _ in 0..FIT.steps {
         let (matrix, right) = normal_equations(samples, &surface, width);
         let step = damped(&matrix, &right, damping);
         let next = surface.moved(&step);
@@ -85,7 +83,7 @@ fn refined(start: Surface, samples: &Samples, sigma: f64) -> (Surface, f64) {
             (best, least) = (surface, cost);
         }
         let narrower = (samples.spread(&surface) / QUARTILE).clamp(sigma, width);
-        let is_still = gained <= SETTLED * after && narrower >= 0.9 * width;
+        let is_still = gained <= FIT.rest * after && narrower >= 0.9 * width;
         if is_still && (width <= sigma || narrower > 0.999 * width) {
             break;
         }

@@ -1,7 +1,7 @@
 //! Where surfaces meet: the point on a curve of two or in a corner of three and more that is nearest to a
 //! start.
 
-use super::constants::{MEETING_ROUNDING, MEETING_STEPS, TANGENT};
+use super::constants::{MEETING, TANGENT};
 use super::Surface;
 use crate::linear::small::Quadric;
 use crate::mesh::vector::{add, distance, dot, norm, scale, sub, Point};
@@ -16,7 +16,7 @@ pub fn meeting(surfaces: &[&Surface], start: Point, reach: f64) -> Option<Point>
         return Some(surface.project(start)).filter(|&p| distance(p, start) <= reach);
     }
     let mut point = start;
-    for _ in 0..MEETING_STEPS {
+    for _ in 0..MEETING.steps {
         let mut quadric = Quadric::default();
         for surface in surfaces {
             let (distance, normal) = surface.distance(point);
@@ -28,7 +28,7 @@ pub fn meeting(surfaces: &[&Surface], start: Point, reach: f64) -> Option<Point>
         if moved.is_nan() || moved > reach {
             return None;
         }
-        if norm(step) <= MEETING_ROUNDING * (norm(point) + reach) {
+        if norm(step) <= MEETING.rest * (norm(point) + reach) {
             break;
         }
     }

@@ -72,6 +72,16 @@ impl SolveOptions {
         Ok(Settings { tolerance, max_iterations, memory_limit, announce: true })
     }
 
+    /// The same for what runs within a tool that has set the threads.
+    pub(super) fn within(&self) -> Self {
+        Self { threads: None, ..*self }
+    }
+
+    /// The same stopped on residuals, which is enough where no gap is reported.
+    pub(super) fn on_residuals(&self) -> Self {
+        Self { tolerance: None, ..*self }
+    }
+
     /// Runs `work` on the number of threads asked for.
     ///
     /// # Errors
@@ -82,6 +92,15 @@ impl SolveOptions {
             Some(n) => threads::on(n, work),
         }
     }
+}
+
+/// What painted weights of edges, a row a face, and of faces make of a border along halfedge `h`; 1 without any.
+pub(super) fn painted_weight(
+    edge_weights: Option<&Vec<[f64; 3]>>,
+    face_weights: Option<&Vec<f64>>,
+    h: usize,
+) -> f64 {
+    edge_weights.map_or(1.0, |w| w[h / 3][h % 3]) * face_weights.map_or(1.0, |w| w[h / 3])
 }
 
 /// Refuses a number, where one is given, that is not positive and finite; `cure` says what to give instead.

@@ -1,6 +1,6 @@
 //! How painted colors become curves: every threshold, with its reason.
 
-use crate::linear::bounded::Limits;
+use crate::limits::Limits;
 
 // Regions.
 
@@ -39,7 +39,7 @@ pub(super) const SHORTER_BY: f64 = 1e-9;
 pub(super) const LEAST_WEIGHT: f64 = 1e-9;
 
 /// On painted meshes the error of the rebuilt colors stays within 0.01 dB after some 20 products.
-pub(super) const FIT_LIMITS: Limits = Limits { products: 60, fall: 1e-4 };
+pub(super) const FIT: Limits = Limits { steps: 60, rest: 1e-4 };
 
 /// Fits at most after the one without the vertices on curves. Where a region is so narrow that all its
 /// vertices are on curves, the first owners come from a blend of its sides, and the second from its own

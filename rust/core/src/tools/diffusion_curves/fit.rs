@@ -1,6 +1,6 @@
 //! The colors of a surface along its curves: the screened Poisson fit of the paper, then least squares.
 
-use super::constants::{FIT_LIMITS, MOST_FITS};
+use super::constants::{FIT, MOST_FITS};
 use super::membrane::{Harmonic, Membrane};
 use crate::linear::bounded;
 use crate::linear::Columns;
@@ -84,7 +84,7 @@ impl Task<'_> {
         let mut descent = reading.given_back(Columns { data, ..taken })?;
         harmonic.transposed(&mut descent, progress)?;
         let bounds: Vec<[f64; 2]> = (0..taken.n_columns).map(|c| self.range(c)).collect();
-        bounded::minimize(&mut fit.values, &descent, &bounds, FIT_LIMITS, |columns| {
+        bounded::minimize(&mut fit.values, &descent, &bounds, FIT, |columns| {
             harmonic.extend(columns, progress)?;
             *columns = reading.given_back(reading.taken(columns)?)?;
             harmonic.transposed(columns, progress)

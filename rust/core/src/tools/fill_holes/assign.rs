@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::constants::{ASSIGN_SWEEPS, FIXED_WEIGHT, RIM_BORDER_COST};
+use super::constants::{FIXED_WEIGHT, RIM_BORDER_COST, SWEEPS};
 use super::parts::{SmoothParts, NONE};
 use super::region::Region;
 use crate::memory;
@@ -94,7 +94,7 @@ fn flood(region: &Region, parts: &SmoothParts, edge: f64, labels: &mut [u32]) ->
 
 fn shorten(region: &Region, parts: &SmoothParts, edge: f64, labels: &mut [u32]) {
     let first = region.n_outer as u32;
-    for _ in 0..ASSIGN_SWEEPS {
+    for _ in 0..SWEEPS {
         let mut changed = false;
         for f in first..region.mesh.n_faces() as u32 {
             let here = labels[(f - first) as usize];

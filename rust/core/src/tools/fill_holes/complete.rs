@@ -1,7 +1,7 @@
 //! One hole: the smooth patch, and from it the sharp one where the surroundings ask for it.
 
 use super::completion::{Completion, Watch};
-use super::constants::{COARSE_FACES, FINE_FACES, FINE_ROUNDS, FLIP_SWEEPS, SHARP, SMOOTH_ROUNDS};
+use super::constants::{COARSE_FACES, FINE_FACES, FINE_ROUNDS, SHARP, SMOOTH_ROUNDS};
 use super::decide::{bends_around, Bends};
 use super::fair::fair;
 use super::filled::Completed;
@@ -69,7 +69,7 @@ impl Completion<'_, '_> {
         }
         let coarse = region.twin()?;
         self.resample(region, self.ridge(), FINE_FACES, FINE_ROUNDS)?;
-        flip_along_ridges(region, FLIP_SWEEPS)?;
+        flip_along_ridges(region)?;
         fair(region, self.ridge(), self.progress)?;
         if worst_bend(&region.mesh) < worst_bend(&coarse.mesh).min(FOLDED) {
             *region = coarse;

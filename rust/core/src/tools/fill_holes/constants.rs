@@ -1,5 +1,7 @@
 //! How holes are filled: every threshold, with its reason.
 
+use crate::limits::Limits;
+
 // Smooth or sharp.
 
 /// The flow's stencil takes two rings; planes are fitted over five.
@@ -53,8 +55,9 @@ pub(super) const FINE_ROUNDS: usize = 4;
 pub(super) const FAIR_ROUNDS: usize = 3;
 pub(super) const FAIR_STEPS: usize = 2;
 
-/// Sweeps of flips at most; they end by themselves after three or four.
-pub(super) const FLIP_SWEEPS: usize = 10;
+/// Sweeps over a patch that flip edges or shorten borders between parts at most; they end by themselves after
+/// three or four.
+pub(super) const SWEEPS: usize = 10;
 
 /// A patch whose vertices all moved by less than this part of its mean edge in a cycle rests.
 pub(super) const STILL_CYCLE: f64 = 1e-3;
@@ -115,19 +118,14 @@ pub(super) const FIXED_WEIGHT: f64 = 10.0;
 /// and a border beside it would have no area.
 pub(super) const RIM_BORDER_COST: f64 = 0.5;
 
-/// Sweeps over the faces that shorten the borders at most.
-pub(super) const ASSIGN_SWEEPS: usize = 10;
-
 // Where the parts meet.
 
-/// Rounds of assigning faces to parts, moving vertices onto them and remeshing.
-pub(super) const EXTEND_ROUNDS: usize = 12;
+/// Rounds of assigning faces to parts, moving vertices onto them and remeshing. A patch rests whose vertices
+/// all moved by less than this part of an edge.
+pub(super) const EXTENDING: Limits = Limits { steps: 12, rest: 1e-6 };
 
 /// The round from which on folds are opened that did not open by themselves; most patches rest before.
 pub(super) const UNTANGLE_FROM: usize = 6;
-
-/// A patch whose vertices all moved by less than this part of an edge rests.
-pub(super) const STILL_ROUND: f64 = 1e-6;
 
 /// Passes over the vertices in a round: a vertex finds room once its neighbors have moved.
 pub(super) const SETTLE_PASSES: usize = 3;

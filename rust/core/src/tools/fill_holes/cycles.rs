@@ -3,7 +3,7 @@
 
 use super::completion::Completion;
 use super::constants::{
-    COARSE_FACES, EXTEND_AFTER, FAIR_ROUNDS, FAIR_STEPS, FLIP_SWEEPS, FLOW_STEPS, MOST_BEND, RESAMPLE_EVERY,
+    COARSE_FACES, EXTEND_AFTER, FAIR_ROUNDS, FAIR_STEPS, FLOW_STEPS, MOST_BEND, RESAMPLE_EVERY,
     RESAMPLE_ROUNDS, RIDGE_SHARE, SNAPS, SNAP_FROM, STILL_CYCLE,
 };
 use super::extend::{extend, Extended};
@@ -77,7 +77,7 @@ impl Completion<'_, '_> {
             }
             if is_sharp && cycle % RESAMPLE_EVERY == 0 {
                 self.resample(region, self.ridge(), COARSE_FACES, RESAMPLE_ROUNDS)?;
-                flip_along_ridges(region, FLIP_SWEEPS)?;
+                flip_along_ridges(region)?;
             }
         }
         if is_sharp && cycles > 0 {
@@ -158,7 +158,7 @@ impl Completion<'_, '_> {
         for _ in 0..FAIR_ROUNDS {
             self.resample(region, ridge, COARSE_FACES, RESAMPLE_ROUNDS)?;
             for _ in 0..FAIR_STEPS {
-                flip_along_ridges(region, FLIP_SWEEPS)?;
+                flip_along_ridges(region)?;
                 fair(region, ridge, self.progress)?;
             }
         }
@@ -169,12 +169,12 @@ impl Completion<'_, '_> {
 /// Turns the edges of the patch along its ridges and snaps its vertices onto them; returns the longest move,
 /// infinite where an edge was flipped.
 fn align(region: &mut Region, cycle: usize) -> Result<f64> {
-    let mut flips = flip_along_ridges(region, FLIP_SWEEPS)?;
+    let mut flips = flip_along_ridges(region)?;
     let mut moved: f64 = 0.0;
     if cycle >= SNAP_FROM {
         for _ in 0..SNAPS {
             moved = moved.max(snap(region, &Snapping::DEFAULT)?);
-            flips += flip_along_ridges(region, FLIP_SWEEPS)?;
+            flips += flip_along_ridges(region)?;
         }
     }
     Ok(if flips > 0 { f64::INFINITY } else { moved })

@@ -3,8 +3,7 @@
 
 use super::assign::{assign, borders, parts_at};
 use super::constants::{
-    CLOSE_CORNERS, COARSE_FACES, CUTS, EXTEND_ROUNDS, FLIP_SWEEPS, RESAMPLE_ROUNDS, SETTLE_PASSES,
-    STILL_ROUND, UNTANGLE_FROM,
+    CLOSE_CORNERS, COARSE_FACES, CUTS, EXTENDING, RESAMPLE_ROUNDS, SETTLE_PASSES, UNTANGLE_FROM,
 };
 use super::flips::flip_along_ridges;
 use super::guard::move_guarded;
@@ -41,7 +40,7 @@ pub(super) fn extend(
     let edge = typical_edge(&region.mesh)?;
     let target = Target { edge_length, max_faces: COARSE_FACES, rounds: RESAMPLE_ROUNDS };
     let mut labels = Vec::new();
-    for round in 0..EXTEND_ROUNDS {
+    for round in 0..EXTENDING.steps {
         progress.check()?;
         if round > 0 {
             let borders = borders(region, parts, &labels)?;
@@ -60,14 +59,14 @@ pub(super) fn extend(
             labels = assign(region, parts, edge)?;
         }
         let mut moved = settle(region, parts, &labels)?;
-        if flip_along_ridges(region, FLIP_SWEEPS)? > 0 {
+        if flip_along_ridges(region)? > 0 {
             labels = assign(region, parts, edge)?;
             moved = moved.max(settle(region, parts, &labels)?);
         }
         if round >= UNTANGLE_FROM {
             untangle(region, parts, &labels);
         }
-        if moved < STILL_ROUND * edge && has_arrived(region, parts, &labels, edge) {
+        if moved < EXTENDING.rest * edge && has_arrived(region, parts, &labels, edge) {
             break;
         }
     }

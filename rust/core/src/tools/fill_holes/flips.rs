@@ -1,6 +1,6 @@
 //! Data-dependent flips: edges of the patch turn until they run along the ridge (Dyn, Levin and Rippa 1990).
 
-use super::constants::EVEN_ANGLE;
+use super::constants::{EVEN_ANGLE, SWEEPS};
 use super::region::Region;
 use super::surface::angle;
 use crate::memory;
@@ -12,11 +12,11 @@ use crate::Result;
 
 /// Flips edges of the patch while that lowers `Σ length · |dihedral angle|` over the edge and its four
 /// neighbors, and makes no sliver where there was none ([`is_thinned`]). Returns the number of flips.
-pub(super) fn flip_along_ridges(region: &mut Region, sweeps: usize) -> Result<usize> {
+pub(super) fn flip_along_ridges(region: &mut Region) -> Result<usize> {
     let faces = (region.n_outer as u32..region.mesh.n_faces() as u32).filter_map(|f| region.mesh.face(f));
     let mut edges = memory::sifted(faces.flat_map(|[a, b, c]| [key(a, b), key(b, c), key(c, a)]))?;
     let mut total = 0;
-    for _ in 0..sweeps {
+    for _ in 0..SWEEPS {
         edges.sort_unstable();
         edges.dedup();
         let mut next = Vec::new();

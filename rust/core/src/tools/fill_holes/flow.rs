@@ -29,6 +29,7 @@ pub(super) fn flow(
     progress: &Progress,
 ) -> Result<Flowed> {
     let mesh = region.to_mesh()?;
+    let by_residuals = options.solve.tolerance.is_none();
     let options = StylizeOptions {
         iterations: steps,
         fidelity: options.fidelity,
@@ -38,14 +39,8 @@ pub(super) fn flow(
         fixed: Some(region.fixed()?),
         dual: options.dual,
         solve: SolveOptions {
-            // Threads are set once, around all holes.
-            threads: None,
-            max_iterations: options.solve.max_iterations.or(options
-                .solve
-                .tolerance
-                .is_none()
-                .then_some(SOLVER_ITERATIONS)),
-            ..options.solve
+            max_iterations: options.solve.max_iterations.or(by_residuals.then_some(SOLVER_ITERATIONS)),
+            ..options.solve.within()
         },
         ..StylizeOptions::default()
     };

@@ -96,7 +96,7 @@ impl Default for FillHolesOptions {
             coupling: Coupling::Joint,
             scale: Scale::MaxEdge,
             dual: Dual::Barycentric,
-            solve: SolveOptions { tolerance: None, ..SolveOptions::default() },
+            solve: SolveOptions::default().on_residuals(),
         }
     }
 }

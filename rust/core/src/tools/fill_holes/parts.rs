@@ -69,7 +69,7 @@ impl SmoothParts {
         let mesh = Mesh::new(points, memory::sifted(around)?)?;
         let options = SegmentOptions {
             levels: Levels::Never,
-            solve: SolveOptions { tolerance: None, threads: None, ..*solve },
+            solve: solve.within().on_residuals(),
             ..SegmentOptions::default()
         };
         let found = segment(&mesh, None, &options, &progress.quiet())?;

@@ -3,7 +3,7 @@
 use super::constants::COST;
 use crate::mesh::Mesh;
 use crate::tools::options::{check_edge_weights, check_faces, check_positive, check_weights, SolveOptions};
-use crate::{Error, Result};
+use crate::{tools, Error, Result};
 
 /// How to find parts.
 #[derive(Debug, Clone)]
@@ -63,7 +63,6 @@ impl PartsOptions {
 
     /// What a border along halfedge `h` costs, by its face's and its own weight.
     pub(super) fn weight(&self, h: usize) -> f64 {
-        self.edge_weights.as_ref().map_or(1.0, |w| w[h / 3][h % 3])
-            * self.face_weights.as_ref().map_or(1.0, |w| w[h / 3])
+        tools::options::painted_weight(self.edge_weights.as_ref(), self.face_weights.as_ref(), h)
     }
 }

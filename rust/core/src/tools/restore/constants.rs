@@ -1,8 +1,6 @@
 //! The thresholds of restoring, with their reasons.
 
-/// Coordinates are off by this part of the shape's size in files of six digits and in single precision: there
-/// is no less noise than that, and vertices that are nearer to where they should be stay bit by bit.
-pub(super) const ROUNDING: f64 = 1e-6;
+use crate::limits::Limits;
 
 /// How far a vertex may move: so many standard deviations of the noise, which it is off by once in sixteen
 /// thousand times in each coordinate, and this part of a mean edge, as borders that run along the mesh are
@@ -23,11 +21,10 @@ pub(super) const FLOW_STEPS: usize = 12;
 /// it moves a scan of ten thousand vertices by a fraction of its noise.
 pub(super) const FLOW_FIDELITY: f64 = 1e7;
 
-/// Turns and shifts of axes are found in so many Newton steps at most.
-pub(super) const MOST_TURNS: usize = 20;
-
-/// They end at rounding: that of unit vectors for turns, that of places in the unit of the shape for shifts.
-pub(super) const TURN_AND_SHIFT_ROUNDING: [f64; 2] = [1e-15, 1e-14];
+/// Newton's steps that turn axes, and such that shift surfaces. Both rest at rounding: that of unit vectors for
+/// turns, that of places in the unit of the shape for shifts.
+pub(super) const TURNS: Limits = Limits { steps: 20, rest: 1e-15 };
+pub(super) const SHIFTS: Limits = Limits { steps: 20, rest: 1e-14 };
 
 /// A surface is shifted along what its points determine: along the axis of a cylinder nothing does, and what
 /// rounding leaves there is less than this part of the largest eigenvalue.

@@ -37,7 +37,7 @@ pub(super) fn denoise(
         movement: Some(domain.sigma / area.sqrt()),
         scale: Scale::Area,
         fixed: Some(fixed),
-        solve: SolveOptions { threads: None, ..*solve },
+        solve: solve.within(),
         ..StylizeOptions::default()
     };
     placement.points = stylize(&mesh, &options, &progress.quiet())?.vertices;

@@ -18,7 +18,7 @@ use crate::error::MeshError;
 use crate::labelling::{labelling, Domain, Labelling, NONE};
 use crate::memory::{self, Tool};
 use crate::mesh::vector::{distance, Point};
-use crate::mesh::{Mesh, Working};
+use crate::mesh::{Mesh, Working, FILE_ROUNDING};
 use crate::progress::{Progress, Report};
 use crate::solve::Status;
 use crate::tools::answer::{refused, Surroundings};
@@ -26,7 +26,7 @@ use crate::tools::scale::extent;
 use crate::tools::segment::{segment, SegmentOptions};
 use crate::unit::Unit;
 use crate::{Error, Result};
-use constants::{MOST_MOVE, ROUNDING};
+use constants::MOST_MOVE;
 use place::Placement;
 
 /// Moves the vertices of `mesh` onto the surfaces that its faces were sampled from. Connectivity stays.
@@ -78,7 +78,9 @@ fn on(working: &Working<'_>, unit: Unit, options: &RestoreOptions, progress: &Pr
     )?;
     say(progress, 0.5, "surfaces");
     let noise = options.noise.map_or(segments.noise, |noise| unit.measure(noise));
-    let domain = Domain::new(mesh.connectivity(), positions, noise.max(ROUNDING * size))?;
+    // There is no less noise than rounding, and what is nearer to where it should be stays bit by bit.
+    let rounding = FILE_ROUNDING * size;
+    let domain = Domain::new(mesh.connectivity(), positions, noise.max(rounding))?;
     let mut state = labelling(&domain, &segments.labels, progress)?;
     let relations = match options.regularize {
         Some(degrees) => regularize::regularize(&domain, &mut state, degrees.to_radians())?,
@@ -114,7 +116,7 @@ fn on(working: &Working<'_>, unit: Unit, options: &RestoreOptions, progress: &Pr
     }
     say(progress, 0.95, "folds");
     restored.n_folded = relax::relax(&domain, &state, &mut placement, progress)?;
-    restored.vertices = kept(positions, placement.points, ROUNDING * size)?;
+    restored.vertices = kept(positions, placement.points, rounding)?;
     if !Surroundings::of(positions).hold(&restored.vertices) {
         return Err(refused());
     }

@@ -117,6 +117,6 @@ impl RestoreOptions {
 
     /// Segments stop on residuals, which is enough for them.
     pub(super) fn segment_solve(&self) -> SolveOptions {
-        SolveOptions { tolerance: None, threads: None, ..self.solve }
+        self.solve.within().on_residuals()
     }
 }

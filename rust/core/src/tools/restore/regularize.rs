@@ -1,6 +1,6 @@
 //! Surfaces made parallel, orthogonal and equal where they nearly are, as parts are made.
 
-use super::constants::{MOST_TURNS, TURN_AND_SHIFT_ROUNDING, UNDETERMINED};
+use super::constants::{SHIFTS, TURNS, UNDETERMINED};
 use crate::labelling::{Domain, Labelling};
 use crate::linear::small::{determined, Quadric};
 use crate::mesh::vector::{add, cross, dot, norm, scale, sub, unit, Point};
@@ -128,7 +128,7 @@ fn nearest_frame(axes: &[(Point, f64)]) -> Vec<Point> {
     for (axis, _) in axes {
         frame.push(unit(frame.iter().fold(*axis, |a, &f: &Point| sub(a, scale(f, dot(a, f))))));
     }
-    for _ in 0..MOST_TURNS {
+    for _ in 0..TURNS.steps {
         // The turn ω that takes the frame to the axes: Σ w (I − f fᵀ) ω = Σ w f × a.
         let (mut matrix, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
         for (f, (a, w)) in frame.iter().zip(axes) {
@@ -143,7 +143,7 @@ fn nearest_frame(axes: &[(Point, f64)]) -> Vec<Point> {
         for axis in turned {
             frame.push(unit(frame.iter().fold(axis, |a, &f: &Point| sub(a, scale(f, dot(a, f))))));
         }
-        if norm(turn) < TURN_AND_SHIFT_ROUNDING[0] {
+        if norm(turn) < TURNS.rest {
             break;
         }
     }
@@ -177,7 +177,7 @@ fn aligned(surface: &Surface, axis: Point, samples: &Samples) -> Surface {
 
 /// The surface shifted to where its points are, without turning.
 fn slid(mut surface: Surface, samples: &Samples) -> Surface {
-    for _ in 0..MOST_TURNS {
+    for _ in 0..SHIFTS.steps {
         let mut planes = Quadric::default();
         for (&p, &w) in samples.points.iter().zip(&samples.weights) {
             let (distance, normal) = surface.distance(p);
@@ -185,7 +185,7 @@ fn slid(mut surface: Surface, samples: &Samples) -> Surface {
         }
         let shift = planes.nearest(UNDETERMINED);
         surface = surface.placed(1.0, shift);
-        if norm(shift) < TURN_AND_SHIFT_ROUNDING[1] {
+        if norm(shift) < SHIFTS.rest {
             break;
         }
     }

@@ -1,5 +1,6 @@
 //! How segments are told apart: every threshold of the segmentation, with its reason.
 
+use crate::limits::Limits;
 use crate::tools::Scale;
 
 // Coarser meshes.
@@ -25,10 +26,9 @@ pub(super) const MOST_ALTERNATIONS: usize = 30;
 /// Weights `v²` of the conic program are held above this, so that no face is wholly free.
 pub(super) const LEAST_WEIGHT: f64 = 1e-6;
 
-/// Solutions at most that look for the fidelity that leaves the noise, and by how much the remainder may
-/// miss it.
-pub(super) const NOISE_ATTEMPTS: usize = 8;
-pub(super) const NOISE_TOLERANCE: f64 = 0.1;
+/// Solutions that look for the fidelity that leaves the noise; they rest where the remainder misses it by no
+/// more than this part.
+pub(super) const NOISE_SEARCH: Limits = Limits { steps: 8, rest: 0.1 };
 
 /// The remainder grows with the fidelity to this power, measured on noisy cubes: the exponent of the
 /// search.
@@ -36,9 +36,7 @@ pub(super) const NOISE_POWER: f64 = 1.5;
 
 // Shapes that were modeled, not measured.
 
-/// Coordinates are off by this part of the shape's extent, or of the largest coordinate: single
-/// precision, or files of six digits.
-pub(super) const COORDINATE_ROUNDING: f64 = 1e-6;
+/// Far from the origin coordinates are off by this part of the largest: twice what single precision rounds by.
 pub(super) const SINGLE_PRECISION: f64 = 2.4e-7;
 
 /// Two faces never count as one plane if their unit normals differ by more, however thin they are.

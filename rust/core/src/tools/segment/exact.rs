@@ -5,12 +5,12 @@
 //! noise: faces in one plane are one side, and the angle between two planes is known from one edge.
 
 use super::constants::{
-    COORDINATE_ROUNDING, FEW_FACES, FLAT_SHARE, LEAST_INSIDE, MOST_TURN_IN_A_PLANE, SINGLE_PRECISION,
-    SLIVER_ROUNDINGS,
+    FEW_FACES, FLAT_SHARE, LEAST_INSIDE, MOST_TURN_IN_A_PLANE, SINGLE_PRECISION, SLIVER_ROUNDINGS,
 };
 use super::surface::{contiguous, Surface};
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::{add, distance, norm, sub, unit, Point};
+use crate::mesh::FILE_ROUNDING;
 use crate::{memory, Result};
 
 /// The flat sides of an exact shape.
@@ -73,7 +73,7 @@ struct Turn {
 impl<'a> Facets<'a> {
     fn new(surface: &'a Surface<'a>) -> Result<Self> {
         let largest = surface.positions.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
-        let rounding = COORDINATE_ROUNDING.max(SINGLE_PRECISION * largest);
+        let rounding = FILE_ROUNDING.max(SINGLE_PRECISION * largest);
         let n = surface.n_faces();
         let (normals, slivers) = (memory::room(n)?, memory::room(n)?);
         let mut facets = Self { surface, rounding, normals, slivers };

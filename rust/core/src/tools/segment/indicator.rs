@@ -1,7 +1,7 @@
 //! The alternating minimization of the Ambrosio-Tortorelli functional with the L1 Hessian (Rowe et al. 2024,
 //! eq. (41)).
 
-use super::constants::{LEAST_WEIGHT, MOST_ALTERNATIONS, NOISE_ATTEMPTS, NOISE_POWER, NOISE_TOLERANCE};
+use super::constants::{LEAST_WEIGHT, MOST_ALTERNATIONS, NOISE_POWER, NOISE_SEARCH};
 use super::indicator_step::IndicatorStep;
 use super::surface::Surface;
 use crate::block_rows::BlockRows;
@@ -132,11 +132,11 @@ impl Run<'_> {
     /// principle). Without it the first `v` would take the noise for borders and keep it.
     fn follow_noise(&mut self) -> Result<()> {
         let Some(noise) = self.functional.noise else { return Ok(()) };
-        for attempt in 0..NOISE_ATTEMPTS {
-            self.report(0.1 * attempt as f64 / NOISE_ATTEMPTS as f64, "noise", attempt, None);
+        for attempt in 0..NOISE_SEARCH.steps {
+            self.report(0.1 * attempt as f64 / NOISE_SEARCH.steps as f64, "noise", attempt, None);
             self.update_values()?;
             let left = self.residual();
-            if left >= noise * (1.0 - NOISE_TOLERANCE) || self.reached.status == Status::Stopped {
+            if left >= noise * (1.0 - NOISE_SEARCH.rest) || self.reached.status == Status::Stopped {
                 break;
             }
             let factor = (left / noise).max(0.05).powf(NOISE_POWER).max(1e-3);

@@ -4,7 +4,9 @@ use super::constants::{CLEAN_FIDELITY, DEFAULT_SCALE, ENOUGH};
 use crate::linear::Columns;
 use crate::mesh::Mesh;
 use crate::solve::MAX_JOINT_COLUMNS;
-use crate::tools::options::{check_edge_weights, check_faces, check_positive, check_range, check_weights};
+use crate::tools::options::{
+    check_edge_weights, check_faces, check_positive, check_range, check_weights, painted_weight,
+};
 use crate::tools::{Levels, Scale, SolveOptions};
 use crate::{memory, Error, Result};
 
@@ -79,7 +81,7 @@ impl Default for SegmentOptions {
             faces: None,
             noise: None,
             levels: Levels::Auto,
-            solve: SolveOptions { tolerance: None, ..SolveOptions::default() },
+            solve: SolveOptions::default().on_residuals(),
         }
     }
 }
@@ -176,10 +178,7 @@ impl SegmentOptions {
     /// [`Error::Solve`] where memory is missing, here and below.
     pub(super) fn edge_costs(&self, mesh: &Mesh) -> Result<Vec<[f64; 3]>> {
         let connectivity = mesh.connectivity();
-        let own = |h: usize| {
-            self.edge_weights.as_ref().map_or(1.0, |w| w[h / 3][h % 3])
-                * self.face_weights.as_ref().map_or(1.0, |w| w[h / 3])
-        };
+        let own = |h: usize| painted_weight(self.edge_weights.as_ref(), self.face_weights.as_ref(), h);
         let cost = |h: usize| connectivity.twin(h).map_or_else(|| own(h), |twin| 0.5 * (own(h) + own(twin)));
         Ok(memory::gathered((0..connectivity.n_faces()).map(|f| [0, 1, 2].map(|i| cost(3 * f + i))))?)
     }
