@@ -14,7 +14,7 @@ from ..blender.refusals import RefusedError
 from ..framework import faceting
 from ..framework.faceting import Facetable, FacetMesh
 from ..framework.job import Task
-from ..framework.run import Part, Run, counted, meshes_phrase, most, total
+from ..framework.run import Part, Run, counted, meshes_phrase, most, panel_lines, percent, total
 from ..framework.surface import group_weights, painted_edges, surface_of
 from .settings import FacetSettings, by_count, by_error
 
@@ -108,15 +108,14 @@ class Faceting(Run):
     @classmethod
     def lines(cls, entry: dict[str, object]) -> list[str]:
         """How many facets there are, how far they are from the mesh, time."""
-        return [
-            f"{entry['name']}: {counted(entry['facets'], 'facet')}",
-            f"{100.0 * entry['rms']:.2g} % of the size off, {entry['seconds']:.1f} s",
-        ]
+        return panel_lines(
+            entry, counted(entry["facets"], "facet"), f"{percent(entry['rms'])} of the size off"
+        )
 
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """How many facets of which mesh, how far from it, time."""
         what = f"{counted(total(done, 'facets'), 'facet')} of {meshes_phrase(done)}"
-        return f"{what} in {total(done, 'seconds'):.1f} s, {100.0 * most(done, 'rms'):.2g} % of the size off"
+        return f"{what} in {total(done, 'seconds'):.1f} s, {percent(most(done, 'rms'))} of the size off"
 
 
 def _taking(obj: bpy.types.Object, settings: object, edited: bool) -> np.ndarray:

@@ -307,6 +307,16 @@ def counted(number: int, word: str) -> str:
     return f"{number} {word}" if number == 1 else f"{number} {word}s"
 
 
+def percent(share: float) -> str:
+    """A share in percent, to two digits."""
+    return f"{100.0 * share:.2g} %"
+
+
+def panel_lines(entry: dict[str, object], what: str, how: str) -> list[str]:
+    """What the panel says of a mesh, given its summary: what came out, and how, with the time."""
+    return [f"{entry['name']}: {what}", f"{how}, {entry['seconds']:.1f} s"]
+
+
 def total(done: Sequence[dict[str, object]], figure: str) -> float:
     """The sum of a figure over the summaries of meshes."""
     return sum(entry[figure] for entry in done)

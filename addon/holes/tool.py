@@ -17,7 +17,7 @@ from ..blender.refusals import NothingToDoError, RefusedError
 from ..blender.welding import Weld
 from ..framework.job import Task
 from ..framework.preflight import reason_too_long
-from ..framework.run import Part, Run, counted, meshes_phrase, total
+from ..framework.run import Part, Run, counted, meshes_phrase, panel_lines, total
 from ..framework.settings import chosen as value_of
 from ..framework.surface import welded
 from .append import append
@@ -153,10 +153,8 @@ class HoleFilling(Run):
     @classmethod
     def lines(cls, entry: dict[str, object]) -> list[str]:
         """How many holes, faces and ridge edges there are, and how long it took."""
-        return [
-            f"{entry['name']}: {entry['holes']} filled, {counted(entry['faces_added'], 'face')}",
-            f"{counted(entry['ridge_edges'], 'ridge edge')}, {entry['seconds']:.1f} s",
-        ]
+        filled = f"{entry['holes']} filled, {counted(entry['faces_added'], 'face')}"
+        return panel_lines(entry, filled, counted(entry["ridge_edges"], "ridge edge"))
 
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """Holes, faces, ridges, time."""

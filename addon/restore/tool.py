@@ -16,7 +16,7 @@ from ..blender.welding import Weld
 from ..framework.job import Task
 from ..framework.preflight import uneven_scale
 from ..framework.ridges import Edges
-from ..framework.run import Part, Run, counted, meshes_phrase, total
+from ..framework.run import Part, Run, counted, meshes_phrase, panel_lines, total
 from ..framework.surface import group_weights, surface_of
 from . import empties
 from .settings import RestoreSettings, restore_options
@@ -139,8 +139,8 @@ class Restoring(Run):
     @classmethod
     def lines(cls, entry: dict[str, object]) -> list[str]:
         """How many surfaces of which kind there are, the noise, and what is parallel or equal."""
-        noise = f"noise {entry['noise']:.3g}, {entry['seconds']:.1f} s"
-        return [f"{entry['name']}: {_kinds_phrase([entry])}", noise, *entry["relations"]]
+        said = panel_lines(entry, _kinds_phrase([entry]), f"noise {entry['noise']:.3g}")
+        return [*said, *entry["relations"]]
 
     @classmethod
     def phrases(cls, done: Sequence[dict[str, object]]) -> list[str]:

@@ -17,7 +17,7 @@ from ..blender.stored_numbers import write_numbers
 from ..blender.welding import Weld
 from ..framework.job import Task
 from ..framework.results import Results
-from ..framework.run import Part, Run, counted, meshes_phrase, total
+from ..framework.run import Part, Run, counted, meshes_phrase, panel_lines, total
 from ..framework.sources import (
     as_argument,
     source_of,
@@ -239,10 +239,7 @@ class Segmenting(Run):
     def lines(cls, entry: dict[str, object]) -> list[str]:
         """How many segments there are, how many there might be, and how long it took."""
         fewest, most = entry["possible"]
-        return [
-            f"{entry['name']}: {_counted([entry])}",
-            f"{fewest} to {most} are possible, {entry['seconds']:.1f} s",
-        ]
+        return panel_lines(entry, _counted([entry]), f"{fewest} to {most} are possible")
 
     @classmethod
     def phrases(cls, done: Sequence[dict[str, object]]) -> list[str]:

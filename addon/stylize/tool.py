@@ -16,7 +16,7 @@ from ..framework import faceting
 from ..framework.job import Task
 from ..framework.preflight import uneven_scale
 from ..framework.ridges import Edges
-from ..framework.run import Part, Run, counted, meshes_phrase, most, total
+from ..framework.run import Part, Run, counted, meshes_phrase, most, panel_lines, percent, total
 from ..framework.surface import group_weights, painted_ridges, welded
 from . import finish, recorded, reduction
 from .finish import Source
@@ -135,17 +135,14 @@ class Stylization(Run):
     @classmethod
     def lines(cls, entry: dict[str, object]) -> list[str]:
         """What the panel says of a mesh: facets, steps, movement."""
-        moved = f"moved {100.0 * entry['moved']:.2g} %"
-        return [
-            f"{entry['name']}: {counted(entry['facets'], 'facet')}",
-            f"{counted(entry['steps'], 'step')}, {moved}, {entry['seconds']:.1f} s",
-        ]
+        how = f"{counted(entry['steps'], 'step')}, moved {percent(entry['moved'])}"
+        return panel_lines(entry, counted(entry["facets"], "facet"), how)
 
     def headline(self, done: Sequence[dict[str, object]]) -> str:
         """How many facets there are, how far the shape moved, and how long it took."""
         what = f"Stylized {meshes_phrase(done)} in {total(done, 'seconds'):.1f} s"
         facets = counted(total(done, "facets"), "facet")
-        return f"{what}: {facets}, moved at most {100.0 * most(done, 'moved'):.2g} % of the size"
+        return f"{what}: {facets}, moved at most {percent(most(done, 'moved'))} of the size"
 
 
 def stylize_objects(

@@ -13,8 +13,8 @@ macro_rules! nested_divisions {
     ($class:ident, $count:ident, $things:literal; $($own:tt)*) => {
         #[pymethods]
         impl $class {
-            #[doc = concat!("The division into `", stringify!($count), "` ", $things, ", or the nearest number")]
-            /// that `range` allows, from the hierarchy: at once, and nested.
+            #[doc = concat!("The division into `", stringify!($count), "` ", $things, ", or the nearest")]
+            /// number that `range` allows, from the hierarchy: at once, and nested.
             ///
             /// Parameters
             /// ----------

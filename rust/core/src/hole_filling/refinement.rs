@@ -97,8 +97,8 @@ fn excess(mesh: &EditableMesh, a: u32, b: u32) -> f64 {
     mesh.wings(a, b).map_or(-1.0, |wings| wings.tips.into_iter().map(angle).sum::<f64>() - PI)
 }
 
-/// Whether the two faces turn by no more than [`TURNED`], so that their edge is the patch's mesh, not its shape,
-/// or one of them is so thin that its normal says nothing.
+/// Whether the two faces turn by no more than [`TURNED`], so that their edge is the patch's mesh, not its
+/// shape, or one of them is so thin that its normal says nothing.
 fn is_flat(mesh: &EditableMesh, faces: [u32; 2]) -> bool {
     let [m, n] = faces.map(|f| mesh.area_vector(f));
     let thin = |f: u32| mesh.face(f).is_some_and(|face| quality(mesh.corners(face)) < SLIVER);

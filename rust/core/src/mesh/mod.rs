@@ -37,8 +37,8 @@ use crate::Result;
 /// lengths that were stored in single precision do.
 const LENGTH_TOLERANCE: f64 = 1e-6;
 
-/// Coordinates in files of six digits are off by this part of the shape's extent; in single precision by less,
-/// as long as the origin is near.
+/// Coordinates in files of six digits are off by this part of the shape's extent; in single precision by
+/// less, as long as the origin is near.
 pub(crate) const FILE_ROUNDING: f64 = 1e-6;
 
 /// A triangle mesh: connectivity and edge lengths, and vertex positions if it was made from them.

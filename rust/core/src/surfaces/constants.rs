@@ -40,8 +40,8 @@ pub(super) const UNDETERMINED: f64 = 1e-13;
 /// along the normals' bisecting plane a point lies. That is the ratio of the eigenvalues, `tan²(θ / 2)`.
 pub(super) const TANGENT: f64 = 1e-3;
 
-/// Newton's steps toward a meeting; five do for a part's surfaces. They rest where one is as short as rounding
-/// has it, as a part of how far the point is.
+/// Newton's steps toward a meeting; five do for a part's surfaces. They rest where one is as short as
+/// rounding has it, as a part of how far the point is.
 pub(super) const MEETING: Limits = Limits { steps: 20, rest: 1e-13 };
 
 /// So many points are enough for a median that starts are ranked by and widths begin with:

@@ -94,7 +94,8 @@ impl SolveOptions {
     }
 }
 
-/// What painted weights of edges, a row a face, and of faces make of a border along halfedge `h`; 1 without any.
+/// What painted weights of edges, a row a face, and of faces make of a border along halfedge `h`;
+/// 1 without any.
 pub(super) fn painted_weight(
     edge_weights: Option<&Vec<[f64; 3]>>,
     face_weights: Option<&Vec<f64>>,

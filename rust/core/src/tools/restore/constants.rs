@@ -21,8 +21,8 @@ pub(super) const FLOW_STEPS: usize = 12;
 /// it moves a scan of ten thousand vertices by a fraction of its noise.
 pub(super) const FLOW_FIDELITY: f64 = 1e7;
 
-/// Newton's steps that turn axes, and such that shift surfaces. Both rest at rounding: that of unit vectors for
-/// turns, that of places in the unit of the shape for shifts.
+/// Newton's steps that turn axes, and such that shift surfaces. Both rest at rounding: that of unit vectors
+/// for turns, that of places in the unit of the shape for shifts.
 pub(super) const TURNS: Limits = Limits { steps: 20, rest: 1e-15 };
 pub(super) const SHIFTS: Limits = Limits { steps: 20, rest: 1e-14 };
 

@@ -36,7 +36,8 @@ pub(super) const NOISE_POWER: f64 = 1.5;
 
 // Shapes that were modeled, not measured.
 
-/// Far from the origin coordinates are off by this part of the largest: twice what single precision rounds by.
+/// Far from the origin coordinates are off by this part of the largest: twice what single precision rounds
+/// by.
 pub(super) const SINGLE_PRECISION: f64 = 2.4e-7;
 
 /// Two faces never count as one plane if their unit normals differ by more, however thin they are.
