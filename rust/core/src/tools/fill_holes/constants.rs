@@ -162,6 +162,7 @@ pub(super) const RIDGE_STIFFNESS: f64 = 100.0;
 
 // In order or not.
 
-/// A face passes through another if it reaches so far through it, in its edges. Less is not seen, and may be
-/// rounding where faces fill one plane.
+/// A face passes through another if it reaches so far through it, in its edges. Faces that fill one plane, of
+/// a box off by 1e-7, overlap by 4e-5; of 1105 other pairs in sharp patches of 337 open boxes and cut
+/// shapes, one reaches less far.
 pub(super) const DEEP: f64 = 1e-4;
