@@ -58,3 +58,15 @@ def test_an_object_that_takes_the_name_of_another_does_not_take_its_line():
     bpy.ops.mesh.primitive_uv_sphere_add()
     assert bpy.context.object.name == "Sphere"
     assert not any("facets" in text for text in labels(stylize))
+
+
+@pytest.mark.parametrize(("kind", "word"), [("FACES", "segment"), ("PARTS", "part")])
+def test_parts_are_called_parts(kind, word):
+    kit.bumpy_box()
+    assert bpy.ops.ridgeform.segment(kind=kind, mode="COUNT", count=3) == {"FINISHED"}
+    segment = next(tool for tool in registry.TOOLS if tool.name == "segment")
+    (entry,) = job.last_summary()
+    words = (*segment.run.lines(entry), *segment.run.phrases([entry]), *entry["warnings"])
+    other = {"segment": "part", "part": "segment"}[word]
+    assert any(word in said for said in words)
+    assert not any(other in said.lower() for said in words)
