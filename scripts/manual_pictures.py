@@ -24,6 +24,9 @@ NOISE_STRENGTH = 0.6
 BANDS = 10
 HOUSE_NOISE = 0.1
 SEGMENT_COUNTS = (5, None, 30)
+PART_COUNTS = (4, 8, 16)
+MONKEY_LEVELS = 2
+MONKEY_VIEW = (0.7, -1.0, 0.2)
 PART_VIEW = (0.7, -1.0, 0.8)
 PART_NOISE = 0.2
 NOISE_FACTORS = (0.25, 1.0, 4.0)
@@ -181,6 +184,46 @@ def segments() -> None:
     pictures.sheet(PICTURES / "segments.png", [row], captions=[captions], text_pixels=15)
 
 
+def monkey() -> tuple[np.ndarray, np.ndarray]:
+    """Blender's monkey, smoothed: three pieces, with open eyes."""
+    import bpy  # noqa: PLC0415
+
+    bpy.ops.mesh.primitive_monkey_add()
+    item = bpy.context.active_object
+    smooth = item.modifiers.new("smooth", "SUBSURF")
+    smooth.levels = smooth.render_levels = MONKEY_LEVELS
+    mesh = item.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
+    vertices, faces = np.empty((len(mesh.vertices), 3)), np.empty((len(mesh.loop_triangles), 3), np.int64)
+    mesh.vertices.foreach_get("co", vertices.ravel())
+    mesh.loop_triangles.foreach_get("vertices", faces.ravel())
+    bpy.data.objects.remove(item)
+    return vertices, faces
+
+
+def parts() -> None:
+    """Parts and faces of three characters, as found and in the same numbers."""
+    import pictures  # noqa: PLC0415
+    import ridgeform  # noqa: PLC0415
+
+    rows, captions = [], []
+    for (points, triangles), view in (
+        (source("spot"), SPOT_VIEW),
+        (source("bust"), BUST_VIEW),
+        (monkey(), MONKEY_VIEW),
+    ):
+        mesh = ridgeform.Mesh(points, triangles)
+        for kind, found in (("parts", ridgeform.parts(mesh)), ("faces", ridgeform.segment(mesh))):
+            print(kind, found, flush=True)
+            row, said = [], []
+            for count in (None, *PART_COUNTS):
+                labels = found.labels if count is None else found.labels_at(count)
+                row.append(pictures.render(points, triangles, view=view, size=170, color=colors_of(labels)))
+                said.append(f"{labels.max() + 1} {kind}" + (" (as found)" if count is None else ""))
+            rows.append(row)
+            captions.append(said)
+    pictures.sheet(PICTURES / "parts.png", rows, captions=captions, text_pixels=13, shades=40)
+
+
 def facets() -> None:
     """Facets of the bust after the flow, and of Spot as it is, in several numbers from one run each."""
     import pictures  # noqa: PLC0415
@@ -283,6 +326,7 @@ DRAWN = {
     "attributes": attributes,
     "segments": segments,
     "segment": segment,
+    "parts": parts,
     "facets": facets,
     "facet": facet,
     "restore": restored,

@@ -25,6 +25,14 @@ def labels_of(obj):
     return read_ints(obj.data, layers.SEGMENT, "FACE", -7)
 
 
+def kept_in(obj):
+    """The names of all that a run adds, and which edges are marked."""
+    marks = [(edge.use_seam, edge.use_edge_sharp) for edge in obj.data.edges]
+    slots = [material.name for material in obj.data.materials]
+    attributes = sorted(attribute.name for attribute in obj.data.attributes)
+    return attributes, slots, [group.name for group in obj.vertex_groups], marks, len(bpy.data.materials)
+
+
 def expected(obj, n_parts=None, **keywords):
     mesh = ridgeform.Mesh(kit.coordinates(obj).astype(np.float64), mesh_io.triangles(obj.data))
     return ridgeform.parts(mesh, n_parts=n_parts, **keywords)
@@ -64,6 +72,19 @@ def test_another_number_is_nested_and_a_second_run_leaves_nothing_behind(ball):
     obj.data.edges.foreach_get("use_seam", seams)
     assert np.array_equal(seams, layers.border_edges(obj.data, coarser))
     assert np.array_equal(mesh_io.positions(obj.data), before)
+
+
+def test_undo_leaves_nothing_of_the_parts_behind(ball):
+    obj, _ = ball
+    bpy.context.preferences.edit.use_global_undo = True
+    bpy.ops.ed.undo_push(message="made")
+    before = kept_in(obj)
+    outputs = {"MATERIALS", "VERTEX_GROUPS", "SEAMS", "SHARP", "FACE_SETS"}
+    bpy.ops.ridgeform.segment(kind="PARTS", outputs=outputs)
+    assert kept_in(obj) != before
+    bpy.ops.ed.undo_push(message="divided")
+    bpy.ops.ed.undo()
+    assert kept_in(bpy.data.objects["Ball"]) == before
 
 
 def test_groups_with_a_transition_are_soft_and_sum_to_one(ball):

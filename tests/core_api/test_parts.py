@@ -128,6 +128,13 @@ def test_a_character_has_a_head_and_legs_where_asked_for_few_parts():
     assert (pieces_of(faces, found.labels_at(8)) == 1).all()
 
 
+def test_a_scanned_bust_has_few_parts():
+    vertices, faces = source("bust")
+    found = ridgeform.parts(ridgeform.Mesh(vertices, faces))
+    assert 2 <= found.n_parts <= 8
+    assert (pieces_of(faces, found.labels) == 1).all()
+
+
 def test_the_same_bits_on_any_number_of_threads(ball):
     mesh = ridgeform.Mesh(*ball[:2])
     first, second = (ridgeform.parts(mesh, threads=n) for n in (1, 2))
@@ -199,6 +206,16 @@ def test_real_files_get_parts(ball):
 
 def test_flat_and_round_shapes_are_one_part():
     for shape in (shapes.icosphere(3), shapes.grid(20, 20)):
+        assert ridgeform.parts(ridgeform.Mesh(*shape)).n_parts == 1
+
+
+@pytest.mark.parametrize("times", [2, 8, 20])
+def test_what_is_long_is_one_part_as_well(times):
+    """Nothing says where to cut it, however short the way around is."""
+    sphere, faces = shapes.icosphere(4)
+    rod = sphere + np.array([0.0, 0.0, 1.0]) * times * np.sign(sphere[:, 2:])
+    cylinder, sides = shapes.cylinder(32, 8 * times)
+    for shape in ((sphere * [1, 1, times], faces), (rod, faces), (cylinder * [1, 1, times], sides)):
         assert ridgeform.parts(ridgeform.Mesh(*shape)).n_parts == 1
 
 

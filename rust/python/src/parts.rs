@@ -45,18 +45,19 @@ nested_divisions! { Parts, n_parts, "parts";
 /// People cut where a closed curve is short against what it cuts off, and runs through hollows (minima rule)
 /// or where the thickness changes. A cut costs the length of its border, in hollows and at changes of
 /// thickness down to a tenth of it, over the 0.7th power of the area of the smaller side, in units of the
-/// whole area. The part with the cheapest cut is divided, over and over, as long as cuts cost little; where
-/// fewer parts are wanted, those become one that lose least: the logarithm of how cheap their cut is, times
-/// the product of their areas. Any mesh will do: vertices at the same place count as one, faces are turned to
-/// agree, pieces that nothing joins are parts or belong to what lies nearest. For the faces of what is plane
-/// or evenly curved use `segment`.
+/// whole area. The part with the cheapest cut is divided, over and over; where fewer parts are wanted, those
+/// become one that lose least: the logarithm of how cheap their cut is, times the product of their areas. The
+/// count found is the one with the fewest pairs of points that people are expected to see otherwise. Any mesh
+/// will do: vertices at the same place count as one, faces are turned to agree, pieces that nothing joins are
+/// parts or belong to what lies nearest. For the faces of what is plane or evenly curved use `segment`.
 ///
 /// Parameters
 /// ----------
 /// mesh : Mesh with positions
 /// n_parts : number of parts wanted, or None: as `coarseness` has it; fewer where the shape has no more
-/// coarseness : float > 0, larger gives fewer parts: cuts are made up to a cost of 1.25 / coarseness. Cuts of
-///     about the same cost, as of two arms, are made all or none
+/// coarseness : float > 0, larger gives fewer parts: at a cost of 1.4 / coarseness a cut of the whole shape
+///     is as likely as not; a cut of a small part must be cheaper. Cuts of about the same cost, as of two
+///     arms, are made all or none
 /// face_weights : (m,) array ≥ 0, what borders cost there: 1 is neutral, smaller attracts them
 /// edge_weights : (m,3) array ≥ 0, the same for edges, column i opposite corner i;
 ///     the mean of both faces' entries counts

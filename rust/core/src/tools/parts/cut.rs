@@ -54,7 +54,12 @@ impl Side {
         let mean = |side: Self| side.thickness / side.area.max(f64::MIN_POSITIVE);
         let (small, large) = if self.area < other.area { (self, other) } else { (other, self) };
         let step = (mean(large) - mean(small)).max(0.0);
-        (-step / STEP).exp() * border / small.area.max(f64::MIN_POSITIVE).powf(AREA_POWER)
+        (-step / STEP).exp() * self.plain_price(other, border)
+    }
+
+    /// The same where both sides are equally thick.
+    pub(super) fn plain_price(self, other: Self, border: f64) -> f64 {
+        border / self.area.min(other.area).max(f64::MIN_POSITIVE).powf(AREA_POWER)
     }
 }
 

@@ -13,11 +13,36 @@ use super::graph::Graph;
 use crate::mesh::partition::Partition;
 use crate::Result;
 
+/// Two parts that become one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Merge {
+    /// The one that stays, and the one that becomes a piece of it.
+    pub pair: [u32; 2],
+    /// What the cut between them costs, and what it would through no hollow and with no step.
+    pub price: f64,
+    pub plain_price: f64,
+    /// Of both.
+    pub areas: [f64; 2],
+}
+
+/// What the border between two parts costs, and how long it is.
+#[derive(Debug, Clone, Copy, Default)]
+struct Border {
+    cost: f64,
+    length: f64,
+}
+
+impl Border {
+    fn add(&mut self, other: Self) {
+        self.cost += other.cost;
+        self.length += other.length;
+    }
+}
+
 /// Parts that become one, two at a time.
 pub(super) struct Merging {
     sides: Vec<Side>,
-    /// What the border between two parts costs.
-    borders: BTreeMap<[u32; 2], f64>,
+    borders: BTreeMap<[u32; 2], Border>,
     /// Parts of the same one that was found merge before all others.
     found: Vec<u32>,
     /// The piece of the surface that a part belongs to, and of how many parts of it besides.
@@ -37,8 +62,11 @@ impl Merging {
     ) -> Result<Self> {
         let parts = graph.quotient(labels, found.len())?;
         let sides = (0..parts.n_nodes()).map(|i| Side::of(&parts, |node| node == i)).collect();
-        let mut borders: BTreeMap<[u32; 2], f64> = BTreeMap::new();
-        parts.edges.iter().for_each(|e| *borders.entry(ordered(e.ends)).or_default() += e.cost);
+        let mut borders: BTreeMap<[u32; 2], Border> = BTreeMap::new();
+        for edge in &parts.edges {
+            let border = Border { cost: edge.cost, length: edge.length };
+            borders.entry(ordered(edge.ends)).or_default().add(border);
+        }
         // A part that holds a gap makes one piece of both sides.
         let mut joined = Partition::new(found.len() + pieces.len())?;
         let name = |piece: u32| found.len() as u32 + piece;
@@ -49,22 +77,23 @@ impl Merging {
         Ok(Self { sides, borders, found, pieces, limit })
     }
 
-    /// The pairs that merge, the second into the first, with the price of the cut that goes,
-    /// until one part is left.
-    pub(super) fn merges(mut self) -> Vec<([u32; 2], f64)> {
+    /// The merges, one after the other, until one part is left.
+    pub(super) fn merges(mut self) -> Vec<Merge> {
         let mut merges = Vec::with_capacity(self.sides.len());
         loop {
             let allowed = self.borders.iter().filter(|(pair, _)| self.may_merge(**pair));
             let judged = allowed.map(|(&pair, &border)| {
                 let [a, b] = pair.map(|part| self.sides[part as usize]);
                 let apart = self.found[pair[0] as usize] != self.found[pair[1] as usize];
-                let price = a.price(b, border);
-                (pair, price, apart, loss(a, b, price / self.limit))
+                let price = a.price(b, border.cost);
+                let plain_price = a.plain_price(b, border.length);
+                let merge = Merge { pair, price, plain_price, areas: [a.area, b.area] };
+                (merge, apart, loss(a, b, price / self.limit))
             });
-            let next = judged.min_by(|a, b| a.2.cmp(&b.2).then(a.3.total_cmp(&b.3)));
-            let Some((pair, price, ..)) = next else { return merges };
-            merges.push((pair, price));
-            self.merge(pair);
+            let next = judged.min_by(|a, b| a.1.cmp(&b.1).then(a.2.total_cmp(&b.2)));
+            let Some((merge, ..)) = next else { return merges };
+            merges.push(merge);
+            self.merge(merge.pair);
         }
     }
 
@@ -87,7 +116,7 @@ impl Merging {
         for (ends, border) in std::mem::take(&mut self.borders) {
             let ends = ends.map(renamed);
             if ends[0] != ends[1] {
-                *self.borders.entry(ordered(ends)).or_default() += border;
+                self.borders.entry(ordered(ends)).or_default().add(border);
             }
         }
     }
@@ -115,13 +144,13 @@ mod tests {
         Graph::new(areas.to_vec(), vec![[0.0; 3]; areas.len()], edges.collect()).unwrap()
     }
 
-    fn merges(parts: &Graph, pieces: &[u32], found: &[u32]) -> Vec<([u32; 2], f64)> {
+    fn merges(parts: &Graph, pieces: &[u32], found: &[u32]) -> Vec<Merge> {
         let labels: Vec<u32> = (0..found.len() as u32).collect();
         Merging::new(parts, pieces, &labels, found.to_vec(), 1.0).unwrap().merges()
     }
 
     fn pairs(parts: &Graph, pieces: &[u32], found: &[u32]) -> Vec<[u32; 2]> {
-        merges(parts, pieces, found).into_iter().map(|(pair, _)| pair).collect()
+        merges(parts, pieces, found).into_iter().map(|merge| merge.pair).collect()
     }
 
     #[test]
@@ -147,8 +176,10 @@ mod tests {
     fn borders_add_up() {
         let ring = parts(&[0.5, 0.25, 0.25], &[([0, 1], 0.1), ([1, 2], 0.9), ([0, 2], 0.1)]);
         let found = merges(&ring, &[0; 3], &[0, 1, 2]);
-        assert_eq!(found[0].0, [1, 2]);
-        assert!((found[1].1 - 0.2 / 0.5_f64.powf(0.7)).abs() < 1e-12);
+        assert_eq!(found[0].pair, [1, 2]);
+        assert!((found[1].price - 0.2 / 0.5_f64.powf(0.7)).abs() < 1e-12);
+        assert_eq!(found[1].plain_price, found[1].price);
+        assert_eq!(found[1].areas, [0.5, 0.5]);
     }
 
     #[test]

@@ -81,24 +81,25 @@ fn found(mesh: &Mesh, options: &PartsOptions, progress: &Progress) -> Result<Par
     let divisions = division::divisions(&coarse, options.n_parts, progress)?;
     say(progress, "drawing borders");
     let drawn = borders::drawn(&graph, &clusters, n_clusters, &divisions, progress)?;
-    let costs: Vec<f64> = drawn.divisions.iter().map(|(_, cost)| *cost).collect();
-    let found = choice::count(&costs, options.most_cost());
-    let hierarchy = nested(&graph, &pieces, drawn, found, options.most_cost())?.spread(&faces, n_faces)?;
+    let (hierarchy, found) = nested(&graph, &pieces, drawn, options)?;
+    let hierarchy = hierarchy.spread(&faces, n_faces)?;
     let n_parts = options.n_parts.unwrap_or(found).min(hierarchy.range()[0]);
     let labels = hierarchy.labels_at(n_parts)?;
     let status = if progress.is_finishing() { Status::Stopped } else { Status::Solved };
     Ok(Parts { boundary_edges: boundary_edges(mesh, &labels)?, labels, n_parts, hierarchy, status })
 }
 
-/// Divisions of every count, among them the first `found` parts that were divided.
-fn nested(graph: &Graph, pieces: &[u32], drawn: Drawn, found: usize, limit: f64) -> Result<Hierarchy> {
+/// Divisions of every count, and how many parts people would see. What is divided cheaply stays longest.
+fn nested(graph: &Graph, pieces: &[u32], drawn: Drawn, options: &PartsOptions) -> Result<(Hierarchy, usize)> {
     let count = drawn.divisions.len() + 1;
-    let mut origin: Vec<u32> = (0..found as u32).collect();
-    drawn.divisions.iter().skip(found - 1).for_each(|([part, _], _)| origin.push(origin[*part as usize]));
-    let merging = merging::Merging::new(graph, pieces, &drawn.labels, origin, limit)?;
-    let strengths =
-        merging.merges().into_iter().map(|(pair, price)| (pair, 1.0 / price.max(f64::MIN_POSITIVE)));
-    Ok(Hierarchy::new(drawn.labels, count, strengths))
+    let first = drawn.divisions.partition_point(|(_, cost)| *cost <= options.most_cost());
+    let mut origin: Vec<u32> = (0..=first as u32).collect();
+    drawn.divisions.iter().skip(first).for_each(|([part, _], _)| origin.push(origin[*part as usize]));
+    let merging = merging::Merging::new(graph, pieces, &drawn.labels, origin, options.even_cost())?;
+    let merges = merging.merges();
+    let found = choice::count(&merges, options.even_cost());
+    let strengths = merges.iter().map(|merge| (merge.pair, 1.0 / merge.price.max(f64::MIN_POSITIVE)));
+    Ok((Hierarchy::new(drawn.labels, count, strengths), found))
 }
 
 fn say(progress: &Progress, stage: &str) {

@@ -1,6 +1,6 @@
 //! How to find parts.
 
-use super::constants::COST;
+use super::constants::{COST, EVEN_COST};
 use crate::mesh::Mesh;
 use crate::tools::options::{check_edge_weights, check_faces, check_positive, check_weights, SolveOptions};
 use crate::{tools, Error, Result};
@@ -12,7 +12,7 @@ pub struct PartsOptions {
     pub n_parts: Option<usize>,
     /// How much cheaper cuts must be than is usual, 1: larger finds fewer parts. A cut costs the length of
     /// its border, in hollows down to a tenth of it, over the 0.7th power of the area that it cuts off, both
-    /// in units of the whole area; up to 1.25 over the coarseness it is made.
+    /// in units of the whole area; at 1.4 over the coarseness it is as likely as not that people make it.
     pub coarseness: f64,
     /// What borders cost in each face, 1 neutral, smaller where they are welcome.
     pub face_weights: Option<Vec<f64>>,
@@ -51,9 +51,14 @@ impl PartsOptions {
         check_faces(self.faces.as_deref(), m)
     }
 
-    /// Up to which cost cuts are made.
+    /// Up to which cost cuts are made at first.
     pub(super) fn most_cost(&self) -> f64 {
         COST / self.coarseness
+    }
+
+    /// At which cost it is as likely as not that people make a cut of the whole shape.
+    pub(super) fn even_cost(&self) -> f64 {
+        EVEN_COST / self.coarseness
     }
 
     /// The threads, checked where they are started.
