@@ -34,6 +34,7 @@ help:
 	@echo "make fuzz        random calls of wheel and core, sequences in Blender, for MINUTES=10"
 	@echo "make fuzz-sequences  sequences in Blender alone: docs/reliability.md"
 	@echo "make bench-parts DATA=folder  divide shapes whose parts people have named: benchmarks/parts.md"
+	@echo "                 ARGS=--invariance, without a folder: one shape in other meshes, the second table there"
 	@echo "make wheel       build the Python wheel"
 	@echo "make extension   build and check the Blender extension: .ridgeform/extension/"
 	@echo "                 WHEELS=folder: with wheels built elsewhere, for other platforms too"

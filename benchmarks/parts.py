@@ -1,23 +1,26 @@
 """Divide shapes whose parts people have named, and write the table: `parts.md`.
 
-    python scripts/setup_env.py benchmarks/parts.py FOLDER [--only WORDS] [--every K] [--pictures PNG]
-        [--site FOLDER]
+    python scripts/setup_env.py benchmarks/parts.py FOLDER [--only WORDS] [--every K] [--site FOLDER]
+    python scripts/setup_env.py benchmarks/parts.py --invariance [--site FOLDER]
 
 The folder holds the shapes as `CATEGORY_NUMBER.npz`: `vertices` (n,3), `faces` (m,3), and `labels` (h,m), one
 row for each person, a part for each face, say of the Princeton Segmentation Benchmark (Chen, Golovinskiy and
 Funkhouser 2009). They are not part of the project. `--only` takes the shapes with these words in their name,
-`--every` one of so many: these print and keep nothing. `--pictures` draws the best and the worst shapes.
-`--site` names a folder with the package `ridgeform`, instead of building the wheel.
+`--every` one of so many: these print and keep nothing. The best and the worst shapes are drawn beside what a
+person made of them: `out/parts.png`. `--invariance` compares one shape in several meshes instead:
+`parts_invariance.py`. `--site` names a folder with the package `ridgeform`, instead of building the wheel.
 """
 
 from __future__ import annotations
 
 import argparse
+import itertools
 import sys
 import time
 from pathlib import Path
 
 import numpy as np
+import parts_invariance
 from build_wheel import build_wheel
 from cells import grid
 from numpy.typing import NDArray
@@ -25,6 +28,8 @@ from workspace import WHEEL_SITE
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks/parts.md"
+PICTURE = ROOT / "out/parts.png"
+"""Best and worst shapes: not for the project, as the shapes are not."""
 USUAL = {
     **{"human": 6, "cup": 2, "glasses": 4, "airplane": 6, "ant": 11, "chair": 8, "octopus": 9, "table": 5},
     **{"teddy": 8, "hand": 6, "plier": 5, "fish": 8, "bird": 5, "armadillo": 18, "bust": 8, "mech": 2},
@@ -59,14 +64,19 @@ def judged(labels: Indices, people: Indices) -> float:
     return 100 * float(np.mean([rand_error(labels, person) for person in people]))
 
 
-def among_people(people: Indices) -> float:
-    """The mean error of two people against each other, in hundredths; not a number where there is one."""
-    pairs = [(i, j) for i in range(len(people)) for j in range(i)]
-    errors = [rand_error(people[i], people[j]) for i, j in pairs]
-    return 100 * float(np.mean(errors)) if errors else float("nan")
+def among_people(people: Indices) -> NDArray[np.float64]:
+    """The mean error of every person against all others, in hundredths; nothing where there is one."""
+    h = len(people)
+    errors = np.zeros((h, h))
+    for i, j in itertools.combinations(range(h), 2):
+        errors[i, j] = errors[j, i] = rand_error(people[i], people[j])
+    return 100 * errors.sum(axis=1) / (h - 1) if h > 1 else np.empty(0)
 
 
-def measure(path: Path) -> dict[str, float | str]:
+Record = dict[str, "float | str | NDArray[np.float64]"]
+
+
+def measure(path: Path) -> Record:
     """What one shape gives: the errors as found, at the usual count and among people, the count, the time."""
     import ridgeform  # noqa: PLC0415
 
@@ -83,12 +93,21 @@ def measure(path: Path) -> dict[str, float | str]:
         "parts": found.n_parts,
         "found": judged(found.labels, people),
         "given": judged(found.labels_at(USUAL.get(category, found.n_parts)), people),
-        "people": among_people(people),
+        "people": float(among_people(people).mean()) if len(people) > 1 else float("nan"),
+        "found by person": np.array([judged(found.labels, person[None]) for person in people]),
+        "people by person": among_people(people),
         "seconds": seconds,
     }
 
 
-def table_of(records: list[dict[str, float | str]]) -> str:
+def by_person(records: list[Record], column: str) -> float:
+    """The mean of the categories where every labeling of one counts as much."""
+    categories = sorted({str(record["category"]) for record in records})
+    parted = [[record[column] for record in records if record["category"] == name] for name in categories]
+    return float(np.mean([np.concatenate(columns).mean() for columns in parted]))
+
+
+def table_of(records: list[Record]) -> str:
     """Means by category, and the mean of these."""
     columns = ("found", "given", "people", "parts", "seconds")
     categories = sorted({str(record["category"]) for record in records})
@@ -116,19 +135,30 @@ def table_of(records: list[dict[str, float | str]]) -> str:
     return grid(head, rows)
 
 
-def draw(records: list[dict[str, float | str]], folder: Path, path: Path) -> None:
-    """The shapes with the least and the largest error, as found."""
+def draw(records: list[Record], folder: Path, path: Path) -> None:
+    """The shapes with the least and the largest error, as found, each above what the person made of it who
+    agrees with most others.
+    """
     import ridgeform  # noqa: PLC0415
     from gallery import panels, segments  # noqa: PLC0415
 
     by_error = sorted(records, key=lambda record: record["found"])
     pictures = []
-    for record in [*by_error[:SHOWN], *by_error[-SHOWN:]]:
-        with np.load(folder / f"{record['name']}.npz") as data:
-            vertices, faces = data["vertices"].astype(float), data["faces"].astype(np.int64)
-        labels = ridgeform.parts(ridgeform.Mesh(vertices, faces)).labels
-        picture = segments.shown(vertices, faces, labels, size=270, view=(0.8, -1.0, 0.5))
-        pictures.append((f"{record['name']}: {record['found']:.1f}", picture))
+    for shown in (by_error[:SHOWN], by_error[-SHOWN:]):
+        ours, theirs = [], []
+        for record in shown:
+            with np.load(folder / f"{record['name']}.npz") as data:
+                vertices, faces = data["vertices"].astype(float), data["faces"].astype(np.int64)
+                person = data["labels"][np.argmin(record["people by person"])]
+            labels = ridgeform.parts(ridgeform.Mesh(vertices, faces)).labels
+            look = {"size": 270, "view": (0.8, -1.0, 0.5)}
+            ours.append(
+                (f"{record['name']}: {record['found']:.1f}", segments.shown(vertices, faces, labels, **look))
+            )
+            named = np.unique(person, return_inverse=True)[1].reshape(-1)
+            theirs.append(("a person", segments.shown(vertices, faces, named, **look)))
+        pictures += [*ours, *theirs]
+    path.parent.mkdir(exist_ok=True)
     panels.page(path, pictures, SHOWN)
 
 
@@ -138,9 +168,12 @@ def main() -> None:
     parser.add_argument("folder", type=Path, nargs="?", help="the shapes")
     parser.add_argument("--only", metavar="WORDS", default="", help="shapes; keeps nothing")
     parser.add_argument("--every", metavar="K", type=int, default=1, help="one of so many; keeps nothing")
-    parser.add_argument("--pictures", metavar="PNG", type=Path, help="draws the best and the worst shapes")
+    parser.add_argument("--invariance", action="store_true", help="one shape in other meshes instead")
     parser.add_argument("--site", type=Path, help="a folder with the package to be measured")
     given = parser.parse_args()
+    if given.invariance:
+        parts_invariance.measured(given.site)
+        return
     shapes = sorted(given.folder.glob("*_*.npz")) if given.folder is not None else []
     if not shapes:
         sys.exit(WANTED if given.folder is None else f"{given.folder} holds no such shapes.\n{WANTED}")
@@ -157,10 +190,12 @@ def main() -> None:
         )
     page = table_of(records)
     print(page)
-    if given.pictures is not None:
-        draw(records, given.folder, given.pictures)
+    people = by_person(records, "people by person")
+    said = WEIGHTS.format(found=by_person(records, "found by person"), people=people)
+    print(said)
+    draw(records, given.folder, PICTURE)
     if not given.only and given.every == 1:
-        RESULTS.write_text(INTRODUCTION.format(shapes=len(records)) + page, encoding="utf-8")
+        parts_invariance.write(first=INTRODUCTION.format(shapes=len(records)) + page + said)
 
 
 INTRODUCTION = """# Parts against what people named
@@ -171,6 +206,10 @@ share of pairs of faces that one labeling joins and the other parts, every face 
 people, then over shapes, then over categories. *Count found*: the defaults. *Count given*: the usual count of
 the category. *People*: two people against each other. Time: processor time, one thread.
 
+"""
+WEIGHTS = """
+Where every labeling of a category counts as much, so that shapes with more people weigh more, the mean
+is {found:.1f} for the count found and {people:.1f} between people.
 """
 
 if __name__ == "__main__":
