@@ -12,7 +12,9 @@ import hole_kit
 import numpy as np
 import pytest
 from batch_kit import records
+from bl_ext.user_default.ridgeform.blender import mesh_io
 from bl_ext.user_default.ridgeform.framework import batch, files
+from known_shapes import limbs
 
 STEPS = ("--steps", "2")
 
@@ -185,6 +187,25 @@ def test_segments_of_files(tmp_path, capfd):
     capfd.readouterr()
     assert batch.main(["segment", str(source), "-o", str(target)]) == 0
     assert "vertices, 6 segments, " in capfd.readouterr().out
+
+
+def test_parts_of_files_as_objects_that_are_closed(tmp_path, capfd):
+    kit.empty_scene()
+    vertices, faces, _ = limbs.ball_with_limbs(4)
+    kit.add_object("Ball", vertices, faces.tolist())
+    source, target = tmp_path / "ball.obj", tmp_path / "parts.blend"
+    files.write_file(source)
+    options = ["--kind", "parts", "--segments", "4", "--make", "objects", "--use-caps"]
+    code, (record,) = records(capfd, "segment", source, "-o", target, *options)
+    assert code == 0, record
+    (entry,) = record["meshes"]
+    assert entry["segments"] == 4
+    assert entry["possible"][0] == 1
+    meshes = [item.data for item in files.read_file(target) if item.type == "MESH"]
+    assert len(meshes) == 4
+    for mesh in meshes:
+        faces_of_edges = np.bincount(mesh_io.corner_edges(mesh), minlength=len(mesh.edges))
+        assert (faces_of_edges == 2).all()
 
 
 def test_holes_of_files(tmp_path, capfd):
