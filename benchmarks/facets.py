@@ -20,6 +20,7 @@ import numpy as np
 from build_extension import PLATFORMS, bundled_wheels
 from build_wheel import build_wheel
 from cells import grid
+from known_shapes import shapes
 from known_shapes.fill_measures import mean_and_rms, point_distances, samples
 from numpy.typing import NDArray
 from problems import load_obj
@@ -150,7 +151,9 @@ def main() -> None:
             zipfile.ZipFile(wheel).extractall(scratch)
     sys.path.insert(0, scratch)
     meshes = {path.stem: load_obj(path) for path in options.meshes}
-    meshes = meshes or {name: bundled(name) for name in ("bust", "spot", "spot_low_resolution")}
+    if not meshes:
+        meshes = {name: bundled(name) for name in ("bust", "spot", "spot_low_resolution")}
+        meshes["uv_sphere"] = shapes.uv_sphere(64, 32)
     rows = [row(name, mesh, count) for name, mesh in meshes.items() for count in COUNTS]
     table = grid(HEAD, rows)
     if options.meshes:

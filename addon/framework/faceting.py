@@ -110,7 +110,9 @@ def notes(found: ridgeform.Faceted, made: Rebuilt, wanted: int | None) -> list[s
     """What a modeler should know of facets, of which `wanted` were asked for."""
     said = [note for note in (kept_normals.note(made.normals),) if note is not None]
     if wanted is not None and found.n_facets != wanted:
-        said.append(f"{wanted} facets were asked for, {found.n_facets} are what comes nearest")
+        why = ": with fewer, thin parts, handles, or holes would pass through each other"
+        nearest = f"{found.n_facets} are what comes nearest{why if found.n_facets > wanted else ''}"
+        said.append(f"{wanted} facets were asked for, {nearest}")
     if found.n_crossings:
         pairs = (
             "1 pair of facets passes"

@@ -80,12 +80,14 @@ pub(super) const TRIES: Turns = Turns { count: 6, factor: 10.0 };
 /// stay as they are.
 pub(super) const STRIKES: u32 = 5;
 
-/// How many times merges are refused at what touches last, before it is begun with twice as many regions; at
-/// last all that is unsound stays as on the mesh, and after as many times again the whole mesh.
+/// How many times merges are refused at what touches last, before all that is unsound, and what touches it,
+/// is made of the regions that there are when twice as many are left; at last all that is unsound stays as on
+/// the mesh, and after as many times again the whole mesh.
 pub(super) const REFUSALS: usize = 8;
 
 /// How often the number of regions is doubled where they are not sound: a bound on the time. Whatever stays
 /// as on the mesh instead is joined face by face: a torus of 1320 faces in 6 facets took 17 s, and takes 2 s.
+/// Doubled everywhere, 300 facets of a scan of 70,000 faces, 4 of them unsound, became 1230 to be joined.
 pub(super) const DOUBLINGS: usize = 3;
 
 /// How many times the planes are taken anew to end at the number of facets asked for,
@@ -101,6 +103,10 @@ pub(super) const LITTLE: f64 = 1e-3;
 /// Triangles cover a facet whose area they have to this part:
 /// what rounding leaves of a sum of areas, and far less than any triangle.
 pub(super) const COVERED: f64 = 1e-9;
+
+/// So many trials of joining two facets are kept for when it is their turn, each about 25 kB: the memory that
+/// a call asks for has room for them.
+pub(super) const KEPT: usize = 500;
 
 /// Asked after so many merges whether to stop.
 pub(super) const PATIENCE: usize = 1000;

@@ -114,6 +114,17 @@ impl Unsound {
         Ok(Self { facets, pairs: inspection.pairs })
     }
 
+    /// The nodes, `nodes` of their faces, of unsound facets and of those that share a corner with one.
+    pub(super) fn around(&self, shape: &Shape, nodes: &[u32]) -> Result<Vec<u32>> {
+        let corners: HashSet<u32> =
+            memory::distinct(self.facets.iter().flat_map(|&k| shape.facets[k as usize].corners()))?;
+        let touching = shape.facets.iter().filter(|facet| facet.corners().any(|c| corners.contains(&c)));
+        let mut found: Vec<u32> = memory::sifted(touching.map(|facet| nodes[facet.part as usize]))?;
+        found.sort_unstable();
+        found.dedup();
+        Ok(found)
+    }
+
     /// Of facets that touch or pass through each other those of highest rank.
     pub(super) fn latest(&self, shape: &Shape, rank: impl Fn(u32) -> u32) -> Result<Vec<u32>> {
         let mut highest: HashMap<u32, u32> = HashMap::new();

@@ -7,22 +7,21 @@ use super::moments::{Moments, Plane};
 use super::repair::{hold, repair};
 use super::shape::{Corner, Facet, Shape};
 use super::solve::flatten;
+use super::stage::Stage;
 use super::triangulation::{forced, triangles};
 use crate::memory;
 use crate::mesh::vector::{area_vector, between, distance, norm, unit};
-use crate::progress::Progress;
 use crate::Result;
 
 /// Flattens the facets near where they were on the mesh, and repairs those that cross themselves or others.
-pub(super) fn settle(shape: &mut Shape, faces: &mut Faces<'_>, progress: &Progress) -> Result<()> {
+pub(super) fn settle(shape: &mut Shape, faces: &mut Faces<'_>, stage: &Stage<'_>) -> Result<()> {
     for round in 0..=REPAIRS {
-        progress.check()?;
         *shape = shape.at_home()?;
         shape.facets.iter_mut().for_each(|facet| facet.plane = facet.moments.fit().plane);
         let homes = memory::gathered(shape.corners.iter().map(|corner| corner.home))?;
-        flatten(shape, STAY, &homes)?;
+        flatten(shape, STAY, &homes, stage)?;
         let faulty = Inspection::new(shape, faces, false)?.faults()?;
-        let is_last = faulty.is_empty() || round == REPAIRS || progress.is_finishing();
+        let is_last = faulty.is_empty() || round == REPAIRS || stage.is_finishing();
         if is_last || !repair(shape, faces, &faulty)? {
             break;
         }
@@ -32,16 +31,16 @@ pub(super) fn settle(shape: &mut Shape, faces: &mut Faces<'_>, progress: &Progre
 
 /// Gives every face to the nearest facet and fits the planes anew, in turns,
 /// as long as facets stay sound and come nearer.
-pub(super) fn refine(shape: &mut Shape, faces: &mut Faces<'_>, progress: &Progress) -> Result<()> {
+pub(super) fn refine(shape: &mut Shape, faces: &mut Faces<'_>, stage: &Stage<'_>) -> Result<()> {
     let mut inspection = Inspection::new(shape, faces, true)?;
     let (mut labels, distance) = measured(shape, faces, &inspection)?;
     let mut best = (distance, shape.twin()?);
     let mut n_idle = 0;
-    while n_idle < IDLE.count && !progress.is_finishing() {
+    while n_idle < IDLE.count && !stage.is_finishing() {
         faces.labels = labels;
         faces.fit(shape)?;
         let faults = inspection.faults()?;
-        let Some(next) = fitted(shape, faces, &faults, NOISE * best.0, progress)? else { break };
+        let Some(next) = fitted(shape, faces, &faults, NOISE * best.0, stage)? else { break };
         *shape = next;
         inspection = Inspection::new(shape, faces, true)?;
         let distance;
@@ -74,7 +73,7 @@ fn fitted(
     faces: &Faces<'_>,
     before: &[u32],
     reach: f64,
-    progress: &Progress,
+    stage: &Stage<'_>,
 ) -> Result<Option<Shape>> {
     let aim = |corner: &Corner| {
         let near = faces.scan.on_mesh(corner.point);
@@ -83,9 +82,8 @@ fn fitted(
     };
     let aims = memory::gathered(shape.corners.iter().map(aim))?;
     for _ in 0..TRIES.count {
-        progress.check()?;
         let mut trial = shape.twin()?;
-        let off = flatten(&mut trial, FITTING, &aims)?;
+        let off = flatten(&mut trial, FITTING, &aims, stage)?;
         let mut faulty = Inspection::new(&trial, faces, false)?.faults()?;
         faulty.retain(|k| !before.contains(k));
         if faulty.is_empty() {
@@ -99,14 +97,14 @@ fn fitted(
 /// Leaves triangles of the facets that do not come out flat or simple.
 ///
 /// # Errors
-/// Those of the linear solver.
-pub(super) fn fold(shape: &mut Shape, faces: &mut Faces<'_>) -> Result<()> {
+/// [`crate::Error::Cancelled`], those of the linear solver.
+pub(super) fn fold(shape: &mut Shape, faces: &mut Faces<'_>, stage: &Stage<'_>) -> Result<()> {
     for _ in 0..TRIES.count {
         if shape.off_planes() <= FLAT {
             break;
         }
         let here = memory::gathered(shape.corners.iter().map(|corner| corner.point))?;
-        flatten(shape, STAY, &here)?;
+        flatten(shape, STAY, &here, stage)?;
     }
     let home = shape.at_home()?;
     let mut facets = Vec::new();

@@ -60,6 +60,23 @@ impl Hierarchy {
         }
     }
 
+    /// The nodes from this one on are made when fewer than `count` regions are left.
+    pub(super) fn above(&self, merges: &Merges, count: usize) -> u32 {
+        let n_made = merges.is_last[..self.n - count].iter().filter(|is_last| **is_last).count();
+        (self.n + n_made) as u32
+    }
+
+    /// Splits a node into those below `above`.
+    pub(super) fn split_to(&self, cut: &mut Cut, node: u32, above: u32) {
+        let mut within: Cut = [node].into();
+        if cut.remove(&node) {
+            while let Some(&latest) = within.last().filter(|latest| **latest >= above.max(self.n as u32)) {
+                self.split(&mut within, latest);
+            }
+            cut.extend(within);
+        }
+    }
+
     /// The node of the cut that holds each face.
     pub(super) fn nodes(&self, cut: &Cut) -> Result<Vec<u32>> {
         let mut nodes = memory::repeated(0, self.n)?;

@@ -6,6 +6,7 @@ use std::collections::{BinaryHeap, HashMap, HashSet};
 use super::constants::{FLAT, PATIENCE};
 use super::moments::Moments;
 use super::regions::{Regions, Set};
+use super::stage::shares;
 use crate::mesh::vector::Point;
 use crate::ordered::Ordered;
 use crate::progress::{Progress, Report};
@@ -103,7 +104,8 @@ pub(super) fn merges(
         n_popped += 1;
         if n_popped % PATIENCE == 0 {
             progress.check()?;
-            let fraction = 0.5 * made.pairs.len() as f64 / n as f64;
+            let [from, to] = shares::MERGING;
+            let fraction = from + (to - from) * made.pairs.len() as f64 / n as f64;
             progress.report(Report { fraction, stage: "merging".into(), ..Report::default() });
         }
         if merging.stamp(&set) != stamp {

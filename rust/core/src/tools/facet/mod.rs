@@ -30,12 +30,14 @@ mod search;
 mod shape;
 mod skin;
 mod solve;
+mod stage;
 mod straight;
 mod triangulation;
 mod verdict;
 
 pub use options::FacetOptions;
 
+use crate::error::MeshError;
 use crate::memory::{self, Tool};
 use crate::mesh::vector::{add, scale, Point};
 use crate::mesh::{Mesh, Working};
@@ -103,6 +105,9 @@ pub fn facet(
         let working = Working::new(mesh)?;
         let job = Job::new(&working, options)?;
         let scan = job.scan()?;
+        if scan.area.is_nan() || scan.area <= 0.0 {
+            return Err(MeshError::NoFaces.into());
+        }
         let merges = match merges {
             Some(merges) => merges.0.twin()?,
             None => job.merges(&scan, options, progress)?,

@@ -2,17 +2,17 @@
 //! of those after which all around them is flat and sound again.
 
 use std::cmp::Reverse;
-use std::collections::{BTreeSet, BinaryHeap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, BinaryHeap, HashMap};
 
-use super::constants::{FLAT, STAY};
+use super::constants::{FLAT, KEPT, STAY};
 use super::faces::Faces;
 use super::joining::{joined, Joined};
 use super::shape::{Facet, Shape};
-use super::skin::Skin;
+use super::skin::{Fresh, Skin};
 use super::solve::flatten;
+use super::stage::Stage;
 use crate::memory;
 use crate::ordered::Ordered;
-use crate::progress::Progress;
 use crate::Result;
 
 /// Two facets that might be joined: what that costs, and how often they had changed.
@@ -20,11 +20,17 @@ type Offer = Reverse<(Ordered, [u32; 2], u32)>;
 
 struct Reduction<'a> {
     shape: &'a mut Shape,
+    stage: &'a Stage<'a>,
     skin: Skin<'a>,
     /// The facets at each corner.
     at: Vec<Vec<u32>>,
     stamps: Vec<u32>,
     heap: BinaryHeap<Offer>,
+    /// What was tried and cost more than what others might, as long as nothing of it has changed.
+    tried: BTreeMap<[u32; 2], Trial>,
+    n_joins: u32,
+    /// After how many joins each facet or one of its corners changed last.
+    changed: Vec<u32>,
     /// Pairs whose loops cannot be joined until something around them changes. What was not sound when solved
     /// is tried again where one of both gets other corners.
     waiting: HashMap<u32, BTreeSet<u32>>,
@@ -40,9 +46,11 @@ struct Trial {
     shape: Shape,
     /// Facets whose loops are others.
     reshaped: Vec<u32>,
-    /// Facets with a corner that may move.
-    changed: Vec<u32>,
+    /// The triangles of facets with a corner that may move.
+    fresh: Fresh,
     cost: f64,
+    /// After how many joins it was tried.
+    n_joins: u32,
 }
 
 /// Joins facets of `shape` until no more than `count` are left, as far as that can be sound. Corners of one
@@ -55,7 +63,7 @@ pub(super) fn reduce(
     faces: &mut Faces<'_>,
     count: usize,
     tolerance: f64,
-    progress: &Progress,
+    stage: &Stage<'_>,
 ) -> Result<()> {
     let mut n_left = shape.facets.len();
     let mut at = memory::repeated(Vec::new(), shape.corners.len())?;
@@ -68,26 +76,29 @@ pub(super) fn reduce(
         at,
         stamps: memory::repeated(0, n_left)?,
         heap: BinaryHeap::new(),
+        tried: BTreeMap::new(),
+        n_joins: 0,
+        changed: memory::repeated(0, n_left)?,
         waiting: HashMap::new(),
         tolerance,
         shape,
+        stage,
     };
     let pairs = (0..n_left as u32).flat_map(|k| reduction.pairs(k)).collect();
     reduction.offer(pairs)?;
-    while n_left > count && !progress.is_finishing() {
-        progress.check()?;
+    while n_left > count && !stage.is_finishing() {
         let Some(Reverse((cost, pair, stamp))) = reduction.heap.pop() else { break };
         if stamp != reduction.stamp(pair) {
             continue;
         }
-        let trial = match reduction.trial(pair)? {
-            Some(trial) if trial.cost <= cost.0 => trial,
-            Some(trial) => {
-                reduction.heap.push(Reverse((Ordered(trial.cost), pair, stamp)));
-                continue;
+        let Some(trial) = reduction.trial(pair)? else { continue };
+        if trial.cost > cost.0 {
+            reduction.heap.push(Reverse((Ordered(trial.cost), pair, stamp)));
+            if reduction.tried.len() < KEPT {
+                reduction.tried.insert(pair, trial);
             }
-            None => continue,
-        };
+            continue;
+        }
         reduction.take(pair, trial)?;
         name[pair[1] as usize] = pair[0];
         n_left -= 1;
@@ -143,25 +154,33 @@ impl Reduction<'_> {
         p.moments.plus(&q.moments).fit().energy - energies
     }
 
+    /// Whether nothing that a trial stands on has changed since.
+    fn is_current(&self, [_, gone]: [u32; 2], trial: &Trial) -> bool {
+        trial.facets.iter().chain([&gone]).all(|&k| self.changed[k as usize] <= trial.n_joins)
+    }
+
     /// Joins two facets and solves what is around them; `None` where that is not sound.
     fn trial(&mut self, pair: [u32; 2]) -> Result<Option<Trial>> {
+        if let Some(trial) = self.tried.remove(&pair) {
+            // Others may have moved into its way.
+            let is_clear = self.skin.is_clear(&trial.fresh, pair[1], trial.n_joins);
+            return Ok(is_clear.then_some(trial));
+        }
         let Some(all) = joined(self.shape, &self.at, pair, self.tolerance) else {
             let [p, q] = pair;
             self.waiting.entry(p).or_default().insert(q);
             self.waiting.entry(q).or_default().insert(p);
             return Ok(None);
         };
-        let mut trial = self.patch(pair, &all)?;
+        let (mut trial, changed) = self.patch(pair, &all)?;
         let homes: Vec<_> = trial.shape.corners.iter().map(|corner| corner.home).collect();
-        let off = flatten(&mut trial.shape, STAY, &homes)?;
+        let off = flatten(&mut trial.shape, STAY, &homes, self.stage)?;
         if off.is_nan() || off > FLAT {
             return Ok(None);
         }
-        let Some(off_mesh) =
-            self.skin.tried(&trial.shape, &trial.facets, &trial.corners, &trial.changed, pair[1])?
-        else {
-            return Ok(None);
-        };
+        let of = (&trial.shape, &trial.facets[..], &trial.corners[..]);
+        let Some((fresh, off_mesh)) = self.skin.tried(of, &changed, pair[1])? else { return Ok(None) };
+        trial.fresh = fresh;
         let energy = |facet: &Facet| facet.moments.energy(&facet.plane);
         let now: f64 = trial.shape.facets.iter().map(energy).sum();
         let all = trial.facets.iter().chain([&pair[1]]);
@@ -170,8 +189,9 @@ impl Reduction<'_> {
         Ok(trial.cost.is_finite().then_some(trial))
     }
 
-    /// Two facets as one, with those around them and those around these. Corners of others do not move.
-    fn patch(&self, [p, q]: [u32; 2], all: &Joined) -> Result<Trial> {
+    /// Two facets as one, with those around them and those around these, and which of all these have a corner
+    /// that may move: those of others do not.
+    fn patch(&self, [p, q]: [u32; 2], all: &Joined) -> Result<(Trial, Vec<u32>)> {
         let near = self.around(&self.around(&[p, q].into()));
         let facets: Vec<u32> =
             [p].into_iter().chain(near.iter().copied().filter(|k| *k != p && *k != q)).collect();
@@ -206,7 +226,9 @@ impl Reduction<'_> {
             shape.facets.push(facet);
         }
         let reshaped = all.iter().map(|(k, _)| *k).collect();
-        Ok(Trial { facets, corners, shape, reshaped, changed, cost: 0.0 })
+        let trial =
+            Trial { facets, corners, shape, reshaped, fresh: Vec::new(), cost: 0.0, n_joins: self.n_joins };
+        Ok((trial, changed))
     }
 
     /// Puts what was tried in its place.
@@ -230,9 +252,12 @@ impl Reduction<'_> {
                 self.at[c as usize].push(p);
             }
         }
-        for &i in &trial.changed {
-            self.skin.set(self.shape, trial.facets[i as usize])?;
-        }
+        self.n_joins += 1;
+        trial.fresh.into_iter().for_each(|(k, patch)| self.skin.put(k, patch, self.n_joins));
+        trial.facets.iter().chain([&q]).for_each(|&k| self.changed[k as usize] = self.n_joins);
+        let mut tried = std::mem::take(&mut self.tried);
+        tried.retain(|&pair, trial| self.is_current(pair, trial));
+        self.tried = tried;
         self.waiting.remove(&q);
         trial.reshaped.iter().chain([&q]).for_each(|&k| self.stamps[k as usize] += 1);
         let mut pairs: BTreeSet<[u32; 2]> = trial.reshaped.iter().flat_map(|&k| self.pairs(k)).collect();

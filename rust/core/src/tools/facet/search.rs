@@ -16,9 +16,10 @@ use super::reducing::reduce;
 use super::refusals::Refusals;
 use super::regions::{Regions, OUTSIDE};
 use super::shape::Shape;
+use super::stage::{shares, Stage, USUAL};
 use crate::error::MeshError;
 use crate::memory;
-use crate::progress::{Progress, Report};
+use crate::progress::Progress;
 use crate::Result;
 
 /// What was made of a number of regions.
@@ -40,6 +41,11 @@ struct Settled<'s> {
 /// The same, where what was not sound is divided.
 struct Divided<'s> {
     n_unsound: usize,
+    /// The regions, and which of them are not sound or touch one that is not.
+    cut: Cut,
+    in_doubt: Vec<u32>,
+    /// Whether the regions are smaller where they were not sound, and nowhere else.
+    is_local: bool,
     is_divided: bool,
     settled: Settled<'s>,
     /// Twice how far the regions are off their planes.
@@ -52,6 +58,17 @@ type Rank = (usize, f64);
 impl Settled<'_> {
     fn distances(&self) -> Result<Distances> {
         Ok(self.faces.nearest(&self.shape, &Inspection::new(&self.shape, &self.faces, true)?)?.1)
+    }
+}
+
+impl Divided<'_> {
+    /// Joins facets until no more than `count` are left, as far as that goes; how far it is off.
+    fn join(&mut self, count: usize, share: [f64; 2], progress: &Progress) -> Result<f64> {
+        let Settled { shape, faces } = &mut self.settled;
+        let n_joins = shape.facets.len().saturating_sub(count);
+        let stage = Stage::new(progress, "joining facets", share, USUAL[1] * n_joins);
+        reduce(shape, faces, count, self.tolerance, &stage)?;
+        Ok(count.abs_diff(self.settled.shape.facets.len()) as f64)
     }
 }
 
@@ -96,10 +113,9 @@ impl Job<'_> {
         let mut count = aim;
         // With fewer facets than are wanted, and with as many or more.
         let mut best: [Option<(Rank, Divided<'_>)>; 2] = [None, None];
-        for round in 0..COUNTS {
-            let fraction = 0.5 + 0.5 * round as f64 / COUNTS as f64;
-            progress.report(Report { fraction, stage: "fitting planes".into(), ..Report::default() });
-            let mut divided = self.sound(merges, count, scan, progress)?;
+        let stage = Stage::new(progress, "finding facets", shares::FINDING[0], USUAL[0]);
+        for _ in 0..COUNTS {
+            let mut divided = self.sound(merges, count, false, scan, &stage)?;
             let Settled { shape, faces } = &mut divided.settled;
             let n_made = shape.facets.len();
             let off = aim as f64 - n_made as f64;
@@ -112,7 +128,7 @@ impl Job<'_> {
                     (off.abs(), count as f64 + off.clamp(-most, most).round())
                 }
                 Wanted::Error(error) => {
-                    fitting::refine(shape, faces, progress)?;
+                    fitting::refine(shape, faces, &stage)?;
                     let over = divided.settled.distances()?.rms / error;
                     ((over - 1.0).max(0.0), (count as f64 * over.max(1.05)).ceil())
                 }
@@ -130,17 +146,27 @@ impl Job<'_> {
             count = next;
         }
         let [few, mut enough] = best;
-        if let Some((rank, Divided { settled, tolerance, is_divided, .. })) = &mut enough {
-            if matches!(wanted, Wanted::Facets(_)) || (*is_divided && matches!(wanted, Wanted::Found)) {
-                reduce(&mut settled.shape, &mut settled.faces, aim, *tolerance, progress)?;
-                rank.1 = aim.abs_diff(settled.shape.facets.len()) as f64;
+        if let Some((rank, divided)) = &mut enough {
+            if matches!(wanted, Wanted::Facets(_)) || (divided.is_divided && matches!(wanted, Wanted::Found))
+            {
+                rank.1 = divided.join(aim, shares::JOINING[0], progress)?;
+                // Smaller regions everywhere leave more ways to join them.
+                if rank.1 > 0.0 && divided.is_local && !progress.is_finishing() {
+                    let stage = Stage::new(progress, "finding facets", shares::FINDING[1], USUAL[0]);
+                    let mut other = self.sound(merges, aim, true, scan, &stage)?;
+                    let miss = other.join(aim, shares::JOINING[1], progress)?;
+                    if (other.n_unsound, miss) < *rank {
+                        (*rank, *divided) = ((other.n_unsound, miss), other);
+                    }
+                }
             }
         }
         let nearest =
             [few, enough].into_iter().flatten().min_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(Equal));
         let (_, Divided { mut settled, .. }) = nearest.ok_or(MeshError::NoFaces)?;
         if !matches!(wanted, Wanted::Error(_)) {
-            fitting::refine(&mut settled.shape, &mut settled.faces, progress)?;
+            let stage = Stage::new(progress, "fitting planes", shares::FITTING, USUAL[2]);
+            fitting::refine(&mut settled.shape, &mut settled.faces, &stage)?;
         }
         let n_facets = fitting::order(&mut settled.shape, &mut settled.faces)?;
         let inspection = Inspection::new(&settled.shape, &settled.faces, true)?;
@@ -149,30 +175,45 @@ impl Job<'_> {
         Ok(Found { shape: settled.shape, inspection, labels, distances, n_facets, n_crossings })
     }
 
-    /// The shape of `count` regions, and of more where that is not sound.
+    /// The shape of `count` regions; where that is not sound of smaller ones, and of smaller ones everywhere
+    /// if that is not enough, or is wanted at once.
     fn sound<'s>(
         &self,
         merges: &Merges,
         mut count: usize,
+        everywhere: bool,
         scan: &'s Scan,
-        progress: &Progress,
+        stage: &Stage<'_>,
     ) -> Result<Divided<'s>> {
-        let ([_, most], least) = (merges.range(self.parts.len()), count);
-        let mut best: Option<Divided<'_>> = None;
-        for doubling in 0..=DOUBLINGS {
-            let is_last = doubling == DOUBLINGS || count == most;
-            let divided = self.divided(merges, count, is_last, scan, progress)?;
-            if best.as_ref().is_none_or(|best| divided.n_unsound < best.n_unsound) {
-                best = Some(divided);
+        let (n, [_, most]) = (self.parts.len(), merges.range(self.parts.len()));
+        let (tree, cut) = Hierarchy::new(merges, n, n - count)?;
+        let mut best = self.divided((&tree, cut), count == most, scan, stage)?;
+        let is_done = |best: &Divided<'_>| best.n_unsound == 0 || stage.is_finishing();
+        let (first, mut above) = (count, count);
+        // Where most of it is in doubt, nothing is gained by keeping the rest.
+        let is_sparse = |best: &Divided<'_>| 2 * best.in_doubt.len() < best.cut.len();
+        while !(everywhere || is_done(&best) || above >= most.min(first << DOUBLINGS)) && is_sparse(&best) {
+            above *= 2;
+            let mut cut = best.cut.clone();
+            let lowest = tree.above(merges, above.min(most));
+            best.in_doubt.iter().for_each(|&node| tree.split_to(&mut cut, node, lowest));
+            tree.close(&mut cut, |labels, n| self.regions(labels, n))?;
+            let divided = self.divided((&tree, cut), false, scan, stage)?;
+            if divided.n_unsound < best.n_unsound {
+                best = Divided { is_local: true, is_divided: true, ..divided };
             }
-            if is_last || progress.is_finishing() || best.as_ref().is_some_and(|best| best.n_unsound == 0) {
-                break;
-            }
-            count = (2 * count).min(most);
         }
-        let mut divided = best.ok_or(MeshError::NoFaces)?;
+        while !is_done(&best) && count < most.min(first << DOUBLINGS) {
+            count = (2 * count).min(most);
+            let cut = Hierarchy::new(merges, n, n - count)?.1;
+            let is_last = count == most.min(first << DOUBLINGS);
+            let divided = self.divided((&tree, cut), is_last, scan, stage)?;
+            if divided.n_unsound < best.n_unsound {
+                best = Divided { is_divided: true, ..divided };
+            }
+        }
+        let mut divided = best;
         let settled = &mut divided.settled;
-        divided.is_divided |= count != least;
         // What stayed so that the rest is sound may change again.
         for facet in &mut settled.shape.facets {
             facet.is_held &= self.is_held[facet.part as usize];
@@ -182,38 +223,45 @@ impl Job<'_> {
         Ok(divided)
     }
 
-    /// The shape of `count` regions, divided where it is not sound; where `is_last`, what is unsound even
-    /// then stays as on the mesh.
+    /// The shape of the regions of a cut, divided where it is not sound; where `is_last`, what is unsound
+    /// even then stays as on the mesh.
     fn divided<'s>(
         &self,
-        merges: &Merges,
-        count: usize,
+        (tree, mut cut): (&Hierarchy, Cut),
         is_last: bool,
         scan: &'s Scan,
-        progress: &Progress,
+        stage: &Stage<'_>,
     ) -> Result<Divided<'s>> {
-        let n = self.parts.len();
-        let (tree, mut cut) = Hierarchy::new(merges, n, n - count)?;
         let mut refusals = Refusals::new(&self.is_held)?;
         let mut is_fixed = memory::twin(&self.is_fixed)?;
         let mut best: Option<Divided<'_>> = None;
         for round in 0..=if is_last { 2 * REFUSALS } else { REFUSALS } {
-            let (settled, tolerance) = self.settled(scan, &tree, &cut, &refusals, &is_fixed, progress)?;
+            let (settled, tolerance) = self.settled(scan, tree, &cut, &refusals, &is_fixed, stage)?;
             let mut unsound = Unsound::new(&settled.shape, &settled.faces)?;
             let n_unsound = unsound.facets.len();
             if round + 1 == 2 * REFUSALS {
                 // The mesh itself is sound.
                 unsound.facets = memory::numbers(settled.shape.facets.len())?;
             }
-            let stay = refusals.refuse((&tree, &mut cut), &settled.shape, &unsound, round >= REFUSALS)?;
+            let in_doubt = unsound.around(&settled.shape, &tree.nodes(&cut)?)?;
+            let so_far = cut.clone();
+            let stay = refusals.refuse((tree, &mut cut), &settled.shape, &unsound, round >= REFUSALS)?;
             if best.as_ref().is_none_or(|best| n_unsound < best.n_unsound) {
-                best = Some(Divided { n_unsound, is_divided: round > 0, settled, tolerance });
+                best = Some(Divided {
+                    n_unsound,
+                    cut: so_far,
+                    in_doubt,
+                    is_local: false,
+                    is_divided: round > 0,
+                    settled,
+                    tolerance,
+                });
             }
-            if n_unsound == 0 || progress.is_finishing() {
+            if n_unsound == 0 || stage.is_finishing() {
                 break;
             }
             self.stay(&stay, &mut refusals.is_held, &mut is_fixed);
-            refusals.close((&tree, &mut cut), |labels, n| self.regions(labels, n))?;
+            refusals.close((tree, &mut cut), |labels, n| self.regions(labels, n))?;
         }
         Ok(best.ok_or(MeshError::NoFaces)?)
     }
@@ -245,7 +293,7 @@ impl Job<'_> {
         cut: &Cut,
         refusals: &Refusals,
         is_fixed: &[bool],
-        progress: &Progress,
+        stage: &Stage<'_>,
     ) -> Result<(Settled<'s>, f64)> {
         let (labels, tops) = tree.labels(cut)?;
         let n_regions = tops.len();
@@ -264,8 +312,8 @@ impl Job<'_> {
         let mut shape =
             Shape::new(&regions, &moments, &self.positions, &parts, &is_held, firmness, tolerance)?;
         let mut faces = Faces { scan, labels, is_held: memory::twin(&refusals.is_held)? };
-        fitting::settle(&mut shape, &mut faces, progress)?;
-        fitting::fold(&mut shape, &mut faces)?;
+        fitting::settle(&mut shape, &mut faces, stage)?;
+        fitting::fold(&mut shape, &mut faces, stage)?;
         Ok((Settled { shape, faces }, tolerance))
     }
 }

@@ -9,12 +9,14 @@
 use super::constants::{DAMPING, FARTHEST, FLAT, FLATTEST, REGULAR, SLACK, SLOW, STEPS};
 use super::moments::{quadratic, Plane};
 use super::shape::Shape;
+use super::stage::Stage;
 use super::triangulation::axes;
 use crate::error::SolveError;
 use crate::linear::cholesky::Cholesky;
 use crate::linear::pattern::LowerPattern;
 use crate::memory;
 use crate::mesh::vector::{add, area_vector, dot, norm, scale, sub, unit, Point};
+use crate::Result;
 
 /// A facet at a corner.
 #[derive(Clone, Copy)]
@@ -35,7 +37,10 @@ struct Turning {
 
 /// Flattens the facets of `shape`, with corners near `targets`;
 /// returns the largest distance of a corner from a plane.
-pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point]) -> Result<f64, SolveError> {
+///
+/// # Errors
+/// [`crate::Error::Cancelled`], [`crate::Error::Memory`].
+pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point], stage: &Stage<'_>) -> Result<f64> {
     set_triangles(shape);
     let of_facet = |(facet, f): (usize, _)| {
         super::shape::Facet::corners(f).map(move |c| Incidence { facet, corner: c as usize })
@@ -65,6 +70,7 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point]) -> Result
     let mut cholesky = Cholesky::analyze(pattern, None)?;
     let (mut last, mut slack) = (f64::INFINITY, SLACK[usize::from(shape.off_planes() < FLAT)]);
     for step in 0..2 * STEPS {
+        stage.step()?;
         // The last ones make the least changes that flatten.
         let only_flattens = step >= STEPS;
         if only_flattens {
@@ -102,7 +108,11 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point]) -> Result
             [height + dot(of_planes[k], fall(&turning[i.facet])) + dot(of_corners[k], pull(i.corner))]
         };
         let mut multipliers: Vec<[f64; 1]> = memory::gathered(incidences.iter().enumerate().map(off))?;
-        cholesky.factorize(&values)?;
+        match cholesky.factorize(&values) {
+            // Sizes are so far apart that rounding leaves no step: what is there is judged as it is.
+            Err(SolveError::Factorization { .. }) => break,
+            done => done?,
+        }
         cholesky.solve(&mut multipliers)?;
         let mut moves: Vec<Point> = memory::gathered((0..targets.len()).map(pull))?;
         let mut turns: Vec<Point> = memory::gathered(turning.iter().map(fall))?;
@@ -149,7 +159,7 @@ fn pattern(
     incidences: &[Incidence],
     at_corners: &[Vec<usize>],
     at_facets: &[Vec<usize>],
-) -> Result<LowerPattern, SolveError> {
+) -> Result<LowerPattern> {
     let (mut starts, mut rows) = (memory::room(incidences.len() + 1)?, Vec::new());
     starts.push(0);
     for (k, i) in incidences.iter().enumerate() {
