@@ -163,7 +163,7 @@ impl Reduction<'_> {
     fn trial(&mut self, pair: [u32; 2]) -> Result<Option<Trial>> {
         if let Some(trial) = self.tried.remove(&pair) {
             // Others may have moved into its way.
-            let is_clear = self.skin.is_clear(&trial.fresh, pair[1], trial.n_joins);
+            let is_clear = self.skin.is_clear(&trial.fresh, pair[1], trial.n_joins)?;
             return Ok(is_clear.then_some(trial));
         }
         let Some(all) = joined(self.shape, &self.at, pair, self.tolerance) else {

@@ -124,10 +124,8 @@ impl<'s> Skin<'s> {
             let (before, (k, patch)) = (fresh[..i].iter().map(|(j, other)| (*j, other)), &fresh[i]);
             !self.is_crossed(*k, patch, before)
         });
-        if !is_apart || has_side_twice(fresh.iter().flat_map(|(_, patch)| patch.sides()).collect()) {
-            return Ok(None);
-        }
-        if !self.is_clear(&fresh, gone, 0) {
+        let has_side_twice = sides(&fresh)?.windows(2).any(|pair| pair[0] == pair[1]);
+        if !is_apart || has_side_twice || !self.is_clear(&fresh, gone, 0)? {
             return Ok(None);
         }
         fresh.iter_mut().for_each(|(_, patch)| patch.off_mesh = patch.off_mesh(self.scan));
@@ -139,18 +137,17 @@ impl<'s> Skin<'s> {
 
     /// Whether fresh triangles neither cross others that were taken after `n_joins` joins or more, nor have a
     /// side with them where they should not. What is far from all of them is not looked at.
-    pub(super) fn is_clear(&self, fresh: &[(u32, Patch)], gone: u32, n_joins: u32) -> bool {
+    pub(super) fn is_clear(&self, fresh: &[(u32, Patch)], gone: u32, n_joins: u32) -> Result<bool> {
         let replaced: BTreeSet<u32> = fresh.iter().map(|(k, _)| *k).chain([gone]).collect();
         let all = fresh.iter().fold(NOWHERE, |all, (_, patch)| around(all, patch.bounds));
         let is_other = |(k, patch): &(u32, &Patch)| {
             patch.n_joins >= n_joins && meet(patch.bounds, all) && !replaced.contains(k)
         };
-        let others: Vec<(u32, &Patch)> = (0..).zip(&self.patches).filter(is_other).collect();
-        let mut sides: Vec<[u32; 2]> = fresh.iter().flat_map(|(_, patch)| patch.sides()).collect();
-        sides.sort_unstable();
+        let others: Vec<(u32, &Patch)> = memory::sifted((0..).zip(&self.patches).filter(is_other))?;
+        let sides = sides(fresh)?;
         let beside = others.iter().filter(|(_, patch)| fresh.iter().any(|(_, new)| new.is_near(patch)));
-        !beside.flat_map(|(_, patch)| patch.sides()).any(|side| sides.binary_search(&side).is_ok())
-            && !fresh.iter().any(|(k, patch)| self.is_crossed(*k, patch, others.iter().copied()))
+        Ok(!beside.flat_map(|(_, patch)| patch.sides()).any(|side| sides.binary_search(&side).is_ok())
+            && !fresh.iter().any(|(k, patch)| self.is_crossed(*k, patch, others.iter().copied())))
     }
 
     /// Whether the triangles of facet `k` cross those of others, and did not on the mesh.
@@ -168,8 +165,10 @@ impl<'s> Skin<'s> {
     }
 }
 
-/// Whether a side is there twice: facets that share two corners may both have the diagonal.
-fn has_side_twice(mut sides: Vec<[u32; 2]>) -> bool {
-    sides.sort_unstable();
-    sides.windows(2).any(|pair| pair[0] == pair[1])
+/// The sides of triangles, sorted. None may be there twice: facets that share two corners may both have the
+/// diagonal.
+fn sides(fresh: &[(u32, Patch)]) -> Result<Vec<[u32; 2]>> {
+    let mut all: Vec<[u32; 2]> = memory::sifted(fresh.iter().flat_map(|(_, patch)| patch.sides()))?;
+    all.sort_unstable();
+    Ok(all)
 }
