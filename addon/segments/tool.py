@@ -255,8 +255,9 @@ class Segmenting(Run):
 
 
 def _counted(done: Sequence[dict[str, object]]) -> str:
-    """How many segments or parts there are."""
-    return counted(total(done, "segments"), done[0]["called"] if done else "segment")
+    """How many segments or parts there are; summaries of versions before do not say which."""
+    called = done[0].get("called", "segment") if done else "segment"
+    return counted(total(done, "segments"), called)
 
 
 def _course(found: ridgeform.Segmentation) -> dict[str, object]:
