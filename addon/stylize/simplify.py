@@ -61,15 +61,15 @@ def simplify(
     off the curves as the edges of the surface become longer. The rest makes up for what stays, unless less
     than a share of `REST` were left of it: there are more triangles then.
     """
-    wanted = max(FEWEST, round(ratio * len(faces)))
+    whole, wanted = _Triangles(points, faces), max(FEWEST, round(ratio * len(faces)))
     curves = find_curves(kept, points, held)
     locked = held.copy()
     locked[kept.ends] = True
     # A triangle mesh has two triangles for each vertex, one for those on open borders.
     worth = np.full(len(points), 2.0)
     worth[kept.ends[kept.is_open]] = 1.0
-    stay = worth[locked].sum()
-    points, faces, number = decimate(points, faces, locked, wanted + round((1.0 - ratio) * stay))
+    own = _Share(whole, ratio, wanted, worth[locked].sum(), locked)
+    points, faces, number = decimate(points, faces, locked, own.target(whole, locked, 1.0))
     check()
     chosen = dropped(curves, kept, _size(points), np.sqrt(ratio))
     faces, gone = _thinned(points, faces, curves, number, chosen)
@@ -78,9 +78,8 @@ def simplify(
     number = np.where(locked, number, -1)
     still = np.zeros(len(points), bool)
     still[number[number >= 0]] = True
-    # Triangles beside what stays do so too, more than its vertices tell.
-    least = len(_collapsed(_Triangles(points, faces), still, FEWEST)[0].faces)
-    target = max(wanted, round(least + REST * (wanted - ratio * least)))
+    own = _Share(whole, ratio, wanted, worth[locked].sum(), locked)
+    target = max(wanted, own.target(_Triangles(points, faces), still, REST))
     points, faces, again = decimate(points, faces, still, target)
     number = np.where(number >= 0, again[number], -1)
     rows = [_edges_of(curve, number) for curve in curves]
@@ -116,6 +115,39 @@ class _Triangles:
         corners = self.points[self.faces[np.isin(self.faces, vertices).any(axis=1)]]
         sides = corners - np.roll(corners, 1, axis=1)
         return float(np.linalg.norm(sides, axis=2).max(initial=0.0))
+
+
+@dataclass
+class _Share:
+    """What is left of `whole` beside what stays, when `ratio` of all is asked for."""
+
+    whole: _Triangles
+    ratio: float
+    wanted: int
+    stay: float
+    """The triangles that the vertices which stay must have."""
+    locked: np.ndarray
+    """Which vertices (k,) bool of the whole these are."""
+
+    def target(self, made: _Triangles, still: np.ndarray, share: float) -> int:
+        """The triangles to ask for, so that so much is left of what would be beside.
+
+        By the vertices that stay; and by the triangles of `made` that must stay beside those (`still` (p,)
+        bool there), which may be more, and by what is as far from them as edges become long.
+        """
+        by_vertices = self.stay + share * (self.wanted - self.ratio * self.stay)
+        if not still.any():
+            return round(by_vertices)
+        least = len(_collapsed(made, still, FEWEST)[0].faces)
+        return max(round(by_vertices), round(least + share * self.ratio * self._n_far()))
+
+    def _n_far(self) -> int:
+        """How many triangles lie farther from what stays than half an edge is long then."""
+        corners = self.whole.points[self.whole.faces]
+        mean = float(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).mean())
+        places = self.whole.points[self.locked]
+        near = _around(self.whole.points, places, 0.5 * mean / np.sqrt(self.ratio))
+        return int((~near[self.whole.faces]).all(axis=1).sum())
 
 
 def decimate(
