@@ -130,9 +130,9 @@ def shown_summary() -> list[dict[str, object]]:
     return last_summary() if _is_shown else []
 
 
-def is_of(entry: dict[str, object], uid: int) -> bool:
-    """Whether an entry of the last summary is of the object with this session UID."""
-    return any(entry == one and own == uid for one, own in zip(_last_summary, _last_uids, strict=False))
+def shown_uids() -> list[int]:
+    """The session UIDs of the objects of `shown_summary`, where they were said."""
+    return list(_last_uids) if _is_shown else []
 
 
 def store_summary(entries: Sequence[dict[str, object]], uids: Sequence[int] = ()) -> None:

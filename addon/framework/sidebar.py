@@ -84,14 +84,14 @@ def draw_last_run(
     column = layout.column(align=True)
     done = [
         entry
-        for entry in job.shown_summary()
+        for entry, uid in zip(job.shown_summary(), job.shown_uids(), strict=False)
         if entry["tool"] == tool.run.name
         and entry["status"] not in NO_RESULT
         and (obj := bpy.data.objects.get(entry["name"])) is not None
-        and job.is_of(entry, obj.session_uid)
+        and obj.session_uid == uid
     ]
     for entry in done[:LAST_RUN_LINES]:
-        lines = [line for text in said(entry) for line in wrapping.panel_lines(context, text)]
+        lines = [line for text in said(entry) for line in wrapping.label_lines(context, text)]
         for line, text in enumerate(lines):
             column.label(text=text, icon="BLANK1" if line else "INFO")
     if len(done) > LAST_RUN_LINES:

@@ -25,7 +25,7 @@ def wrapped(text: str, width: float, measure: Callable[[str], float]) -> list[st
     return lines
 
 
-def panel_lines(context: bpy.types.Context, text: str) -> list[str]:
+def label_lines(context: bpy.types.Context, text: str) -> list[str]:
     """The lines of a text, as wide as labels with an icon are in the region that is drawn."""
     if context.region is None:
         return [text]

@@ -94,6 +94,11 @@ def _size(points: np.ndarray) -> float:
     return float(np.ptp(points, axis=0).max(initial=0.0))
 
 
+def _lengths(corners: np.ndarray) -> np.ndarray:
+    """The lengths (q, 3) of the sides of triangles with these corners (q, 3, 3)."""
+    return np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
+
+
 @dataclass
 class _Triangles:
     """Points (p, 3) and triangles (q, 3)."""
@@ -112,9 +117,8 @@ class _Triangles:
 
     def longest(self, vertices: np.ndarray) -> float:
         """The length of the longest edge of triangles with one of these vertices."""
-        corners = self.points[self.faces[np.isin(self.faces, vertices).any(axis=1)]]
-        sides = corners - np.roll(corners, 1, axis=1)
-        return float(np.linalg.norm(sides, axis=2).max(initial=0.0))
+        here = self.faces[np.isin(self.faces, vertices).any(axis=1)]
+        return float(_lengths(self.points[here]).max(initial=0.0))
 
 
 @dataclass
@@ -143,8 +147,7 @@ class _Share:
 
     def _n_far(self) -> int:
         """How many triangles lie farther from what stays than half an edge is long then."""
-        corners = self.whole.points[self.whole.faces]
-        mean = float(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).mean())
+        mean = float(_lengths(self.whole.points[self.whole.faces]).mean())
         places = self.whole.points[self.locked]
         near = _around(self.whole.points, places, 0.5 * mean / np.sqrt(self.ratio))
         return int((~near[self.whole.faces]).all(axis=1).sum())
