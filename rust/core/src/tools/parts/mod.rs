@@ -53,8 +53,8 @@ pub struct Parts {
 
 /// Divides the faces of `mesh` into the parts that people would name.
 ///
-/// Meshes of any kind: vertices at the same place count as one, normals are turned to agree, pieces are
-/// joined to what is near.
+/// Meshes of any kind: the sides of seams are joined, as in other tools, and vertices at the very same place
+/// count as one; normals are turned to agree, pieces are joined to what is near.
 ///
 /// # Errors
 /// [`crate::error::MeshError::NoPositions`], [`crate::error::MeshError::NoFaces`], arguments of the wrong

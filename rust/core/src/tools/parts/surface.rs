@@ -4,10 +4,10 @@
 use std::collections::BTreeMap;
 
 use super::constants::LEAST_AREA;
-use crate::buckets::Buckets;
 use crate::error::MeshError;
-use crate::mesh::vector::{add, area_vector, between, centroid, distance, dot, norm, scale, Point};
-use crate::mesh::{Connectivity, EdgeTable, Mesh};
+use crate::mesh::partition::Partition;
+use crate::mesh::vector::{area_vector, between, centroid, distance, dot, norm, place, scale, Point};
+use crate::mesh::{flipped_faces, Connectivity, EdgeTable, Mesh, Weld};
 use crate::{memory, Result};
 
 /// Two faces with a common edge.
@@ -34,16 +34,15 @@ pub(super) struct Surface {
 }
 
 impl Surface {
-    /// The faces named by `faces` with the painted `weight` of each halfedge; vertices at the same place
-    /// count as one.
+    /// The faces named by `faces` with the painted `weight` of each halfedge.
     ///
     /// # Errors
     /// [`MeshError::NoPositions`], and [`MeshError::NoFaces`] where no face has area.
     pub(super) fn new(mesh: &Mesh, faces: &[u32], weight: impl Fn(usize) -> f64) -> Result<Self> {
         let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
-        let corners = memory::gathered(faces.iter().map(|&f| mesh.connectivity().faces()[f as usize]))?;
-        let welded = Connectivity::new(welded(&corners, positions)?, positions.len())?;
-        let raw = memory::gathered(corners.iter().map(|face| face.map(|v| positions[v as usize])))?;
+        let corners = faces.iter().map(|&f| mesh.connectivity().faces()[f as usize]);
+        let raw = memory::gathered(corners.map(|face| face.map(|v| positions[v as usize])))?;
+        let welded = joined(mesh, faces, positions)?;
         let total: f64 = raw.iter().map(|&t| norm(area_vector(t))).sum();
         if !(total > 0.0 && total.is_finite()) {
             return Err(MeshError::NoFaces.into());
@@ -51,7 +50,7 @@ impl Surface {
         let unit = 1.0 / total.sqrt();
         let triangles = memory::gathered(raw.iter().map(|t: &[Point; 3]| t.map(|p| scale(p, unit))))?;
         let centers = memory::gathered(triangles.iter().map(|&t| centroid(t)))?;
-        let (mut joints, mut opposite, mut open) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut joints, mut open) = (Vec::new(), Vec::new());
         let table = EdgeTable::new(&welded)?;
         for halfedges in table.edges() {
             let halfedges: Vec<usize> = halfedges.collect();
@@ -74,11 +73,10 @@ impl Surface {
                     weight: 0.5 * (given[0] + given[1]),
                 };
                 memory::push(&mut joints, joint)?;
-                memory::push(&mut opposite, welded.tail(pair[0]) == welded.tail(pair[1]))?;
             }
         }
         let mut normals = memory::gathered(triangles.iter().map(|&t| area_vector(t)))?;
-        orient(&mut normals, &centers, &joints, &opposite, open.is_empty())?;
+        orient(&mut normals, &centers, &welded)?;
         let areas = memory::gathered(normals.iter().map(|&n| norm(n).max(LEAST_AREA)))?;
         Ok(Self { triangles, areas, centers, normals, joints, open })
     }
@@ -88,52 +86,39 @@ impl Surface {
     }
 }
 
-/// The faces with each vertex named after the first one at its place.
-fn welded(faces: &[[u32; 3]], positions: &[Point]) -> Result<Vec<[u32; 3]>> {
+/// The faces with the sides of seams joined ([`Weld::of_seams`]), as every tool has them, and with each
+/// vertex named after the first one at its very place: sheets on each other are one here.
+fn joined(mesh: &Mesh, faces: &[u32], positions: &[Point]) -> Result<Connectivity> {
+    let weld = Weld::of_seams(mesh.connectivity(), positions, None)?;
     let mut first: BTreeMap<[u64; 3], u32> = BTreeMap::new();
-    // Adding zero makes one of both zeros.
-    let mut name = |v: u32| *first.entry(positions[v as usize].map(|x| (x + 0.0).to_bits())).or_insert(v);
-    Ok(memory::gathered(faces.iter().map(|face| face.map(&mut name)))?)
+    let mut name = |v: u32| {
+        let v = weld.as_ref().map_or(v, |weld| weld.first[weld.vertex[v as usize] as usize]);
+        *first.entry(place(positions[v as usize])).or_insert(v)
+    };
+    let corners = faces.iter().map(|&f| mesh.connectivity().faces()[f as usize].map(&mut name));
+    Connectivity::new(memory::gathered(corners)?, positions.len())
 }
 
-/// Turns the normals of faces whose neighbors run the other way; every piece then points as most of its
-/// area did, or, where the surface is closed, outwards.
-fn orient(
-    normals: &mut [Point],
-    centers: &[Point],
-    joints: &[Joint],
-    opposite: &[bool],
-    closed: bool,
-) -> Result<()> {
-    let around = Buckets::new(normals.len(), |visit| {
-        for (joint, &turned) in joints.iter().zip(opposite) {
-            let [f, g] = joint.faces;
-            visit(f as usize, (g, turned));
-            visit(g as usize, (f, turned));
-        }
-    })?;
-    let mut sign = memory::repeated(0.0, normals.len())?;
-    for start in 0..normals.len() {
-        if sign[start] != 0.0 {
-            continue;
-        }
-        sign[start] = 1.0;
-        let mut piece = vec![start];
-        let mut at = 0;
-        while let Some(&f) = piece.get(at) {
-            at += 1;
-            for &(g, turned) in around.of(f) {
-                if sign[g as usize] == 0.0 {
-                    sign[g as usize] = if turned { -sign[f] } else { sign[f] };
-                    memory::push(&mut piece, g as usize)?;
-                }
-            }
-        }
-        let measure = |f: usize| if closed { dot(centers[f], normals[f]) } else { norm(normals[f]) };
-        if piece.iter().map(|&f| sign[f] * measure(f)).sum::<f64>() < 0.0 {
-            piece.iter().for_each(|&f| sign[f] = -sign[f]);
+/// Turns the normals of faces whose neighbors run the other way ([`flipped_faces`]); every piece then points
+/// as most of its area did, or, where it is closed, outwards.
+fn orient(normals: &mut [Point], centers: &[Point], connectivity: &Connectivity) -> Result<()> {
+    let turn = |normal: &mut Point| *normal = scale(*normal, -1.0);
+    let flipped = flipped_faces(connectivity)?;
+    normals.iter_mut().zip(&flipped).filter(|(_, &flip)| flip).for_each(|(normal, _)| turn(normal));
+    let mut pieces = Partition::new(normals.len())?;
+    for h in 0..3 * normals.len() {
+        if let Some(mate) = connectivity.mate(h) {
+            pieces.unite((h / 3) as u32, (mate / 3) as u32);
         }
     }
-    normals.iter_mut().zip(&sign).for_each(|(normal, sign)| *normal = add([0.0; 3], scale(*normal, *sign)));
+    let piece = memory::gathered((0..normals.len() as u32).map(|f| pieces.root(f) as usize))?;
+    let mut closed = memory::repeated(true, normals.len())?;
+    (0..3 * normals.len()).for_each(|h| closed[piece[h / 3]] &= connectivity.mate(h).is_some());
+    let mut outward = memory::repeated(0.0, normals.len())?;
+    for (f, normal) in normals.iter().enumerate() {
+        let as_given = if flipped[f] { -norm(*normal) } else { norm(*normal) };
+        outward[piece[f]] += if closed[piece[f]] { dot(centers[f], *normal) } else { as_given };
+    }
+    normals.iter_mut().zip(&piece).filter(|(_, &p)| outward[p] < 0.0).for_each(|(normal, _)| turn(normal));
     Ok(())
 }
