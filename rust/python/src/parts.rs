@@ -49,8 +49,8 @@ nested_divisions! { Parts, n_parts, "parts";
 /// become one that lose least: the logarithm of how cheap their cut is, times the product of their areas. The
 /// count found is the one with the fewest pairs of points that people are expected to see otherwise. Any mesh
 /// will do: seams are joined, vertices at the very same place count as one, faces are turned to agree, pieces
-/// that nothing joins are parts or belong to what lies nearest. For the faces of what is plane or evenly curved
-/// use `segment`.
+/// that nothing joins are parts or belong to what lies nearest. For the faces of what is plane or evenly
+/// curved use `segment`.
 ///
 /// Parameters
 /// ----------
