@@ -17,6 +17,11 @@ def by_error(settings: object) -> bool:
     return settings.mode == "ERROR"
 
 
+def keeps_faces(settings: object) -> bool:
+    """Whether the mesh keeps its own."""
+    return settings.topology == "KEPT"
+
+
 MODES = items(
     AUTO="As many as the shape gives evidence for",
     COUNT="As many as you choose",
@@ -25,6 +30,8 @@ MODES = items(
 TOPOLOGIES = items(
     POLYGONS="One flat n-gon for each facet; several where it has a hole",
     TRIANGLES="Triangles in the plane of each facet",
+    QUADS="A quad for each facet with four corners, triangles for the others",
+    KEPT="The vertices and faces that the mesh has, each on its facet: only where they are changes",
 )
 
 
@@ -53,7 +60,19 @@ class FacetSettings(Settings):
         metavar="PERCENT",
         implies={"mode": "ERROR"},
     )
-    topology: choice("Topology", "What facets are made of", TOPOLOGIES, default="POLYGONS", expand=True)
+    topology: choice("Topology", "What facets are made of", TOPOLOGIES, default="POLYGONS")
+    shape_key: boolean(
+        "Shape Key",
+        "Store the result as a new shape key, without flipped edges and marks. A mesh with shape keys always "
+        "gets one",
+        shown=keeps_faces,
+        flag="--shape-key",
+    )
+    keep_volume: boolean(
+        "Keep Volume",
+        "Move the facets so that they enclose the same volume as the mesh, which must be closed",
+        flag="--keep-volume",
+    )
     marks: shared.MARKS.but(
         default={"SHARP"},
         description="Mark the edges between facets; with Sharp, facets are shaded flat. Existing marks stay",

@@ -16,7 +16,17 @@ from ..framework.faceting import Facetable, FacetMesh
 from ..framework.job import Task
 from ..framework.run import Part, Run, counted, meshes_phrase, most, panel_lines, percent, total
 from ..framework.surface import group_weights, painted_edges, surface_of
-from .settings import FacetSettings, by_count, by_error
+from ..framework.volume import is_closed, volume_and_centroid
+from .settings import FacetSettings, by_count, by_error, keeps_faces
+
+KEY_NAME = "Facets"
+
+SAME_VOLUME = 1e-4
+"""A volume that changes by a smaller part is kept: nobody could tell."""
+
+DIAGONAL = 1e6
+"""How much dearer than along an edge a border is through a face of more than three corners, which it would
+bend: so much that faces are whole before anything else merges."""
 
 
 @dataclass
@@ -25,6 +35,8 @@ class Made:
 
     found: ridgeform.Faceted
     mesh: FacetMesh
+    notes: list[str]
+    """What a modeler should know of what was to be kept."""
 
 
 @dataclass(kw_only=True)
@@ -34,6 +46,10 @@ class FacetPart(Part):
     source: Facetable
     size: float
     """The diagonal of the bounding box."""
+    coordinates: np.ndarray
+    """Where its vertices (n, 3) are, in the active shape key if it has any."""
+    as_key: bool = False
+    """Whether the result is a shape key."""
 
 
 class Faceting(Run):
@@ -47,18 +63,26 @@ class Faceting(Run):
     def prepare(self, obj: bpy.types.Object) -> FacetPart:
         """Read shape, layers, selection, mask and ridge paint of one mesh."""
         mesh = obj.data
-        if mesh.shape_keys is not None:
+        if mesh.shape_keys is not None and not keeps_faces(self.settings):
             raise RefusedError(
-                f'"{obj.name}" has shape keys, which no other faces can have: apply or remove them first'
+                f'"{obj.name}" has shape keys, which no other faces can have: choose the topology Kept, or '
+                "apply or remove them first"
             )
-        coordinates = mesh_io.positions(mesh)
+        coordinates = mesh_io.open_coordinates(obj).original
         surface = surface_of(obj)
         taking = _taking(obj, self.settings, self._in_edit_mode)
         source = faceting.read(obj, surface.weld, taking)
         weights = painted_edges(obj, self.settings, mesh_io.triangles(mesh), surface.weld)
         size = float(np.linalg.norm(np.ptp(surface.mesh.vertices, axis=0)))
+        if self.settings.keep_volume and not is_closed(surface.weld.triangles, len(surface.weld.first)):
+            raise RefusedError(
+                f'"{obj.name}" encloses no volume to keep: it is open, or its faces disagree on the outside'
+            )
         task = Task(obj.name, lambda _: None, counted="iteration")
-        part = FacetPart(obj, task, len(mesh.vertices), source=source, size=size)
+        part = FacetPart(obj, task, len(mesh.vertices), source=source, size=size, coordinates=coordinates)
+        part.as_key = keeps_faces(self.settings) and (self.settings.shape_key or mesh.shape_keys is not None)
+        if keeps_faces(self.settings):
+            weights = _along_faces(source, weights)
         task.call = partial(_made, part, surface.mesh, weights, self.settings)
         part.warnings += surface.weld.notes
         part.warnings += modifiers.mirror_notes(obj, coordinates)
@@ -66,8 +90,8 @@ class Faceting(Run):
         return part
 
     def replaces_faces(self, part: FacetPart) -> bool:
-        """Facets are other faces."""
-        return part.task.result is not None
+        """Facets are other faces, but for a shape key."""
+        return part.task.result is not None and not part.as_key
 
     def check(self, part: FacetPart) -> None:
         """What lies on a mesh must be what was carried over."""
@@ -83,6 +107,9 @@ class Faceting(Run):
 
     def _write_one(self, part: FacetPart) -> None:
         obj, made = part.object, part.task.result.mesh
+        if part.as_key:
+            mesh_io.add_shape_key(obj, made.rebuilt.points, KEY_NAME)
+            return
         rows = rebuilding.write(obj, made.rebuilt)
         ridges = made.ridges()[rows]
         mesh_io.mark_edges(obj.data, ridges, self.settings.marks)
@@ -102,7 +129,7 @@ class Faceting(Run):
             "crossings": int(found.n_crossings),
             "status": str(found.status),
             "faces": len(part.object.data.polygons),
-            "warnings": part.warnings + faceting.notes(found, made.mesh.rebuilt, wanted),
+            "warnings": part.warnings + faceting.notes(found, made.mesh.rebuilt, wanted) + made.notes,
         }
 
     @classmethod
@@ -133,6 +160,21 @@ def _taking(obj: bpy.types.Object, settings: object, edited: bool) -> np.ndarray
     return taking
 
 
+def _along_faces(source: Facetable, weights: np.ndarray | None) -> np.ndarray | None:
+    """Edge weights (l, 3), or `None`, with which facets do not run through faces that stay whole."""
+    old, weld = source.before.old, source.weld
+    corners = old.corners[weld.rows]
+    polygons = source.before.polygons
+    starts, sizes = polygons.starts[old.faces[weld.rows]], polygons.sizes[old.faces[weld.rows]]
+    # Column i is the edge opposite corner i.
+    one, other = (corners[:, [1, 2, 0]] - starts[:, None], corners[:, [2, 0, 1]] - starts[:, None])
+    apart = (one - other) % sizes[:, None]
+    is_diagonal = (apart != 1) & (apart != sizes[:, None] - 1)
+    if not is_diagonal.any():
+        return weights
+    return np.where(is_diagonal, DIAGONAL, 1.0) * (1.0 if weights is None else weights)
+
+
 def _made(
     part: FacetPart,
     mesh: ridgeform.Mesh,
@@ -146,16 +188,27 @@ def _made(
         given["facets"] = settings.facets
     elif by_error(settings):
         given["error"] = 0.01 * settings.error * part.size
-    return Made(
-        *faceting.facets_of(
-            part.source,
-            mesh,
-            part.source.before.old.coordinates,
-            edge_weights=weights,
-            triangles=settings.topology == "TRIANGLES",
-            flat="SHARP" in settings.marks,
-            progress=progress,
-            check=part.task.check,
-            **given,
-        )
+    found, facet_mesh = faceting.facets_of(
+        part.source,
+        mesh,
+        part.coordinates,
+        edge_weights=weights,
+        topology=settings.topology,
+        flips=not part.as_key,
+        keep_volume=settings.keep_volume,
+        flat="SHARP" in settings.marks,
+        progress=progress,
+        check=part.task.check,
+        **given,
     )
+    return Made(found, facet_mesh, _volume_notes(found, mesh) if settings.keep_volume else [])
+
+
+def _volume_notes(found: ridgeform.Faceted, mesh: ridgeform.Mesh) -> list[str]:
+    """What is to be said of a volume that was to be kept."""
+    wanted, _ = volume_and_centroid(mesh.vertices, mesh.faces)
+    reached, _ = volume_and_centroid(found.vertices, found.faces)
+    off = reached / wanted - 1.0
+    if abs(off) <= SAME_VOLUME:
+        return []
+    return [f"the volume changed by {percent(off)}: what is held leaves no room for more"]

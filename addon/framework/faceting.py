@@ -16,7 +16,7 @@ from ..blender.polygons import Polygons
 from ..blender.rebuilding import Before, Rebuilt
 from ..blender.surface_map import SurfaceMap
 from ..blender.welding import Weld, connected_parts, mirrored
-from . import facet_places
+from . import facet_places, keeping
 from .results import Results
 
 FLAT = "sharp_face"
@@ -86,7 +86,9 @@ def facets_of(
     facets: int | None = None,
     error: float | None = None,
     edge_weights: np.ndarray | None = None,
-    triangles: bool = False,
+    topology: str = "POLYGONS",
+    flips: bool = True,
+    keep_volume: bool = False,
     flat: bool = True,
     progress: ridgeform.Progress | None = None,
     check: Callable[[], None] = lambda: None,
@@ -98,17 +100,34 @@ def facets_of(
     options = source.options()
     if edge_weights is not None:
         options["edge_weights"] = edge_weights
+    # Only what was asked for is a part of what a result is found by.
+    if topology == "KEPT":
+        options["keep_triangles"] = True
+    if keep_volume:
+        options["keep_volume"] = True
     wanted = {"facets": facets, "error": error, "progress": progress}
     found, is_known = _known.of(mesh, options, lambda: ridgeform.facet(mesh, **options, **wanted))
     if is_known:
         found = found.at(**wanted)
     check()
-    return found, faceted(source, found, coordinates, triangles=triangles, flat=flat, check=check)
+    if topology == "KEPT":
+        made, labels, stays = keeping.kept(
+            source.before,
+            source.weld,
+            found,
+            coordinates,
+            planes=source.planes,
+            flags=source.flags,
+            flips=flips,
+        )
+        _set_flags(made.layers, stays, made.faces, labels >= 0 if flat else None)
+        return found, FacetMesh(made, labels)
+    return found, faceted(source, found, coordinates, topology=topology, flat=flat, check=check)
 
 
 def notes(found: ridgeform.Faceted, made: Rebuilt, wanted: int | None) -> list[str]:
     """What a modeler should know of facets, of which `wanted` were asked for."""
-    said = [note for note in (kept_normals.note(made.normals),) if note is not None]
+    said = [note for note in (kept_normals.note(made.normals), made.note) if note]
     if wanted is not None and found.n_facets != wanted:
         why = ": with fewer, thin parts, handles, or holes would pass through each other"
         nearest = f"{found.n_facets} are what comes nearest{why if found.n_facets > wanted else ''}"
@@ -130,16 +149,16 @@ def faceted(
     found: ridgeform.Faceted,
     coordinates: np.ndarray,
     *,
-    triangles: bool = False,
+    topology: str = "POLYGONS",
     flat: bool = True,
     check: Callable[[], None] = lambda: None,
 ) -> FacetMesh:
     """What the mesh becomes with the facets that were found when it was at coordinates (n, 3).
 
-    `triangles`: facets in triangles, not in n-gons. `flat`: facets are shaded flat. No Blender data is
-    touched; `check` is called now and then, and may raise to stop.
+    `topology`: what facets are made of, an item of the setting. `flat`: facets are shaded flat. No Blender
+    data is touched; `check` is called now and then, and may raise to stop.
     """
-    faces, facets = _faces_of(found, triangles)
+    faces, facets = _faces_of(found, topology)
     old = replace(source.before.old, coordinates=coordinates.astype(np.float64))
     places = source.weld.places(coordinates)
     stay = _Staying(source, old, found, faces, places)
@@ -162,10 +181,10 @@ def faceted(
     return FacetMesh(Rebuilt(points, rebuilt, layers, normals=normals), facets)
 
 
-def _faces_of(found: ridgeform.Faceted, triangles: bool) -> tuple[Polygons, np.ndarray]:
+def _faces_of(found: ridgeform.Faceted, topology: str) -> tuple[Polygons, np.ndarray]:
     """The faces of a result and the facet (q,) of each: polygons, but for those that touch themselves."""
     as_triangles = Polygons.of_triangles(np.asarray(found.faces))
-    if triangles:
+    if topology == "TRIANGLES":
         return as_triangles, np.asarray(found.face_facets)
     polygons = Polygons(np.asarray(found.polygon_vertices), np.asarray(found.polygon_starts)[:-1])
     facets = np.asarray(found.polygon_facets)
@@ -174,10 +193,12 @@ def _faces_of(found: ridgeform.Faceted, triangles: bool) -> tuple[Polygons, np.n
     once = np.zeros(len(polygons.corners), bool)
     once[first] = True
     # Blender has no face that names a vertex twice.
-    twice = np.unique(facets[polygons.faces[~once]])
-    if len(twice) == 0:
+    divided = np.isin(facets, facets[polygons.faces[~once]])
+    if topology == "QUADS":
+        divided |= (polygons.sizes != 4) | (np.bincount(facets)[facets] > 1)
+    if not divided.any():
         return polygons, facets
-    whole, part = ~np.isin(facets, twice), np.isin(found.face_facets, twice)
+    whole, part = ~divided, np.isin(found.face_facets, facets[divided])
     corners = np.concatenate([polygons.corners[whole[polygons.faces]], found.faces[part].ravel()])
     sizes = np.concatenate([polygons.sizes[whole], np.full(int(part.sum()), 3)])
     made = Polygons(corners, np.cumsum(sizes) - sizes)

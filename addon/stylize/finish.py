@@ -18,9 +18,9 @@ from ..framework import faceting
 from ..framework.faceting import Facetable
 from ..framework.ridges import Edges
 from ..framework.settings import chosen
+from ..framework.volume import keep_volume
 from . import reduction
 from .settings import movement_of
-from .volume import keep_volume
 
 KEY_NAME = "Stylized"
 

@@ -7,7 +7,7 @@ import pytest
 from bl_ext.user_default.ridgeform.blender import mesh_io
 from bl_ext.user_default.ridgeform.framework import job
 from bl_ext.user_default.ridgeform.framework.ridges import dividing_angle, edge_angles
-from bl_ext.user_default.ridgeform.stylize.volume import is_closed, keep_volume, volume_and_centroid
+from bl_ext.user_default.ridgeform.framework.volume import is_closed, keep_volume, volume_and_centroid
 
 CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
 CUBE_FACES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]

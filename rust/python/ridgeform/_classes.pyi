@@ -138,6 +138,10 @@ class Faceted:
     rms: Final[float]
     largest: Final[float]
     n_crossings: Final[int]
+    kept_vertices: Final[Floats | None]
+    kept_corners: Final[Indices | None]
+    n_flipped: Final[int]
+    n_folded: Final[int]
     status: Final[Literal["solved", "stopped"]]
     def at(
         self, *, facets: int | None = None, error: float | None = None, progress: Progress | None = None

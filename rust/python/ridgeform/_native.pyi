@@ -181,6 +181,8 @@ def facet(
     error: float | None = None,
     edge_weights: ArrayLike | None = None,
     faces: ArrayLike | None = None,
+    keep_triangles: bool = False,
+    keep_volume: bool = False,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Faceted: ...

@@ -52,6 +52,19 @@ pub struct Faceted {
     /// Pairs of facets that pass through each other and do not on the mesh.
     #[pyo3(get)]
     n_crossings: usize,
+    /// With `keep_triangles` the mesh's vertices on the facets, (n,3) float64; else None.
+    #[pyo3(get)]
+    kept_vertices: Option<Py<PyArray2<f64>>>,
+    /// With `keep_triangles` the mesh's faces, (m,3) int32, by the corner of the mesh, `3 f + i`, that each
+    /// of their corners was: `mesh.faces.ravel()[kept_corners]` names the vertices; else None.
+    #[pyo3(get)]
+    kept_corners: Option<Py<PyArray2<i32>>>,
+    /// Edges of these faces that were flipped, since they would have folded.
+    #[pyo3(get)]
+    n_flipped: usize,
+    /// Faces that are folded, or no more than a line, all the same.
+    #[pyo3(get)]
+    n_folded: usize,
     /// "solved", or "stopped" (`Progress.finish` was called).
     #[pyo3(get)]
     status: &'static str,
@@ -108,6 +121,7 @@ fn run(
     let progress = handle(progress);
     let inner = mesh.get().inner();
     let found = doorway::call(py, &progress, || tools::facet(inner, merges, &options, &progress))?;
+    let kept = found.kept.as_ref();
     let mut starts = vec![0];
     found.polygons.iter().for_each(|polygon| starts.push(starts[starts.len() - 1] + polygon.len() as u32));
     Ok(Faceted {
@@ -124,6 +138,13 @@ fn run(
         rms: found.rms,
         largest: found.largest,
         n_crossings: found.n_crossings,
+        kept_vertices: kept
+            .map(|kept| arrays::float_rows(py, &kept.vertices))
+            .transpose()?
+            .map(Bound::unbind),
+        kept_corners: kept.map(|kept| arrays::index_rows(py, &kept.corners)).transpose()?.map(Bound::unbind),
+        n_flipped: kept.map_or(0, |kept| kept.n_flipped),
+        n_folded: kept.map_or(0, |kept| kept.n_folded),
         status: found.status.name(),
         mesh,
         options,
@@ -151,6 +172,11 @@ fn run(
 ///     neutral, smaller attracts them; the smaller entry of both faces counts
 /// faces : faces to make facets of, (m,) booleans or (j,) indices; None for all. The others,
 ///     and all vertices of theirs, stay
+/// keep_triangles : whether the mesh's own vertices and faces are wanted on the facets as well, every vertex
+///     on its facet's plane, its ridge or its corner (`kept_vertices`, `kept_corners`). Facets are regions of
+///     the mesh then, and `labels` says which face is in which
+/// keep_volume : whether the facets are to enclose the volume that the mesh does, which must be closed:
+///     planes move outward by the same distance
 /// threads : int or None
 /// progress : Progress or None
 ///
@@ -160,15 +186,16 @@ fn run(
 ///
 /// Raises
 /// ------
-/// ArgumentError, MeshError (no positions, no face with area), MemoryLimitError, Cancelled
+/// ArgumentError (`keep_volume` of a mesh that is open, too), MeshError (no positions, no face with area),
+/// MemoryLimitError, Cancelled
 ///
 /// References
 /// ----------
 /// Merging: Garland, Willmott and Heckbert, Hierarchical face clustering on polygonal surfaces, 2001. Faces
 /// and planes in turns: Cohen-Steiner, Alliez and Desbrun, Variational shape approximation, 2004.
 #[pyfunction]
-#[pyo3(signature = (mesh, *, facets=None, error=None, edge_weights=None, faces=None, threads=None,
-    progress=None))]
+#[pyo3(signature = (mesh, *, facets=None, error=None, edge_weights=None, faces=None,
+    keep_triangles=false, keep_volume=false, threads=None, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn facet(
     py: Python<'_>,
@@ -177,6 +204,8 @@ pub(crate) fn facet(
     error: Option<f64>,
     edge_weights: Option<&Bound<'_, PyAny>>,
     faces: Option<&Bound<'_, PyAny>>,
+    keep_triangles: bool,
+    keep_volume: bool,
     threads: Option<i64>,
     progress: Option<&Bound<'_, Progress>>,
 ) -> PyResult<Faceted> {
@@ -186,6 +215,8 @@ pub(crate) fn facet(
         error,
         edge_weights: options::edge_weights(py, edge_weights)?,
         faces: arrays::mask("faces", faces, m, "face")?,
+        keep_triangles,
+        keep_volume,
         threads: at_least_if(py, "threads", threads, 1)?,
     };
     run(py, mesh.clone().unbind(), None, options, progress)

@@ -91,6 +91,12 @@ impl<'a> Working<'a> {
         matches!(self.mesh, Cow::Borrowed(_))
     }
 
+    /// The faces of the mesh itself.
+    #[must_use]
+    pub fn own_faces(&self) -> &[[u32; 3]] {
+        self.original.connectivity().faces()
+    }
+
     /// Number of vertices of the mesh itself.
     #[must_use]
     pub fn n_original(&self) -> usize {

@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use super::borders::Borders;
 use super::constants::LITTLE;
 use super::crossings::Standing;
 use super::moments::Moments;
@@ -22,11 +23,13 @@ pub(super) struct Scan {
     /// Sides that more than one face has, from vertex to vertex, sorted.
     doubled: Vec<[u32; 2]>,
     tree: ClosestPoint,
+    /// What faces change sides by, where facets are to be regions of the mesh to the end.
+    pub borders: Option<Borders>,
 }
 
 impl Scan {
     /// Faces by their vertices and places.
-    pub(super) fn new(faces: &[[u32; 3]], places: Vec<[Point; 3]>) -> Result<Self> {
+    pub(super) fn new(faces: &[[u32; 3]], places: Vec<[Point; 3]>, borders: Option<Borders>) -> Result<Self> {
         let moments = memory::gathered(places.iter().map(|&corners| Moments::of(corners)))?;
         Ok(Self {
             centers: memory::gathered(places.iter().map(|&corners| centroid(corners)))?,
@@ -36,6 +39,7 @@ impl Scan {
             tree: ClosestPoint::new(memory::twin(&places)?)?,
             moments,
             places,
+            borders,
         })
     }
 

@@ -22,7 +22,15 @@ pub(super) fn settle(shape: &mut Shape, faces: &mut Faces<'_>, stage: &Stage<'_>
         flatten(shape, STAY, &homes, stage)?;
         let faulty = Inspection::new(shape, faces, false)?.faults()?;
         let is_last = faulty.is_empty() || round == REPAIRS || stage.is_finishing();
-        if is_last || !repair(shape, faces, &faulty)? {
+        if is_last {
+            break;
+        }
+        if faces.scan.borders.is_some() {
+            if round == TRIES.count {
+                break;
+            }
+            faulty.iter().for_each(|&k| hold(shape, k));
+        } else if !repair(shape, faces, &faulty)? {
             break;
         }
     }
@@ -32,12 +40,18 @@ pub(super) fn settle(shape: &mut Shape, faces: &mut Faces<'_>, stage: &Stage<'_>
 /// Gives every face to the nearest facet and fits the planes anew, in turns,
 /// as long as facets stay sound and come nearer.
 pub(super) fn refine(shape: &mut Shape, faces: &mut Faces<'_>, stage: &Stage<'_>) -> Result<()> {
+    if let Some(borders) = &faces.scan.borders {
+        borders.share(shape, &mut faces.labels, None)?;
+    }
     let mut inspection = Inspection::new(shape, faces, true)?;
     let (mut labels, distance) = measured(shape, faces, &inspection)?;
-    let mut best = (distance, shape.twin()?);
+    let mut best = (distance, shape.twin()?, memory::twin(&faces.labels)?);
     let mut n_idle = 0;
     while n_idle < IDLE.count && !stage.is_finishing() {
-        faces.labels = labels;
+        match &faces.scan.borders {
+            Some(borders) => borders.share(shape, &mut faces.labels, Some(&labels))?,
+            None => faces.labels = labels,
+        }
         faces.fit(shape)?;
         let faults = inspection.faults()?;
         let Some(next) = fitted(shape, faces, &faults, NOISE * best.0, stage)? else { break };
@@ -47,10 +61,13 @@ pub(super) fn refine(shape: &mut Shape, faces: &mut Faces<'_>, stage: &Stage<'_>
         (labels, distance) = measured(shape, faces, &inspection)?;
         n_idle = if distance < IDLE.factor * best.0 { 0 } else { n_idle + 1 };
         if distance < best.0 {
-            best = (distance, shape.twin()?);
+            best = (distance, shape.twin()?, memory::twin(&faces.labels)?);
         }
     }
     *shape = best.1;
+    if faces.scan.borders.is_some() {
+        faces.labels = best.2;
+    }
     Ok(())
 }
 
@@ -94,17 +111,29 @@ fn fitted(
     Ok(None)
 }
 
-/// Leaves triangles of the facets that do not come out flat or simple.
+/// Flattens facets where they are until they are flat, if a few times do.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`], those of the linear solver.
-pub(super) fn fold(shape: &mut Shape, faces: &mut Faces<'_>, stage: &Stage<'_>) -> Result<()> {
+pub(super) fn settled(shape: &mut Shape, stage: &Stage<'_>) -> Result<()> {
     for _ in 0..TRIES.count {
         if shape.off_planes() <= FLAT {
             break;
         }
         let here = memory::gathered(shape.corners.iter().map(|corner| corner.point))?;
         flatten(shape, STAY, &here, stage)?;
+    }
+    Ok(())
+}
+
+/// Leaves triangles of the facets that do not come out flat or simple.
+///
+/// # Errors
+/// [`crate::Error::Cancelled`], those of the linear solver.
+pub(super) fn fold(shape: &mut Shape, faces: &mut Faces<'_>, stage: &Stage<'_>) -> Result<()> {
+    settled(shape, stage)?;
+    if faces.scan.borders.is_some() {
+        return Ok(());
     }
     let home = shape.at_home()?;
     let mut facets = Vec::new();

@@ -20,6 +20,8 @@ pub(super) struct Job<'a> {
     pub(super) parts: Vec<u32>,
     /// Of those: whether they are not to be merged.
     pub(super) is_held: Vec<bool>,
+    /// Whether facets are to be regions of the mesh to the end, on which its triangles can be put.
+    pub(super) keeps: bool,
 }
 
 impl<'a> Job<'a> {
@@ -54,6 +56,7 @@ impl<'a> Job<'a> {
             is_held: memory::gathered(parts.iter().map(is_held))?,
             is_fixed,
             parts,
+            keeps: options.keep_triangles,
         })
     }
 

@@ -9,6 +9,7 @@
 //! given to the nearest facet, and the planes fitted anew, in turns ([`fitting`]), as in variational shape
 //! approximation [Cohen-Steiner, Alliez and Desbrun 2004].
 
+mod borders;
 mod constants;
 mod count;
 mod crossings;
@@ -18,6 +19,7 @@ mod fitting;
 mod hierarchy;
 mod job;
 mod joining;
+mod keeping;
 mod merging;
 mod moments;
 mod nearest;
@@ -33,8 +35,11 @@ mod solve;
 mod stage;
 mod straight;
 mod triangulation;
+mod unfolding;
 mod verdict;
+mod volume;
 
+pub use keeping::KeptTriangles;
 pub use options::FacetOptions;
 
 use crate::error::MeshError;
@@ -76,6 +81,8 @@ pub struct Faceted {
     pub largest: f64,
     /// Pairs of facets that pass through each other, and do not on the mesh.
     pub n_crossings: usize,
+    /// The mesh's own triangles on the facets, where they were asked for.
+    pub kept: Option<KeptTriangles>,
     /// `Solved`, or `Stopped` if the caller asked to finish early.
     pub status: Status,
     /// What other numbers of facets start from.
@@ -104,9 +111,13 @@ pub fn facet(
         mesh.demand(Tool::Facet).admit(None)?;
         let working = Working::new(mesh)?;
         let job = Job::new(&working, options)?;
-        let scan = job.scan()?;
+        let scan = job.scan(options)?;
         if scan.area.is_nan() || scan.area <= 0.0 {
             return Err(MeshError::NoFaces.into());
+        }
+        if options.keep_volume {
+            // Before the work, so that a mesh that is open costs nothing.
+            job.volume(&scan.places)?;
         }
         let merges = match merges {
             Some(merges) => merges.0.twin()?,
@@ -120,6 +131,7 @@ pub fn facet(
 impl Job<'_> {
     /// The result in the mesh's own coordinates.
     fn given(&self, mesh: &Mesh, found: Found, merges: Merges, progress: &Progress) -> Result<Faceted> {
+        let kept = self.keeps.then(|| self.kept(&found)).transpose()?;
         let Found { shape, inspection, labels, distances, n_facets, n_crossings } = found;
         let original = mesh.positions().unwrap_or_default();
         let n_corners = shape.corners.len();
@@ -169,6 +181,7 @@ impl Job<'_> {
             rms: distances.rms * self.diagonal,
             largest: distances.largest * self.diagonal,
             n_crossings,
+            kept,
             status: if progress.is_finishing() { Status::Stopped } else { Status::Solved },
             merges: FacetMerges(merges),
         })

@@ -62,6 +62,17 @@ impl Moments {
         }
     }
 
+    /// Those of the same faces, moved.
+    pub(super) fn moved(&self, by: Point) -> Self {
+        let outer =
+            |i: usize, j: usize| self.first[i] * by[j] + by[i] * self.first[j] + self.area * by[i] * by[j];
+        Self {
+            first: add(self.first, scale(by, self.area)),
+            second: [0, 1, 2].map(|i| add(self.second[i], [0, 1, 2].map(|j| outer(i, j)))),
+            ..*self
+        }
+    }
+
     /// Whether the faces look to the side of `normal`, in the mean.
     pub(super) fn faces(&self, normal: Point) -> bool {
         dot(self.vector, normal) >= 0.0

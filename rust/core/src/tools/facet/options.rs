@@ -18,6 +18,11 @@ pub struct FacetOptions {
     pub edge_weights: Option<Vec<[f64; 3]>>,
     /// The faces to make facets of, all where `None`; the others, and all vertices of theirs, stay.
     pub faces: Option<Vec<bool>>,
+    /// Whether the mesh's own triangles are to be kept on the facets, each of which is then a region of the
+    /// mesh.
+    pub keep_triangles: bool,
+    /// Whether the facets are to enclose the volume that the mesh does, which must be closed.
+    pub keep_volume: bool,
     /// Threads to use; all where `None`. The result does not depend on it.
     pub threads: Option<usize>,
 }

@@ -17,6 +17,7 @@ use super::refusals::Refusals;
 use super::regions::{Regions, OUTSIDE};
 use super::shape::Shape;
 use super::stage::{shares, Stage, USUAL};
+use super::volume;
 use crate::error::MeshError;
 use crate::memory;
 use crate::progress::Progress;
@@ -73,21 +74,30 @@ impl Divided<'_> {
 }
 
 impl Job<'_> {
-    pub(super) fn scan(&self) -> Result<Scan> {
+    pub(super) fn scan(&self, options: &FacetOptions) -> Result<Scan> {
         let faces = self.working.mesh().connectivity().faces();
-        Scan::new(&memory::gathered(self.parts.iter().map(|&f| faces[f as usize]))?, self.places()?)
+        Scan::new(
+            &memory::gathered(self.parts.iter().map(|&f| faces[f as usize]))?,
+            self.places()?,
+            self.borders(options)?,
+        )
+    }
+
+    /// What borders cost along each halfedge.
+    pub(super) fn weight<'o>(&'o self, options: &FacetOptions) -> Result<impl Fn(u32) -> f64 + 'o> {
+        let rows = options.edge_weights.as_ref().map(|rows| self.working.corner_rows(rows)).transpose()?;
+        let connectivity = self.working.mesh().connectivity();
+        Ok(move |h: u32| {
+            let of = |h: usize| rows.as_ref().map_or(1.0, |rows| rows[h / 3][h % 3]);
+            connectivity.mate(h as usize).map_or(of(h as usize), |mate| of(h as usize).min(of(mate)))
+        })
     }
 
     /// The merges of all parts but those that are held.
     pub(super) fn merges(&self, scan: &Scan, options: &FacetOptions, progress: &Progress) -> Result<Merges> {
-        let connectivity = self.working.mesh().connectivity();
         let n = self.parts.len();
         let mut regions = self.regions(&memory::numbers(n)?, n)?;
-        let rows = options.edge_weights.as_ref().map(|rows| self.working.corner_rows(rows)).transpose()?;
-        let weight = |h: u32| {
-            let of = |h: usize| rows.as_ref().map_or(1.0, |rows| rows[h / 3][h % 3]);
-            connectivity.mate(h as usize).map_or(of(h as usize), |mate| of(h as usize).min(of(mate)))
-        };
+        let weight = self.weight(options)?;
         let moments = memory::twin(&scan.moments)?;
         merges(&mut regions, moments, &self.is_held, weight, |p| scan.on_mesh(p), progress)
     }
@@ -168,10 +178,15 @@ impl Job<'_> {
             let stage = Stage::new(progress, "fitting planes", shares::FITTING, USUAL[2]);
             fitting::refine(&mut settled.shape, &mut settled.faces, &stage)?;
         }
+        if options.keep_volume {
+            let stage = Stage::new(progress, "keeping the volume", shares::VOLUME, USUAL[2]);
+            volume::keep(&mut settled.shape, &settled.faces, self.volume(&scan.places)?, &stage)?;
+        }
         let n_facets = fitting::order(&mut settled.shape, &mut settled.faces)?;
         let inspection = Inspection::new(&settled.shape, &settled.faces, true)?;
         let n_crossings = inspection.pairs.len();
-        let (labels, distances) = settled.faces.nearest(&settled.shape, &inspection)?;
+        let (nearest, distances) = settled.faces.nearest(&settled.shape, &inspection)?;
+        let labels = if self.keeps { settled.faces.labels } else { nearest };
         Ok(Found { shape: settled.shape, inspection, labels, distances, n_facets, n_crossings })
     }
 

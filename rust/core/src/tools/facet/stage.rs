@@ -11,7 +11,8 @@ pub(super) mod shares {
     /// The second of each is for where the first were not joined as far as was asked for.
     pub(in super::super) const FINDING: [[f64; 2]; 2] = [[0.5, 0.7], [0.8, 0.85]];
     pub(in super::super) const JOINING: [[f64; 2]; 2] = [[0.7, 0.8], [0.85, 0.9]];
-    pub(in super::super) const FITTING: [f64; 2] = [0.9, 1.0];
+    pub(in super::super) const FITTING: [f64; 2] = [0.9, 0.98];
+    pub(in super::super) const VOLUME: [f64; 2] = [0.98, 1.0];
 }
 
 /// Steps of Newton that finding facets takes on most meshes, each join with its trials, and fitting planes.
