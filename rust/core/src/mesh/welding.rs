@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::{distance, place, sub, Point};
-use crate::mesh::Connectivity;
+use crate::mesh::{Connectivity, EdgeKind};
 use crate::{memory, Result};
 
 /// The sides of a seam differ by the rounding of its coordinates:
@@ -69,8 +69,45 @@ impl Weld {
         if !unite_near(&border, positions, tolerance, &mut partition)? {
             return Ok(None);
         }
-        let mut weld = Self { vertex: memory::room(positions.len())?, first: Vec::new() };
-        for v in 0..positions.len() as u32 {
+        Ok(Some(Self::of(partition, positions.len())?))
+    }
+
+    /// This weld, or none, with the ends of sides of length 0 joined as well: clamped bevels and decimated
+    /// scans leave faces without area there. As before where an edge would have more than two faces then.
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`].
+    pub fn contracted(
+        before: Option<Self>,
+        connectivity: &Connectivity,
+        positions: &[Point],
+    ) -> Result<Option<Self>> {
+        let at = |v: u32| place(positions[v as usize]);
+        let is_side = |h: &usize| connectivity.tail(*h) != connectivity.head(*h);
+        let sides = 0..3 * connectivity.n_faces();
+        let named = sides.filter(is_side).map(|h| [connectivity.tail(h), connectivity.head(h)]);
+        let mut short = named.filter(|[a, b]| at(*a) == at(*b)).peekable();
+        if short.peek().is_none() {
+            return Ok(before);
+        }
+        let mut partition = Partition::new(positions.len())?;
+        if let Some(weld) = &before {
+            (0..).zip(&weld.vertex).for_each(|(v, &w)| partition.unite(v, weld.first[w as usize]));
+        }
+        short.for_each(|[a, b]| partition.unite(a, b));
+        let weld = Self::of(partition, positions.len())?;
+        let crowded = |weld: Option<&Self>| -> Result<bool> {
+            let Some(weld) = weld else { return Ok(connectivity.has_any(&[EdgeKind::NonManifold])) };
+            let joined = Connectivity::new(weld.faces(connectivity.faces())?, weld.first.len())?;
+            Ok(joined.has_any(&[EdgeKind::NonManifold]))
+        };
+        Ok(if crowded(Some(&weld))? && !crowded(before.as_ref())? { before } else { Some(weld) })
+    }
+
+    /// What is one in `partition`.
+    fn of(mut partition: Partition, n: usize) -> Result<Self> {
+        let mut weld = Self { vertex: memory::room(n)?, first: Vec::new() };
+        for v in 0..n as u32 {
             let root = partition.root(v);
             if root == v {
                 weld.vertex.push(weld.first.len() as u32);
@@ -80,7 +117,7 @@ impl Weld {
                 weld.vertex.push(weld.vertex[root as usize]);
             }
         }
-        Ok(Some(weld))
+        Ok(weld)
     }
 
     /// The faces in welded vertices. One whose corners became one names a vertex twice.
@@ -215,5 +252,37 @@ mod tests {
         let far = soup(&shape, 0.01).map(|p| p.map(|x| f64::from((x + 5e5) as f32)));
         let weld = welded(&far, None).unwrap();
         assert_eq!(weld.first.len(), shape.vertices.len());
+    }
+
+    /// The first side of `shape` that `is_such` holds for, of length 0.
+    fn pinched(mut shape: Shape, is_such: impl Fn(Point, Point) -> bool) -> Shape {
+        let sides = shape.faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let at = |v: u32| shape.vertices[v as usize];
+        let [a, b] = sides.into_iter().find(|&[a, b]| is_such(at(a), at(b))).unwrap();
+        shape.vertices[b as usize] = at(a);
+        shape
+    }
+
+    #[test]
+    fn sides_of_length_0_are_contracted_but_no_edge_gets_more_than_two_faces() {
+        let contracted = |shape: &Shape| {
+            let connectivity = Connectivity::new(shape.faces.clone(), shape.vertices.len()).unwrap();
+            Weld::contracted(None, &connectivity, &shape.vertices).unwrap()
+        };
+        let cube = shapes::cube(3);
+        assert_eq!(contracted(&cube), None);
+        let weld = contracted(&pinched(cube.clone(), |_, _| true)).unwrap();
+        assert_eq!(weld.first.len(), cube.vertices.len() - 1);
+        let faces = weld.faces(&cube.faces).unwrap();
+        assert_eq!(faces.iter().filter(|f| f[0] == f[1] || f[1] == f[2] || f[2] == f[0]).count(), 2);
+        assert_eq!(Connectivity::new(faces, weld.first.len()).unwrap().boundary().count(), 0);
+        // A tube of three sides: across a side around it, both its ends have the third as their neighbor.
+        let radius = |p: Point| p[0].hypot(p[1]);
+        let tube = shapes::torus(8, 3, 2.0, 0.5);
+        let around = |p: Point, q: Point| {
+            (p[0] * q[1] - p[1] * q[0]).abs() < 1e-9
+                && (radius(p) - radius(q)).abs() + (p[2] - q[2]).abs() > 0.1
+        };
+        assert_eq!(contracted(&pinched(tube, around)), None);
     }
 }

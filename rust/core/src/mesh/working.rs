@@ -40,6 +40,17 @@ impl<'a> Working<'a> {
         Self::of(mesh, weld)
     }
 
+    /// The same with sides of length 0 contracted ([`Weld::contracted`]), for what makes other faces.
+    ///
+    /// # Errors
+    /// [`crate::Error::Memory`] where a copy does not fit.
+    pub fn contracted(mesh: &'a Mesh) -> crate::Result<Self> {
+        mesh.demand(Tool::Mesh).admit(None)?;
+        let Some(positions) = mesh.positions() else { return Self::of(mesh, None) };
+        let seams = Weld::of_seams(mesh.connectivity(), positions, None)?;
+        Self::of(mesh, Weld::contracted(seams, mesh.connectivity(), positions)?)
+    }
+
     /// The same with the vertices as they are, for functions on them,
     /// which may differ between the sides of a seam.
     ///

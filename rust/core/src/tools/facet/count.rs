@@ -34,27 +34,41 @@ impl Merges {
         (squares / area).sqrt()
     }
 
-    /// How many of `n` regions to leave, on a mesh of so many vertices.
-    pub(super) fn count(&self, wanted: Wanted, n: usize, n_vertices: usize, area: f64) -> usize {
+    /// How many of `n` regions have no more than `error`.
+    fn within(&self, error: f64, n: usize, area: f64) -> usize {
         let [fewest, most] = self.range(n);
-        let within = |error: f64| {
-            (fewest..=most).find(|&count| self.distance(n, count, area) <= error).unwrap_or(most)
-        };
+        (fewest..=most).find(|&count| self.distance(n, count, area) <= error).unwrap_or(most)
+    }
+
+    /// How many planes `n` faces lie on.
+    pub(super) fn planes(&self, n: usize, area: f64) -> usize {
+        self.within(FLAT, n, area)
+    }
+
+    /// How many of `n` regions to leave, on a mesh of so many vertices, which consists of its planes or does
+    /// not.
+    pub(super) fn count(
+        &self,
+        wanted: Wanted,
+        n: usize,
+        is_evident: bool,
+        n_vertices: usize,
+        area: f64,
+    ) -> usize {
+        let [fewest, most] = self.range(n);
         // More facets than the mesh has planes would only cut these up.
-        let planes = within(FLAT);
+        let planes = self.planes(n, area);
         match wanted {
             Wanted::Facets(count) => count.clamp(fewest, planes),
-            Wanted::Error(error) => within(error),
-            // Fewer parameters than vertices say where all of these are: that is no chance, as it is where
-            // every face is a plane of its own.
-            Wanted::Found if 3 * planes < n_vertices => planes,
+            Wanted::Error(error) => self.within(error, n, area),
+            Wanted::Found if is_evident => planes,
             Wanted::Found => {
                 let data = n_vertices as f64;
                 let unlikely = |&count: &usize| {
                     data * self.distance(n, count, area).max(FLAT).powi(2).ln()
                         + 3.0 * count as f64 * data.ln()
                 };
-                let counts = fewest..=within(ERROR);
+                let counts = fewest..=self.within(ERROR, n, area);
                 counts.min_by(|a, b| unlikely(a).total_cmp(&unlikely(b))).unwrap_or(most)
             }
         }

@@ -109,7 +109,7 @@ pub fn facet(
     options.check(mesh)?;
     options.solve().run(|| {
         mesh.demand(Tool::Facet).admit(None)?;
-        let working = Working::new(mesh)?;
+        let working = Working::contracted(mesh)?;
         let job = Job::new(&working, options)?;
         let scan = job.scan(options)?;
         if scan.area.is_nan() || scan.area <= 0.0 {

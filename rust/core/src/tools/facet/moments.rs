@@ -88,7 +88,13 @@ impl Moments {
         [0, 1, 2].map(|i| add(self.second[i], scale(self.first, -c[i])))
     }
 
-    /// The integral of the squared distance from any plane, with what turned faces cost.
+    /// The integral of the squared distance from any plane.
+    pub(super) fn squared_distance(&self, plane: &Plane) -> f64 {
+        let height = plane.height(self.center());
+        quadratic(&self.spread(), plane.normal, plane.normal).max(0.0) + self.area * height * height
+    }
+
+    /// The same with what turned faces cost.
     pub(super) fn energy(&self, plane: &Plane) -> f64 {
         let height = plane.height(self.center());
         let turned = 2.0 * (self.area - dot(self.vector, plane.normal)).max(0.0);

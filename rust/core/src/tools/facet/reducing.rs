@@ -49,23 +49,38 @@ struct Trial {
     /// The triangles of facets with a corner that may move.
     fresh: Fresh,
     cost: f64,
+    /// By how much the squared distances grow.
+    farther: f64,
+    /// The integral of the squared distance from the mesh of the facets around both.
+    off_mesh: f64,
     /// After how many joins it was tried.
     n_joins: u32,
 }
 
-/// Joins facets of `shape` until no more than `count` are left, as far as that can be sound. Corners of one
-/// facet alone that are within `tolerance` of a line need not be kept.
+/// How far facets are joined.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Goal {
+    /// Until no more are left.
+    pub count: usize,
+    /// As long as faces are no farther from their facets, in the root mean square.
+    pub error: f64,
+}
+
+/// Joins facets of `shape` up to a goal, as far as that can be sound. Corners of one facet alone that are
+/// within `tolerance` of a line need not be kept.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`], [`crate::Error::Memory`].
 pub(super) fn reduce(
     shape: &mut Shape,
     faces: &mut Faces<'_>,
-    count: usize,
+    goal: Goal,
     tolerance: f64,
     stage: &Stage<'_>,
 ) -> Result<()> {
     let mut n_left = shape.facets.len();
+    let most = goal.error.powi(2) * faces.scan.area;
+    let mut squares: f64 = shape.facets.iter().map(Facet::squared_distance).sum();
     let mut at = memory::repeated(Vec::new(), shape.corners.len())?;
     for (k, facet) in (0..).zip(&shape.facets) {
         facet.corners().for_each(|c| at[c as usize].push(k));
@@ -86,7 +101,7 @@ pub(super) fn reduce(
     };
     let pairs = (0..n_left as u32).flat_map(|k| reduction.pairs(k)).collect();
     reduction.offer(pairs)?;
-    while n_left > count && !stage.is_finishing() {
+    while n_left > goal.count && !stage.is_finishing() {
         let Some(Reverse((cost, pair, stamp))) = reduction.heap.pop() else { break };
         if stamp != reduction.stamp(pair) {
             continue;
@@ -98,6 +113,10 @@ pub(super) fn reduce(
                 reduction.tried.insert(pair, trial);
             }
             continue;
+        }
+        squares += trial.farther;
+        if squares + trial.off_mesh > most {
+            break;
         }
         reduction.take(pair, trial)?;
         name[pair[1] as usize] = pair[0];
@@ -181,11 +200,13 @@ impl Reduction<'_> {
         let of = (&trial.shape, &trial.facets[..], &trial.corners[..]);
         let Some((fresh, off_mesh)) = self.skin.tried(of, &changed, pair[1])? else { return Ok(None) };
         trial.fresh = fresh;
-        let energy = |facet: &Facet| facet.moments.energy(&facet.plane);
-        let now: f64 = trial.shape.facets.iter().map(energy).sum();
-        let all = trial.facets.iter().chain([&pair[1]]);
-        let before: f64 = all.map(|&k| energy(&self.shape.facets[k as usize])).sum();
-        trial.cost = now - before + off_mesh;
+        let all = || trial.facets.iter().chain([&pair[1]]).map(|&k| &self.shape.facets[k as usize]);
+        let grown = |of: fn(&Facet) -> f64| {
+            trial.shape.facets.iter().map(of).sum::<f64>() - all().map(of).sum::<f64>()
+        };
+        let cost = grown(|facet| facet.moments.energy(&facet.plane)) + off_mesh;
+        let farther = grown(Facet::squared_distance);
+        (trial.cost, trial.farther, trial.off_mesh) = (cost, farther, off_mesh);
         Ok(trial.cost.is_finite().then_some(trial))
     }
 
@@ -226,8 +247,17 @@ impl Reduction<'_> {
             shape.facets.push(facet);
         }
         let reshaped = all.iter().map(|(k, _)| *k).collect();
-        let trial =
-            Trial { facets, corners, shape, reshaped, fresh: Vec::new(), cost: 0.0, n_joins: self.n_joins };
+        let trial = Trial {
+            facets,
+            corners,
+            shape,
+            reshaped,
+            fresh: Vec::new(),
+            cost: 0.0,
+            farther: 0.0,
+            off_mesh: 0.0,
+            n_joins: self.n_joins,
+        };
         Ok((trial, changed))
     }
 

@@ -12,10 +12,10 @@ use super::job::Job;
 use super::merging::{merges, Merges};
 use super::nearest::Distances;
 use super::options::FacetOptions;
-use super::reducing::reduce;
+use super::reducing::{reduce, Goal};
 use super::refusals::Refusals;
 use super::regions::{Regions, OUTSIDE};
-use super::shape::Shape;
+use super::shape::{Facet, Shape};
 use super::stage::{shares, Stage, USUAL};
 use super::volume;
 use crate::error::MeshError;
@@ -63,13 +63,19 @@ impl Settled<'_> {
 }
 
 impl Divided<'_> {
-    /// Joins facets until no more than `count` are left, as far as that goes; how far it is off.
-    fn join(&mut self, count: usize, share: [f64; 2], progress: &Progress) -> Result<f64> {
+    /// How far faces are off the planes of their facets.
+    fn rms(&self) -> f64 {
+        let squares: f64 = self.settled.shape.facets.iter().map(Facet::squared_distance).sum();
+        (squares / self.settled.faces.scan.area.max(f64::MIN_POSITIVE)).sqrt()
+    }
+
+    /// Joins facets up to a goal, as far as that goes; how far the number is off.
+    fn join(&mut self, goal: Goal, share: [f64; 2], progress: &Progress) -> Result<f64> {
         let Settled { shape, faces } = &mut self.settled;
-        let n_joins = shape.facets.len().saturating_sub(count);
+        let n_joins = shape.facets.len().saturating_sub(goal.count);
         let stage = Stage::new(progress, "joining facets", share, USUAL[1] * n_joins);
-        reduce(shape, faces, count, self.tolerance, &stage)?;
-        Ok(count.abs_diff(self.settled.shape.facets.len()) as f64)
+        reduce(shape, faces, goal, self.tolerance, &stage)?;
+        Ok(goal.count.abs_diff(self.settled.shape.facets.len()) as f64)
     }
 }
 
@@ -119,7 +125,9 @@ impl Job<'_> {
         let n_held = self.is_held.iter().filter(|held| **held).count();
         let [fewest, most] = merges.range(n);
         let area = scan.area.max(f64::MIN_POSITIVE);
-        let aim = merges.count(wanted.and(n_held), n, self.positions.len(), area);
+        let planes = merges.planes(n, area);
+        let is_evident = matches!(wanted, Wanted::Found) && self.is_made_of(merges, planes)?;
+        let aim = merges.count(wanted.and(n_held), n, is_evident, self.positions.len(), area);
         let mut count = aim;
         // With fewer facets than are wanted, and with as many or more.
         let mut best: [Option<(Rank, Divided<'_>)>; 2] = [None, None];
@@ -142,7 +150,10 @@ impl Job<'_> {
                     let over = divided.settled.distances()?.rms / error;
                     ((over - 1.0).max(0.0), (count as f64 * over.max(1.05)).ceil())
                 }
-                Wanted::Found => (0.0, count as f64),
+                Wanted::Found => {
+                    let over = divided.rms() / constants::ERROR.max(divided.tolerance);
+                    ((over - 1.0).max(0.0), (count as f64 * over.clamp(1.0, 2.0)).ceil())
+                }
             };
             let (rank, best) = ((divided.n_unsound, miss), &mut best[usize::from(is_enough)]);
             if best.as_ref().is_none_or(|(least, _)| rank < *least) {
@@ -156,15 +167,17 @@ impl Job<'_> {
             count = next;
         }
         let [few, mut enough] = best;
+        // Where no number is asked for, more facets than were looked for are better than such as are far off.
+        let is_asked = matches!(wanted, Wanted::Facets(_));
+        let goal = Goal { count: aim, error: if is_asked { f64::INFINITY } else { constants::ERROR } };
         if let Some((rank, divided)) = &mut enough {
-            if matches!(wanted, Wanted::Facets(_)) || (divided.is_divided && matches!(wanted, Wanted::Found))
-            {
-                rank.1 = divided.join(aim, shares::JOINING[0], progress)?;
+            if is_asked || (divided.is_divided && matches!(wanted, Wanted::Found)) {
+                rank.1 = divided.join(goal, shares::JOINING[0], progress)?;
                 // Smaller regions everywhere leave more ways to join them.
-                if rank.1 > 0.0 && divided.is_local && !progress.is_finishing() {
+                if is_asked && rank.1 > 0.0 && divided.is_local && !progress.is_finishing() {
                     let stage = Stage::new(progress, "finding facets", shares::FINDING[1], USUAL[0]);
                     let mut other = self.sound(merges, aim, true, scan, &stage)?;
-                    let miss = other.join(aim, shares::JOINING[1], progress)?;
+                    let miss = other.join(goal, shares::JOINING[1], progress)?;
                     if (other.n_unsound, miss) < *rank {
                         (*rank, *divided) = ((other.n_unsound, miss), other);
                     }
@@ -188,6 +201,26 @@ impl Job<'_> {
         let (nearest, distances) = settled.faces.nearest(&settled.shape, &inspection)?;
         let labels = if self.keeps { settled.faces.labels } else { nearest };
         Ok(Found { shape: settled.shape, inspection, labels, distances, n_facets, n_crossings })
+    }
+
+    /// Whether most of so many planes that the mesh has are evident: three of their vertices lie on no more
+    /// than three of them, so that planes say where these are. That is no chance, as it is where every face
+    /// has a plane of its own, or every quad of a round shape.
+    fn is_made_of(&self, merges: &Merges, planes: usize) -> Result<bool> {
+        let n = self.parts.len();
+        let (tree, cut) = Hierarchy::new(merges, n, n - planes)?;
+        let (labels, tops) = tree.labels(&cut)?;
+        let faces = self.working.mesh().connectivity().faces();
+        let free = self.parts.iter().zip(&labels).zip(&self.is_held).filter(|(_, &held)| !held);
+        let corners = free.flat_map(|((&f, &label), _)| faces[f as usize].map(|v| (v, label)));
+        let mut at: Vec<(u32, u32)> = memory::sifted(corners)?;
+        at.sort_unstable();
+        at.dedup();
+        let mut n_known = memory::repeated(0_usize, tops.len())?;
+        for of_vertex in at.chunk_by(|a, b| a.0 == b.0).filter(|of_vertex| of_vertex.len() <= 3) {
+            of_vertex.iter().for_each(|&(_, label)| n_known[label as usize] += 1);
+        }
+        Ok(2 * n_known.iter().filter(|&&known| known >= 3).count() > tops.len())
     }
 
     /// The shape of `count` regions; where that is not sound of smaller ones, and of smaller ones everywhere

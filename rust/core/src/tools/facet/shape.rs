@@ -45,6 +45,11 @@ impl Facet {
         Ok(Self { loops, ..*self })
     }
 
+    /// The integral of the squared distance of its faces from its plane.
+    pub(super) fn squared_distance(&self) -> f64 {
+        self.moments.squared_distance(&self.plane)
+    }
+
     /// Its corners.
     pub(super) fn corners(&self) -> impl Iterator<Item = u32> + '_ {
         self.loops.iter().flatten().copied()
