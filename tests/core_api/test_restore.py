@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import ridgeform
 from hypothesis import given, settings
-from known_shapes import segment_shapes, shapes
+from known_shapes import coarse_shapes, segment_shapes, shapes
 from test_reliability import finite_or_refused, triangle_soups
 
 SOURCES = Path(__file__).parents[2] / "blend_fixtures/sources"
@@ -195,6 +195,13 @@ def test_no_vertex_moves_farther_than_allowed(noisy_cube):
     result = ridgeform.restore(ridgeform.Mesh(vertices, faces), max_move=0.01)
     assert np.linalg.norm(result.vertices - vertices, axis=1).max() <= 0.01 * (1 + 1e-9)
     assert result.n_held > 100
+
+
+def test_faces_without_area_are_not_said_to_be_folded():
+    part = coarse_shapes.clamped_prism(4)
+    found = ridgeform.restore(ridgeform.Mesh(*shapes.subdivide(part.vertices, part.faces, 3)))
+    assert kinds(found) == 6 * ["plane"]
+    assert found.n_folded == 0
 
 
 def test_free_pieces_are_denoised_or_stay():

@@ -13,8 +13,7 @@ Polygons = Sequence[Sequence[int]]
 
 def from_polygons(vertices: np.ndarray, polygons: Polygons) -> Part:
     """Convex polygons as fans of triangles; parts end at edges of more than 15 degrees."""
-    corners = [(p[0], p[i], p[i + 1]) for p in polygons for i in range(1, len(p) - 1)]
-    faces = np.array(corners)
+    faces = _fans(polygons)
     return Part(vertices, faces, parts_by_angle(vertices, faces))
 
 
@@ -27,6 +26,15 @@ def prism(sides: int, height: float = 2.0) -> Part:
     """A regular prism of radius 1, capped by polygons: 3 parts from 25 sides on, else two more than sides."""
     angles = 2 * np.pi * np.arange(sides) / sides
     return from_polygons(*_prism(np.column_stack([np.cos(angles), np.sin(angles)]), height, [range(sides)]))
+
+
+def clamped_prism(sides: int) -> Part:
+    """A prism whose upright edges have a bevel of width 0, as where two bevels leave no room."""
+    turn = np.repeat(2 * np.pi * np.arange(sides) / sides, 2)
+    outline = np.column_stack([np.cos(turn), np.sin(turn)])
+    vertices, polygons = _prism(outline, 2.0, [range(len(outline))])
+    faces = _fans(polygons)
+    return Part(vertices, faces, np.zeros(len(faces), int))
 
 
 def l_prism() -> Part:
@@ -92,3 +100,7 @@ def _prism(outline: np.ndarray, height: float, caps: Polygons) -> tuple[np.ndarr
     polygons = [(i, (i + 1) % n, n + (i + 1) % n, n + i) for i in range(n)]
     polygons += [tuple(reversed(cap)) for cap in caps] + [tuple(n + i for i in cap) for cap in caps]
     return vertices, polygons
+
+
+def _fans(polygons: Polygons) -> np.ndarray:
+    return np.array([(p[0], p[i], p[i + 1]) for p in polygons for i in range(1, len(p) - 1)])

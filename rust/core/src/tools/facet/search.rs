@@ -171,7 +171,7 @@ impl Job<'_> {
         let is_asked = matches!(wanted, Wanted::Facets(_));
         let goal = Goal { count: aim, error: if is_asked { f64::INFINITY } else { constants::ERROR } };
         if let Some((rank, divided)) = &mut enough {
-            if is_asked || (divided.is_divided && matches!(wanted, Wanted::Found)) {
+            if !matches!(wanted, Wanted::Error(_)) {
                 rank.1 = divided.join(goal, shares::JOINING[0], progress)?;
                 // Smaller regions everywhere leave more ways to join them.
                 if is_asked && rank.1 > 0.0 && divided.is_local && !progress.is_finishing() {

@@ -5,7 +5,7 @@ use super::constants::{MOST_ROUNDS, THINNED};
 use super::place::{surfaces, Placement};
 use crate::labelling::{Domain, Labelling, NONE};
 use crate::mesh::vector::{add, centroid, distance, quality, scale, Point};
-use crate::mesh::EdgeKind;
+use crate::mesh::{triangle, EdgeKind};
 use crate::progress::Progress;
 use crate::shape_guard::{is_thinned, is_turned};
 use crate::surfaces::meeting;
@@ -72,6 +72,10 @@ fn is_folded(domain: &Domain<'_>, state: &Labelling, placement: &Placement, f: u
     }
     let piece = &state.pieces[label as usize];
     let Some(surface) = &piece.surface else { return false };
+    // What had no area has no side to lie on.
+    if triangle::is_degenerate(domain.lengths[f]) {
+        return false;
+    }
     let corners = corners(domain, &placement.points, f);
     let normal = scale(surface.distance(centroid(corners)).1, piece.side);
     is_turned(corners, normal)
