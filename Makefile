@@ -3,8 +3,8 @@ PYTHON ?= python3
 RUN = @$(PYTHON) scripts/setup_env.py
 
 .PHONY: help demo test test-all-blenders test-dask lint workflows notices advisories bench bench-holes bench-segments \
-	bench-cad bench-memory bench-limits bench-growth bench-latency bench-files bench-parts bench-facets bench-restore \
-	bench-overnight bench-scale bench-tiles fuzz fuzz-sequences \
+	bench-densities bench-cad bench-memory bench-limits bench-growth bench-latency bench-files bench-parts \
+	bench-facets bench-restore bench-overnight bench-scale bench-tiles fuzz fuzz-sequences \
 	extension wheel release sizes docs fixtures pictures gallery
 
 help:
@@ -20,6 +20,7 @@ help:
 	@echo "                 ARGS=--quick: a minute, keeps nothing; ARGS=--large: a million vertices as well"
 	@echo "make bench-holes fill holes with known truth by every tool: benchmarks/holes.md"
 	@echo "make bench-segments  segment shapes of known parts: benchmarks/segments.md"
+	@echo "make bench-densities  segment shapes at several densities: benchmarks/densities.md"
 	@echo "make bench-cad   segment CAD parts, the faces of the kernel as truth: benchmarks/cad.md"
 	@echo "make bench-facets  meshes as facets, beside quadric reduction: benchmarks/facets.md"
 	@echo "make bench-restore  restore shapes of known parts from noise: benchmarks/restore.md"
@@ -93,6 +94,10 @@ bench-overnight:
 
 bench-segments:
 	$(RUN) benchmarks/segments.py $(ARGS)
+
+bench-densities: wheel
+	@PYTHONPATH=.ridgeform/wheel-site:tests:scripts:benchmarks .ridgeform/py311/bin/python \
+		benchmarks/densities.py --site .ridgeform/wheel-site $(ARGS)
 
 bench-cad:
 	$(RUN) benchmarks/cad.py $(ARGS)

@@ -169,6 +169,15 @@ def test_segments_of_a_dense_shape_are_its_parts(name, noise):
     assert all(len(np.unique(fewer[result.labels == k])) == 1 for k in range(part.n_parts))
 
 
+def test_a_box_with_rounded_edges_has_six_sides_at_any_density():
+    for n in (37, 73):
+        result = ridgeform.segment(ridgeform.Mesh(*shapes.rounded_box(n, 0.15)))
+        assert result.n_segments == 6
+        areas = np.bincount(result.labels_at(6)) / len(result.labels)
+        assert areas.min() > 0.08, areas
+        np.testing.assert_array_equal(result.labels_at(6), result.labels)
+
+
 def test_windows_one_edge_deep_are_found_on_a_coarser_mesh():
     part = stepped_shapes.house(64, 1).noisy(0.05, 3).turned(1)
     result, agreement = segment(part)

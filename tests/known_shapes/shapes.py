@@ -122,6 +122,16 @@ def cube(n: int = 16, side: float = 2.0) -> Shape:
     return vertices - 0.5 * side, faces
 
 
+def rounded_box(n: int, radius: float, sides: ArrayLike = (1.9, 1.5, 1.3)) -> Shape:
+    """Box about the origin, `n` by `n` quads a side as on a cube, edges rounded by `radius`."""
+    vertices, faces = cube(n, 1.0)
+    outside = vertices * np.asarray(sides)
+    core = 0.5 * np.asarray(sides) - radius
+    inside = np.clip(outside, -core, core)
+    away = outside - inside
+    return inside + radius * away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-12), faces
+
+
 def l_shape(n: int = 4) -> Shape:
     """Three unit cells in an L, `n` by `n` quads a cell side: one concave edge."""
     return voxels([(0, 0, 0), (1, 0, 0), (0, 0, 1)], n)

@@ -2,14 +2,16 @@
 //!
 //! Which faces there are, a mesh of some thousand vertices says as well as one of a million, and with less
 //! noise ([`crate::levels`]). So all passes are done there; on each finer level only the borders move, to
-//! where it has them.
+//! where it has them. The hierarchy is that of the coarsest level.
+
+use std::collections::BTreeMap;
 
 use super::constants::ENOUGH;
 use super::noise::noise_level;
 use super::options::SegmentOptions;
 use super::passes::Passes;
 use super::segmentation::{boundary_edges, Segmentation};
-use super::surface::{contiguous, Surface};
+use super::surface::{contiguous, Surface, NONE};
 use crate::error::MeshError;
 use crate::levels::{face_values, levels, Level};
 use crate::linear::Columns;
@@ -79,13 +81,15 @@ pub(super) fn coarse_to_fine(
     carried.go_to(mesh, &levels[0])?;
     let start = Columns::from_points(&surface.positions)?;
     let passes = carried.passes(surface, &start, noise, options, progress);
-    let slopes = passes.slopes()?;
-    let merging = passes.merging(&slopes);
     let mut labels = memory::twin(&carried.labels)?;
     passes.refine(&mut labels)?;
-    passes.settled(&merging, &mut labels)?;
-    let (labels, n_segments) = contiguous(&labels)?;
-    let hierarchy = passes.hierarchy(&merging, &carried.leaves, &labels)?;
+    carried.name(&found, &mut labels);
+    let leaves = carried.leaves_within(surface, &found, &labels)?;
+    let any = some_faces(&memory::gathered(found.labels.iter().map(|label| label.cast_unsigned()))?);
+    let merges = passes.settled(&mut labels)?;
+    let joined = merges.iter().map(|m| ([m.kept, m.gone].map(|label| any[&label]), m.strength));
+    let hierarchy = found.hierarchy.joined(found.n_segments, joined)?.picked(&leaves)?.ascending();
+    let n_segments = contiguous(&labels)?.1;
     let labels = hierarchy.labels_at(n_segments)?;
     Ok(Some(Segmentation {
         boundary_edges: boundary_edges(mesh, &labels)?,
@@ -102,7 +106,7 @@ pub(super) fn coarse_to_fine(
 /// What a level leaves to the finer one.
 struct Carried {
     labels: Vec<u32>,
-    /// The segments of the finest segmentation.
+    /// For each face one of the coarsest level that has the same segment in the finest segmentation there.
     leaves: Vec<u32>,
     indicator: Vec<f64>,
     /// The shape with borders sharpened.
@@ -111,11 +115,9 @@ struct Carried {
 
 impl Carried {
     fn of(found: &Segmentation) -> Result<Self> {
-        let names = |labels: &[i32]| memory::gathered(labels.iter().map(|label| label.cast_unsigned()));
-        let [most, _] = found.hierarchy.range();
         Ok(Self {
-            labels: names(&found.labels)?,
-            leaves: names(&found.hierarchy.labels_at(most)?)?,
+            labels: memory::gathered(found.labels.iter().map(|label| label.cast_unsigned()))?,
+            leaves: found.hierarchy.first_faces()?,
             indicator: memory::twin(&found.indicator)?,
             points: found.values.to_points()?,
         })
@@ -133,6 +135,43 @@ impl Carried {
         Ok(())
     }
 
+    /// Names segments that were refined after those of the coarsest level, as which they were `found`: each
+    /// after that which most of its faces came from.
+    fn name(&self, found: &Segmentation, labels: &mut [u32]) {
+        let mut counts: BTreeMap<u32, BTreeMap<u32, usize>> = BTreeMap::new();
+        for (&label, &leaf) in labels.iter().zip(&self.leaves) {
+            let home = found.labels[leaf as usize].cast_unsigned();
+            *counts.entry(label).or_default().entry(home).or_default() += 1;
+        }
+        let most =
+            |homes: &BTreeMap<u32, usize>| homes.iter().max_by_key(|(_, n)| **n).map(|(home, _)| *home);
+        let names: BTreeMap<u32, u32> =
+            counts.iter().filter_map(|(label, homes)| Some((*label, most(homes)?))).collect();
+        labels.iter_mut().for_each(|label| *label = names[label]);
+    }
+
+    /// The finest segmentation within the segments `labels`, named as those that were `found`: a face whose
+    /// own finest segment is elsewhere goes to the nearest one of its segment.
+    fn leaves_within(&self, surface: &Surface<'_>, found: &Segmentation, labels: &[u32]) -> Result<Vec<u32>> {
+        let homes = memory::gathered(found.labels.iter().map(|label| label.cast_unsigned()))?;
+        let own = |(&leaf, &label): (&u32, &u32)| if homes[leaf as usize] == label { leaf } else { NONE };
+        let mut leaves: Vec<u32> = memory::gathered(self.leaves.iter().zip(labels).map(own))?;
+        let mut queue: Vec<usize> = memory::sifted((0..leaves.len()).filter(|&f| leaves[f] != NONE))?;
+        let mut next = 0;
+        while let Some(&f) = queue.get(next) {
+            next += 1;
+            for (_, g) in surface.around(f) {
+                if leaves[g] == NONE && labels[g] == labels[f] {
+                    leaves[g] = leaves[f];
+                    memory::push(&mut queue, g)?;
+                }
+            }
+        }
+        let any = some_faces(&homes);
+        leaves.iter_mut().zip(labels).filter(|(leaf, _)| **leaf == NONE).for_each(|(leaf, l)| *leaf = any[l]);
+        Ok(leaves)
+    }
+
     fn passes<'a>(
         &'a self,
         surface: &'a Surface<'a>,
@@ -145,4 +184,9 @@ impl Carried {
         let (planes, regions, is_shape) = (None, None, true);
         Passes { surface, start, is_shape, noise, indicator, planes, regions, options, progress }
     }
+}
+
+/// A face of each segment.
+fn some_faces(labels: &[u32]) -> BTreeMap<u32, u32> {
+    (0_u32..).zip(labels).map(|(f, label)| (*label, f)).collect()
 }

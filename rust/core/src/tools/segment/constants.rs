@@ -84,6 +84,15 @@ pub(super) const REACH: f64 = 2.5;
 pub(super) const REACH_OF_NOISE: f64 = 10.0;
 pub(super) const MOST_REACH: f64 = 3.0;
 
+/// On a shape at least as far as this part of the square root of its area, as on a mesh of 2000 vertices: so
+/// a ridge as wide bends by the same at any density. With 0.7 of it rounded ridges are lost on fine
+/// meshes, with 1.4 times it coarse meshes, which cannot see as far, have fewer segments than fine ones.
+pub(super) const REACH_ON_A_SHAPE: f64 = 0.06;
+
+/// But not over more mean edges than this: as many as that is on the finest mesh that is segmented itself,
+/// twice [`ENOUGH`].
+pub(super) const MOST_REACH_ON_A_SHAPE: f64 = 7.5;
+
 /// A border that is a smaller part of the smaller segment's perimeter counts as stronger in proportion:
 /// where two segments touch at a corner only, a few edges say nothing.
 pub(super) const LEAST_CONTACT: f64 = 0.25;

@@ -1,6 +1,7 @@
 //! From the finest segmentation to one segment for each connected part: nested, one merge after the other.
 
 use super::surface::contiguous;
+use crate::mesh::partition::Partition;
 use crate::{memory, Error, Result};
 
 /// Nested segmentations of any size.
@@ -77,6 +78,45 @@ impl Hierarchy {
         Ok(there)
     }
 
+    /// For every face the first one of the same segment in the finest segmentation; all must take part.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] where memory is missing, here and below.
+    pub(in crate::tools) fn first_faces(&self) -> Result<Vec<u32>> {
+        let mut first = memory::repeated(u32::MAX, self.n_leaves)?;
+        Ok(memory::gathered(self.leaves.iter().enumerate().map(|(f, &leaf)| {
+            let first = &mut first[leaf as usize];
+            *first = (*first).min(f as u32);
+            *first
+        }))?)
+    }
+
+    /// The same where the pairs of segments `joined`, each named by a face of both, are joined first of the
+    /// `n_segments` that there are then.
+    pub(in crate::tools) fn joined(
+        &self,
+        n_segments: usize,
+        joined: impl Iterator<Item = ([u32; 2], f64)>,
+    ) -> Result<Self> {
+        let inner = self.n_leaves.saturating_sub(n_segments).min(self.merges.len());
+        let own = self.merges.iter().copied().zip(self.strengths.iter().copied());
+        let joined = joined.map(|(pair, strength)| (pair.map(|f| self.leaves[f as usize]), strength));
+        let all = own.clone().take(inner).chain(joined).chain(own.skip(inner));
+        let mut segments = Partition::new(self.n_leaves)?;
+        let (mut merges, mut strengths) =
+            (memory::room(self.merges.len())?, memory::room(self.merges.len())?);
+        for (pair, strength) in all {
+            let [kept, gone] = pair.map(|leaf| segments.root(leaf));
+            if kept != gone {
+                segments.attach(gone, kept);
+                merges.push([kept, gone]);
+                strengths.push(strength);
+            }
+        }
+        let leaves = memory::twin(&self.leaves)?;
+        Ok(Self { leaves, n_leaves: self.n_leaves, merges, strengths })
+    }
+
     /// Most and fewest segments that there can be: those of the finest segmentation,
     /// and one for each connected part.
     #[must_use]
@@ -131,6 +171,18 @@ mod tests {
         assert!(hierarchy.labels_at(0).is_err());
         let spread = hierarchy.spread(&[1, 2, 3, 5, 6], 7).unwrap();
         assert_eq!(spread.labels_at(2).unwrap(), [-1, 0, 0, 1, -1, 1, 0]);
+    }
+
+    #[test]
+    fn what_is_joined_comes_first_of_what_was_apart() {
+        let merges = [([0, 1], 0.3), ([0, 2], 0.5), ([0, 3], 0.6)];
+        let hierarchy = Hierarchy::new(vec![0, 1, 1, 2, 3], 4, merges);
+        assert_eq!(hierarchy.first_faces().unwrap(), [0, 1, 1, 3, 4]);
+        let joined = hierarchy.joined(3, [([1, 4], 0.9)].into_iter()).unwrap().ascending();
+        assert_eq!(joined.labels_at(3).unwrap(), [0, 0, 0, 1, 2]);
+        assert_eq!(joined.labels_at(2).unwrap(), [0, 0, 0, 1, 0]);
+        assert_eq!(joined.labels_at(1).unwrap(), [0; 5]);
+        assert_eq!(joined.strengths(), [0.3, 0.9, 0.9]);
     }
 
     #[test]

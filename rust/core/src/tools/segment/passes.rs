@@ -223,13 +223,12 @@ impl<'a> Passes<'a> {
         Ok(())
     }
 
-    /// What segments that were refined lack: what was asked for in faces of this mesh.
-    pub(super) fn settled(&self, merging: &Merging<'_>, labels: &mut [u32]) -> Result<()> {
-        merging.absorb_small(labels, self.options.min_faces.unwrap_or(0))?;
-        if let Some(n) = self.options.n_segments {
-            self.merge_to(merging, labels, n)?;
+    /// Joins segments that were refined and have fewer faces of this mesh than was asked for.
+    pub(super) fn settled(&self, labels: &mut [u32]) -> Result<Vec<Merge>> {
+        match self.options.min_faces {
+            None | Some(0) => Ok(Vec::new()),
+            Some(least) => self.merging(&self.slopes()?).absorb_small(labels, least),
         }
-        Ok(())
     }
 
     /// Merges down to `n` segments, where there are more.

@@ -1,7 +1,10 @@
 //! What bends across borders, face by face: gradients of values, or normals of the shape.
 
-use super::constants::{BENDS_OF_A_STEP, LEAST_CONTACT, MOST_REACH, REACH, REACH_OF_NOISE};
-use super::surface::Surface;
+use super::constants::{
+    BENDS_OF_A_STEP, LEAST_CONTACT, MOST_REACH, MOST_REACH_ON_A_SHAPE, REACH, REACH_OF_NOISE,
+    REACH_ON_A_SHAPE,
+};
+use super::surface::{pieces, Surface};
 use crate::linear::Columns;
 use crate::mesh::triangle;
 use crate::mesh::vector::Point;
@@ -21,8 +24,8 @@ pub(super) struct Slopes {
     /// Means over the faces.
     pub means: Vec<f64>,
     pub layouts: Vec<[[f64; 2]; 3]>,
-    /// How far, in the unit of the segmentation, gradients are averaged.
-    pub reach: f64,
+    /// How far from a border at each face, in the unit of the segmentation, gradients are averaged.
+    pub reach: Vec<f64>,
     /// What a step in the values counts per height.
     pub step: f64,
     /// The standard deviation of the noise of a value that one face gives.
@@ -48,7 +51,7 @@ impl Slopes {
             is_shape: true,
             means: memory::repeated(0.0, 2 * surface.n_faces())?,
             layouts: layouts(surface)?,
-            reach: reach(surface, noise),
+            reach: reach_on_shape(surface, noise)?,
             step: 0.0,
             noise,
             least_contact: LEAST_CONTACT,
@@ -60,7 +63,8 @@ impl Slopes {
     pub(super) fn of_planes(surface: &Surface<'_>, normals: &[Point]) -> Result<Self> {
         let mut gradients = memory::room(2 * normals.len())?;
         gradients.extend(normals.iter().flat_map(|&[x, y, z]| [[x, y], [z, 0.0]]));
-        Ok(Self { gradients, reach: 0.0, least_contact: 0.0, ..Self::of_shape(surface, 0.0)? })
+        let reach = memory::repeated(0.0, normals.len())?;
+        Ok(Self { gradients, reach, least_contact: 0.0, ..Self::of_shape(surface, 0.0)? })
     }
 
     /// `values` on the surface, with `noise` of that standard deviation.
@@ -79,7 +83,8 @@ impl Slopes {
                 means.push((a + b + d) / 3.0);
             }
         }
-        let (reach, step) = (reach(surface, noise), BENDS_OF_A_STEP / surface.mean_edge);
+        let (reach, step) =
+            (memory::repeated(reach(surface, noise), m)?, BENDS_OF_A_STEP / surface.mean_edge);
         Ok(Self {
             n_columns: k,
             gradients,
@@ -101,4 +106,16 @@ fn layouts(surface: &Surface<'_>) -> Result<Vec<[[f64; 2]; 3]>> {
 /// How far gradients are averaged: noise of values of range 1 makes slopes like noise of positions does.
 fn reach(surface: &Surface<'_>, noise: f64) -> f64 {
     (REACH + REACH_OF_NOISE * noise / surface.mean_edge).min(MOST_REACH) * surface.mean_edge
+}
+
+/// How far normals are averaged on each face of a shape: the same for each of its connected parts however
+/// densely that is sampled, and whatever else the mesh has, but for edges that are too long for it, or by far
+/// too short.
+fn reach_on_shape(surface: &Surface<'_>, noise: f64) -> Result<Vec<f64>> {
+    let (piece, count) = pieces(surface, &memory::repeated(0, surface.n_faces())?)?;
+    let mut areas = memory::repeated(0.0, count)?;
+    piece.iter().zip(&surface.areas).for_each(|(&p, area)| areas[p as usize] += area);
+    let (least, most) = (reach(surface, noise), MOST_REACH_ON_A_SHAPE * surface.mean_edge);
+    let of_piece = |&p: &u32| (REACH_ON_A_SHAPE * areas[p as usize].sqrt()).min(most).max(least);
+    Ok(memory::gathered(piece.iter().map(of_piece))?)
 }

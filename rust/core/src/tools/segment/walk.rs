@@ -140,7 +140,7 @@ impl Walk<'_> {
     /// lie on the wrong side of it: they count only where there is nothing else.
     fn side(&self, start: usize, motion: Motion, place: [f64; 3], marks: &mut Marks) -> Result<Side> {
         let mut side = Side::EMPTY;
-        let reach = self.slopes.reach;
+        let reach = self.slopes.reach[start];
         let label = self.labels[start];
         let mut skip_border = true;
         loop {
