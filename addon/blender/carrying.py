@@ -8,7 +8,7 @@ from mathutils.bvhtree import BVHTree
 
 from .mesh_layers import FLAGS, MARKS, MIXED, Group, Layer, Layers
 from .polygons import Polygons
-from .surface_map import SurfaceMap
+from .surface_map import SurfaceMap, own_unit
 
 ON_MARK = 0.15
 """A new edge takes a mark if ends and middle lie this close to marked edges, in parts of its length."""
@@ -180,8 +180,10 @@ def _marks(layer: Layer, old: Triangulation, points: np.ndarray, ends: np.ndarra
     values = np.zeros((len(ends), layer.values.shape[1]), layer.values.dtype)
     if len(rows) == 0:
         return values
+    unit = own_unit(old.coordinates[old.edges[rows]])
     lines = [(a, b, b) for a, b in old.edges[rows].tolist()]
-    tree = BVHTree.FromPolygons(old.coordinates.tolist(), lines, all_triangles=True)
+    tree = BVHTree.FromPolygons(np.ldexp(old.coordinates, -unit).tolist(), lines, all_triangles=True)
+    points = np.ldexp(points, -unit)
     lengths = np.linalg.norm(points[ends[:, 0]] - points[ends[:, 1]], axis=1)
     middles = points[ends].mean(axis=1)
     for row, (a, b) in enumerate(ends.tolist()):

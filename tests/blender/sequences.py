@@ -20,7 +20,7 @@ from bl_ext.user_default.ridgeform.framework import modal
 from bl_ext.user_default.ridgeform.framework.run import RefusedError
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule
-from mesh_changes import CHANGES, HARMLESS, delete
+from mesh_changes import CHANGES, HARMLESS, delete, delete_faces
 from sequence_meshes import KINDS, NAMES
 
 OPERATORS = sorted(name for name in dir(bpy.ops.ridgeform) if not name.endswith(("_svg", "_preset_add")))
@@ -248,11 +248,17 @@ class Sequences(RuleBasedStateMachine):
             self.finish()
 
     def _change(self, change, index):
+        obj = meshes()[index % len(meshes())]
+        # Blender 4.2 itself: where a script deletes faces of a mesh with shape keys while it is painted on,
+        # also without this extension, the next switch to Sculpt Mode reads past the end of the keys.
+        is_painted = obj.mode != "OBJECT" and obj.data.shape_keys is not None
+        if bpy.app.version < (5, 0) and is_painted and change is delete_faces:
+            return
         counts["changes"] += 1
         note("_change", ALL_CHANGES.index(change), index)
         # There may be no such layer, no vertex, or the mode cannot be switched.
         with contextlib.suppress(KeyError, IndexError, RuntimeError, ValueError):
-            change(meshes()[index % len(meshes())])
+            change(obj)
 
     @rule(forth=st.booleans())
     def undo(self, forth):

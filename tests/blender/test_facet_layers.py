@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 from bl_ext.user_default.ridgeform.blender import mesh_io, selected_elements
-from facet_kit import facet, is_closed, layered_box
+from facet_kit import facet, is_closed, layered_box, read_all
 
 
 def test_all_that_lies_on_a_mesh_is_carried_over():
@@ -27,6 +27,26 @@ def test_all_that_lies_on_a_mesh_is_carried_over():
     np.testing.assert_allclose(heights, places[:, 2], atol=0.1)
     weights = mesh_io.group_weights(obj, "Up")
     np.testing.assert_allclose(weights, 0.5 + 0.5 * places[:, 2], atol=0.06)
+
+
+@pytest.mark.parametrize("exponent", [-40, 40])
+def test_the_same_is_carried_over_at_any_size(exponent):
+    # Blender's own search finds nothing on triangles of size 1e12.
+    found = []
+    for e in (0, exponent):
+        kit.empty_scene()
+        obj = layered_box()
+        kit.set_coordinates(obj, np.ldexp(kit.coordinates(obj), e))
+        for edge in list(obj.data.edges)[::3]:
+            edge.use_seam = True
+        facet(mode="COUNT", facets=20)
+        places = np.ldexp(kit.coordinates(obj), -e)
+        seams = [edge.use_seam for edge in obj.data.edges]
+        weights = mesh_io.group_weights(obj, "Up")
+        found.append((places.tolist(), seams, weights.tolist(), read_all(obj.data)))
+        found[-1][-1].pop("position")
+    assert any(found[0][1])
+    assert found[0] == found[1]
 
 
 def test_uvs_of_a_face_are_of_one_island():

@@ -52,6 +52,17 @@ def test_operators(exponent):
             same(energy, ridgeform.energy(mesh(), VALUES, kind=kind), power * exponent)
 
 
+def test_areas_are_numbers_with_all_their_digits_or_refused():
+    for exponent in range(-560, -480, 7):
+        try:
+            found = ridgeform.voronoi_mass(mesh(exponent))
+        except ridgeform.SolveError as refusal:
+            assert exponent < -500
+            assert "too small for a number" in str(refusal)
+        else:
+            same(np.ldexp(found, -2 * exponent), ridgeform.voronoi_mass(mesh()))
+
+
 @of_any_size
 def test_flows(exponent):
     for options in ({}, {"scale": "extent", "coupling": "separate"}, {"delaunay": True}):

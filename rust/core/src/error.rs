@@ -209,8 +209,10 @@ pub enum SolveError {
         /// The limit in bytes that was given; without one the system refused.
         limit: Option<usize>,
     },
-    /// What was to be computed is past the largest number.
-    #[error("{what} would be too large for a number; scale the mesh or the values to a size around 1")]
+    /// What was to be computed is past the largest number, or below the smallest with all its digits.
+    #[error(
+        "{what} would be too large or too small for a number; scale the mesh or the values to a size around 1"
+    )]
     NoNumber {
         /// What it is.
         what: &'static str,

@@ -17,6 +17,7 @@
 //! Vertices on the rim are the mesh's own and do not move. No patch makes an edge that the mesh or another
 //! patch has.
 
+mod apart;
 mod components;
 mod hole;
 mod islands;
@@ -96,12 +97,16 @@ fn fill_one(
     let number = |local: u32| {
         polygon.vertices.get(local as usize).copied().unwrap_or_else(|| first_new + local - n as u32)
     };
-    let numbered = |faces: Vec<[u32; 3]>| faces.into_iter().map(|face| face.map(number)).collect();
+    let patch = |mut vertices, mut faces: Vec<[u32; 3]>, is_flat, lid_normal| {
+        apart::keep_apart(&polygon, rims, &mut vertices, &mut faces)?;
+        faces.iter_mut().for_each(|face| *face = face.map(number));
+        Ok(Patch { vertices, faces, is_flat, lid_normal })
+    };
     let lid_normal = lids::normal(&polygon);
     if options.lids == Lids::Always || options.lids == Lids::Planar && lid_normal.is_some() {
         let lid = lids::lid(&polygon, rims, options, options.lids == Lids::Always, progress)?;
         if let Some((vertices, faces)) = lid {
-            return Ok(Patch { vertices, faces: numbered(faces), is_flat: true, lid_normal });
+            return patch(vertices, faces, true, lid_normal);
         }
     }
     let flat = long_loops::triangulate(&polygon, rims, progress)?;
@@ -117,5 +122,5 @@ fn fill_one(
     } else {
         (flat.extra, flat.faces)
     };
-    Ok(Patch { vertices, faces: numbered(faces), is_flat: false, lid_normal })
+    patch(vertices, faces, false, lid_normal)
 }

@@ -49,7 +49,9 @@ impl Rims {
             faces: HashSet::new(),
         };
         let vertices: HashSet<u32> = loops.iter().flatten().copied().collect();
-        for face in at.iter().map(|&f| mesh.connectivity().faces()[f as usize]) {
+        // A face that names a vertex twice has no edges.
+        let is_face = |&[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+        for face in at.iter().map(|&f| mesh.connectivity().faces()[f as usize]).filter(is_face) {
             let on_rim = face.map(|v| vertices.contains(&v));
             let count = on_rim.iter().filter(|&&on| on).count();
             if count < 2 {

@@ -149,6 +149,33 @@ impl<'a> Working<'a> {
         Ok(least)
     }
 
+    /// The faces that were turned over because of faces across seams: in the mesh itself they agree with their
+    /// neighbors as they are.
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing.
+    pub fn turned_across_seams(&self) -> crate::Result<Option<Vec<bool>>> {
+        let (Some(flipped), Some(_)) = (&self.flipped, &self.weld) else { return Ok(None) };
+        let own = flipped_faces(self.original.connectivity())?;
+        let turned: Vec<bool> = memory::gathered(flipped.iter().zip(&own).map(|(here, own)| here != own))?;
+        Ok(turned.contains(&true).then_some(turned))
+    }
+
+    /// The faces in the mesh's own vertices; oriented as here, but for those that are `turned` across seams.
+    pub fn faces_as_given<'f>(&'f self, turned: Option<&'f [bool]>) -> impl Iterator<Item = [u32; 3]> + 'f {
+        let is_set = |mask: Option<&[bool]>, f: usize| mask.is_some_and(|mask| mask[f]);
+        let faces = self.original.connectivity().faces().iter().enumerate();
+        faces.map(
+            move |(f, &[a, b, c])| {
+                if is_set(self.flipped.as_deref(), f) == is_set(turned, f) {
+                    [a, b, c]
+                } else {
+                    [a, c, b]
+                }
+            },
+        )
+    }
+
     /// One row a face, column `i` of the edge opposite corner `i`, for the faces here.
     ///
     /// # Errors

@@ -27,12 +27,17 @@ pub fn voronoi_mass(
 /// [`voronoi_mass`] of a mesh of any size.
 ///
 /// # Errors
-/// [`crate::error::SolveError::NoNumber`] where an area is past the largest number.
+/// [`crate::error::SolveError::NoNumber`] where an area is past the largest number, or all are below the
+/// smallest that has all its digits: what is computed with them would be as wrong.
 pub fn mass_of(mesh: &Mesh) -> Result<Vec<f64>> {
     let unit = mesh.unit();
     let mut mass = voronoi_mass(mesh.connectivity(), mesh.measured(unit)?.edge_lengths())?;
+    let has_area = mass.iter().any(|area| *area > 0.0);
     for area in &mut mass {
         *area = unit.power(2).restore_finite("an area", *area)?;
+    }
+    if has_area && !unit.is_one() && mass.iter().all(|area| *area < f64::MIN_POSITIVE) {
+        return Err(SolveError::NoNumber { what: "an area" }.into());
     }
     Ok(mass)
 }

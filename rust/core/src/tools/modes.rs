@@ -41,7 +41,8 @@ pub struct Modes {
     /// were), with ascending energies. The entry of largest magnitude (the first of those that are equal to
     /// 1e-6) is positive. Vertices without mass have 0.
     pub values: Columns,
-    /// The energy of each mode; infinite where it is past the largest number.
+    /// The energy of each mode; infinite, on its side of 0, where it is past the largest number.
+    /// [`Energy::L2CurvedHessian`] can be below 0, by little: -0.0003 was seen on a sheet with noise.
     pub energies: Vec<f64>,
     /// `Solved`, `Inaccurate` where a problem in between missed its tolerance,
     /// or `Stopped` with fewer modes than asked for.
