@@ -72,9 +72,12 @@ def set_coordinates(obj: bpy.types.Object, values: np.ndarray) -> None:
 def key_coordinates(obj: bpy.types.Object, name: str) -> np.ndarray:
     """The coordinates (n, 3) float32 of a shape key."""
     key = obj.data.shape_keys.key_blocks[name]
-    # Blender 5.2 takes any length for that of a key without points.
     values = np.empty(3 * len(key.data) if obj.data.vertices else 0, np.float32)
-    key.data.foreach_get("co", values)
+    try:
+        key.data.foreach_get("co", values)
+    except TypeError:
+        # Blender 5.2 takes any length for that of a key without points.
+        values = values[:0]
     return values.reshape(-1, 3)
 
 

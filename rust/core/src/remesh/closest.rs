@@ -7,6 +7,10 @@ use crate::Result;
 /// Triangles a leaf holds: fewer make a deeper tree, more make more distances; 4 was fastest by a little.
 const LEAF: usize = 4;
 
+/// Marks the count of a leaf whose triangles all lie on each other: the distance to one is that to all. No
+/// box tells them apart, and thousands of them would be looked at in turn.
+const STACK: u32 = 1 << 31;
+
 /// How far outside a triangle a ray still meets it, in parts of its edges:
 /// so that none slips through between two.
 const EDGE: f64 = 1e-9;
@@ -34,7 +38,8 @@ pub struct ClosestPoint {
 struct Node {
     low: Point,
     high: Point,
-    /// A leaf: the range in `order`. An inner node: its second child (the first one follows it), and 0.
+    /// A leaf: the range in `order`; the count may be marked as a [`STACK`]. An inner node: its second child
+    /// (the first one follows it), and 0.
     start: u32,
     count: u32,
 }
@@ -66,6 +71,15 @@ impl ClosestPoint {
         let count = (end - start) as u32;
         memory::push(&mut self.nodes, Node { low, high, start: start as u32, count })?;
         if end - start <= LEAF {
+            return Ok(());
+        }
+        let corners = |t: u32| self.triangles[t as usize];
+        let first = corners(self.order[start]);
+        let is_same = |&t: &u32| {
+            corners(t).iter().all(|p| first.contains(p)) && first.iter().all(|p| corners(t).contains(p))
+        };
+        if self.order[start..end].iter().all(is_same) {
+            self.nodes[node].count |= STACK;
             return Ok(());
         }
         let extent = sub(high, low);
@@ -104,11 +118,14 @@ impl ClosestPoint {
             }
             let node = &self.nodes[n];
             if node.count > 0 {
-                for &triangle in &self.order[node.start as usize..(node.start + node.count) as usize] {
+                for &triangle in self.triangles_of(node) {
                     if accept(triangle) {
                         let found = candidate(triangle);
                         if best.is_none_or(|b| found.squared < b.squared) {
                             best = Some(found);
+                        }
+                        if node.count & STACK != 0 {
+                            break;
                         }
                     }
                 }
@@ -142,7 +159,7 @@ impl ClosestPoint {
                 stack.extend([node.start as usize, n + 1]);
                 continue;
             }
-            for &triangle in &self.order[node.start as usize..(node.start + node.count) as usize] {
+            for &triangle in self.triangles_of(node) {
                 let met = ray_meets(from, direction, self.triangles[triangle as usize]);
                 if let Some(far) = met.filter(|far| *far > start && best.is_none_or(|found| *far < found.0)) {
                     best = Some((far, triangle));
@@ -167,10 +184,13 @@ impl ClosestPoint {
                 stack.extend([node.start as usize, n + 1]);
                 continue;
             }
-            self.order[node.start as usize..(node.start + node.count) as usize]
-                .iter()
-                .for_each(|&t| visit(t));
+            self.triangles_of(node).iter().for_each(|&t| visit(t));
         }
+    }
+
+    /// The triangles of a leaf.
+    fn triangles_of(&self, leaf: &Node) -> &[u32] {
+        &self.order[leaf.start as usize..(leaf.start + (leaf.count & !STACK)) as usize]
     }
 
     /// The corners of a triangle.
@@ -240,5 +260,38 @@ pub fn closest_on_segment(p: Point, a: Point, b: Point) -> Point {
         between(a, b, (dot(sub(p, a), along) / squared).clamp(0.0, 1.0))
     } else {
         a
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::random::Random;
+    use std::cell::Cell;
+
+    #[test]
+    fn of_thousands_of_triangles_on_each_other_a_few_are_looked_at() {
+        let mut random = Random::new(1);
+        let mut triangle = || [(); 3].map(|()| [(); 3].map(|()| random.symmetric()));
+        let [a, b, c] = triangle();
+        let mut triangles: Vec<[Point; 3]> = (0..50).map(|_| triangle()).collect();
+        triangles.extend((0..4000).map(|i| if i % 2 == 0 { [a, b, c] } else { [c, a, b] }));
+        let tree = ClosestPoint::new(triangles.clone()).unwrap();
+        for _ in 0..50 {
+            let [p, ..] = triangle();
+            let n_asked = Cell::new(0);
+            let found = tree.closest(p, None, |_| n_asked.replace(n_asked.get() + 1) < usize::MAX).unwrap();
+            let squared = |&t: &[Point; 3]| {
+                let d = sub(closest_on_triangle(p, t), p);
+                dot(d, d)
+            };
+            let least = triangles.iter().map(squared).fold(f64::INFINITY, f64::min);
+            assert!((found.squared - least).abs() <= 1e-15);
+            assert!(n_asked.get() < 150, "{}", n_asked.get());
+            let mut n_met = 0;
+            tree.visit_box(a, a, &mut |t| n_met += usize::from(t >= 50));
+            assert_eq!(n_met, 4000);
+        }
     }
 }

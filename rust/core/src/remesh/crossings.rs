@@ -10,16 +10,20 @@ use crate::Result;
 /// The pairs of triangles, given by corners and places, that cross: an edge of one passes through the inside
 /// of the other. What only touches does not.
 pub(crate) fn crossings(triangles: &[[u32; 3]], places: &[[Point; 3]]) -> Result<Vec<[u32; 2]>> {
-    let tree = ClosestPoint::new(memory::gathered(places.iter().copied())?)?;
+    // Points pass through nothing: thousands of them in one place are not looked at in pairs.
+    let is_point = |[a, b, c]: [Point; 3]| a == b && b == c;
+    let extended = (0..).zip(places).filter(|(_, &place)| !is_point(place)).map(|(i, _)| i);
+    let extended: Vec<usize> = memory::sifted(extended)?;
+    let tree = ClosestPoint::new(memory::gathered(extended.iter().map(|&i| places[i]))?)?;
     let mut found = Vec::new();
-    for (i, triangle) in places.iter().enumerate() {
-        let [low, high] = box_of(triangle);
+    for (n, &i) in extended.iter().enumerate() {
+        let [low, high] = box_of(&places[i]);
         let mut pushed = Ok(());
-        tree.visit_box(low, high, &mut |j| {
-            let other = j as usize;
+        tree.visit_box(low, high, &mut |m| {
             let of = |i: usize| (&triangles[i], &places[i]);
-            if other > i && cross(of(i), of(other)) {
-                if let Err(error) = memory::push(&mut found, [i as u32, j]) {
+            let other = extended[m as usize];
+            if m as usize > n && cross(of(i), of(other)) {
+                if let Err(error) = memory::push(&mut found, [i as u32, other as u32]) {
                     pushed = Err(error);
                 }
             }
@@ -59,6 +63,10 @@ fn meet(a: &[Point], b: &[Point]) -> bool {
 }
 
 fn passes([p, q]: [Point; 2], [a, b, c]: [Point; 3]) -> bool {
+    // Exact arithmetic would say the same of what has no length or no inside.
+    if p == q || a == b || b == c || c == a {
+        return false;
+    }
     let side = |a: Point, b: Point, c: Point, d: Point| {
         let [a, b, c, d] = [a, b, c, d].map(|[x, y, z]| Coord3D { x, y, z });
         orient3d(a, b, c, d)

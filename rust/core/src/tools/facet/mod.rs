@@ -17,6 +17,7 @@ mod faces;
 mod faults;
 mod fitting;
 mod hierarchy;
+mod hubs;
 mod job;
 mod joining;
 mod keeping;

@@ -7,6 +7,7 @@
 //! pairs of facet and corner.
 
 use super::constants::{DAMPING, FARTHEST, FLAT, FLATTEST, REGULAR, SLACK, SLOW, STEPS};
+use super::hubs::Hubs;
 use super::moments::{quadratic, Plane};
 use super::shape::Shape;
 use super::stage::Stage;
@@ -49,11 +50,11 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point], stage: &S
     let made = shape.facets.iter().enumerate().filter(|(_, facet)| !facet.is_held);
     let incidences: Vec<Incidence> = memory::sifted(made.flat_map(of_facet))?;
     let (n, m) = (targets.len(), shape.facets.len());
+    let n_corners: Vec<usize> = memory::gathered(shape.facets.iter().map(|facet| facet.corners().count()))?;
     let mut share = memory::repeated(0.0, n)?;
     let mut at = (memory::repeated(Vec::new(), n)?, memory::repeated(Vec::new(), m)?);
     for (k, i) in incidences.iter().enumerate() {
-        let facet = &shape.facets[i.facet];
-        share[i.corner] += facet.moments.area / facet.corners().count() as f64;
+        share[i.corner] += shape.facets[i.facet].moments.area / n_corners[i.facet] as f64;
         memory::push(&mut at.0[i.corner], k)?;
         memory::push(&mut at.1[i.facet], k)?;
     }
@@ -65,9 +66,11 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point], stage: &S
             1.0 / weight
         }
     }))?;
-    let pattern = pattern(&incidences, &at.0, &at.1)?;
-    let (starts, rows) = (memory::twin(&pattern.starts)?, memory::twin(&pattern.rows)?);
-    let mut cholesky = Cholesky::analyze(pattern, None)?;
+    let hubs = Hubs::new(&at.0, &at.1)?;
+    let is_hub = [hubs.mask(true, n)?, hubs.mask(false, m)?];
+    let pattern = pattern(&incidences, &at.0, &at.1, &is_hub)?;
+    let (starts, rows) = (&pattern.starts, &pattern.rows);
+    let mut cholesky = Cholesky::analyze(pattern.copied()?, None)?;
     let (mut last, mut slack) = (f64::INFINITY, SLACK[usize::from(shape.off_planes() < FLAT)]);
     for step in 0..2 * STEPS {
         stage.step()?;
@@ -85,14 +88,21 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point], stage: &S
         for k in 0..incidences.len() {
             for e in starts[k]..starts[k + 1] {
                 let (i, j) = (incidences[k], incidences[rows[e]]);
-                if i.facet == j.facet {
+                if i.facet == j.facet && !is_hub[1][i.facet] {
                     values[e] += quadratic(&turning[i.facet].inverse, of_planes[rows[e]], of_planes[k]);
                 }
-                if i.corner == j.corner {
+                if i.corner == j.corner && !is_hub[0][i.corner] {
                     values[e] += mobility[i.corner] * dot(of_corners[rows[e]], of_corners[k]);
                 }
             }
             values[starts[k]] *= 1.0 + slack;
+            let Incidence { facet, corner } = incidences[k];
+            if is_hub[1][facet] {
+                values[starts[k]] += slack * quadratic(&turning[facet].inverse, of_planes[k], of_planes[k]);
+            }
+            if is_hub[0][corner] {
+                values[starts[k]] += slack * mobility[corner] * dot(of_corners[k], of_corners[k]);
+            }
         }
         let pull = |c: usize| {
             let is_pulled = !only_flattens && mobility[c] > 0.0;
@@ -113,7 +123,17 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point], stage: &S
             Err(SolveError::Factorization { .. }) => break,
             done => done?,
         }
-        cholesky.solve(&mut multipliers)?;
+        let part = |is_corner: bool, k: usize| {
+            let Incidence { facet, corner } = incidences[k];
+            if is_corner {
+                scale(of_corners[k], mobility[corner].sqrt())
+            } else {
+                turning[facet].root(of_planes[k])
+            }
+        };
+        if !hubs.solve(&mut cholesky, (&pattern, &values), &mut multipliers, part)? {
+            break;
+        }
         let mut moves: Vec<Point> = memory::gathered((0..targets.len()).map(pull))?;
         let mut turns: Vec<Point> = memory::gathered(turning.iter().map(fall))?;
         for (k, (i, [multiplier])) in incidences.iter().zip(&multipliers).enumerate() {
@@ -154,17 +174,20 @@ fn set_triangles(shape: &mut Shape) {
     }
 }
 
-/// Pairs have an entry where they share the facet or the corner.
+/// Pairs have an entry where they share the facet or the corner, unless that is a hub.
 fn pattern(
     incidences: &[Incidence],
     at_corners: &[Vec<usize>],
     at_facets: &[Vec<usize>],
+    is_hub: &[Vec<bool>; 2],
 ) -> Result<LowerPattern> {
     let (mut starts, mut rows) = (memory::room(incidences.len() + 1)?, Vec::new());
     starts.push(0);
     for (k, i) in incidences.iter().enumerate() {
-        let both = at_corners[i.corner].iter().chain(&at_facets[i.facet]);
-        let mut column: Vec<usize> = memory::sifted(both.copied().filter(|&row| row >= k))?;
+        let at_corner = at_corners[i.corner].iter().filter(|_| !is_hub[0][i.corner]);
+        let of_facet = at_facets[i.facet].iter().filter(|_| !is_hub[1][i.facet]);
+        let column = at_corner.chain(of_facet).copied().filter(|&row| row > k).chain([k]);
+        let mut column: Vec<usize> = memory::sifted(column)?;
         column.sort_unstable();
         column.dedup();
         memory::extend(&mut rows, column.len())?;
@@ -201,6 +224,14 @@ impl Turning {
     fn derivative(&self, point: Point) -> Point {
         let d = sub(point, self.center);
         [dot(self.axes[0], d), dot(self.axes[1], d), 1.0]
+    }
+
+    /// The product with the root of the inverse: the square of its length is `vᵀ M v`.
+    fn root(&self, v: Point) -> Point {
+        let [[xx, xy, _], [_, yy, _], [_, _, zz]] = self.inverse;
+        let first = xx.sqrt();
+        let below = xy / first;
+        [first * v[0] + below * v[1], (yy - below * below).max(0.0).sqrt() * v[1], zz.sqrt() * v[2]]
     }
 
     /// The plane after a change of the unknowns.

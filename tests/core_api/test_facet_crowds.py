@@ -1,0 +1,34 @@
+"""`facet` where a mesh has thousands of one thing in one place."""
+
+import time
+
+import numpy as np
+import pytest
+import ridgeform
+from known_shapes import shapes
+
+
+@pytest.mark.parametrize("crowd", ["book", "copies", "place"])
+def test_thousands_in_one_place_take_a_time_in_proportion(crowd):
+    # Each took minutes: all pairs of a corner with its facets were unknowns of one dense system, and all
+    # triangles on each other were looked at for each of them.
+    count = 3000
+    if crowd == "book":
+        angles = 2 * np.pi * np.arange(count) / count
+        tips = np.column_stack([np.cos(angles), np.sin(angles), 0.5 + 0 * angles])
+        vertices = np.vstack([[[0, 0, 0], [0, 0, 1]], tips])
+        faces = np.column_stack([np.zeros(count), np.ones(count), 2 + np.arange(count)])
+    else:
+        vertices, faces = shapes.grid(60, 60)
+        if crowd == "copies":
+            faces = np.vstack([faces[:200], np.repeat(faces[50:51], count, axis=0)])
+        else:
+            vertices[:count] = vertices[0]
+    mesh = ridgeform.Mesh(vertices, faces.astype(np.int64))
+    before = time.process_time()
+    found = ridgeform.facet(mesh, threads=1)
+    assert time.process_time() - before < 20.0
+    assert np.isfinite(found.vertices).all()
+    planes = found.planes[found.face_facets]
+    heights = (planes[:, None, :3] * found.vertices[found.faces]).sum(2) - planes[:, None, 3]
+    assert np.abs(heights).max() <= 1e-6 * np.ptp(vertices, axis=0).max()
