@@ -171,3 +171,15 @@ def test_meshes_without_positions_are_enough(sphere):
         ridgeform.denoise(intrinsic, values, fidelity=50.0).values,
         ridgeform.denoise(sphere, values, fidelity=50.0).values,
     )
+
+
+def test_columns_that_were_not_begun_at_a_wish_to_finish_stay_as_they_came(sphere):
+    progress = ridgeform.Progress()
+    progress.finish()
+    found = ridgeform.denoise(
+        sphere, sphere.vertices, fidelity=50.0, coupling="separate", progress=progress, tolerance=1e-6
+    )
+    assert found.status == "stopped"
+    assert found.gap >= 0 and np.isfinite(found.objective)
+    assert np.abs(found.values[:, 0] - sphere.vertices[:, 0]).max() > 0
+    np.testing.assert_array_equal(found.values[:, 1:], sphere.vertices[:, 1:])

@@ -19,7 +19,7 @@ pub(super) fn merge(domain: &Domain<'_>, state: &mut Labelling, progress: &Progr
     let mut borders = borders(domain, &state.labels);
     let mut gains: BTreeMap<(u32, u32), f64> = BTreeMap::new();
     let mut asked: Vec<(u32, u32)> = memory::gathered(borders.keys().copied())?;
-    loop {
+    while !progress.is_finishing() {
         let found = asked.par_iter().map(|&pair| {
             progress.check()?;
             Ok((pair, judged(domain, state, pair, borders[&pair])?))

@@ -41,6 +41,9 @@ pub fn labelling(domain: &Domain<'_>, start: &[i32], progress: &Progress) -> Res
     state.fit_all(domain, progress)?;
     let mut energy = state.energy(domain);
     for _ in 0..MOST_ROUNDS {
+        if progress.is_finishing() {
+            break;
+        }
         let before = state.copied()?;
         merge::merge(domain, &mut state, progress)?;
         relabel::relabel(domain, &mut state, progress)?;

@@ -17,7 +17,7 @@ pub(super) fn relabel(domain: &Domain<'_>, state: &mut Labelling, progress: &Pro
         for f in 0..state.labels.len() {
             changed |= improve(domain, state, f);
         }
-        if !changed {
+        if !changed || progress.is_finishing() {
             break;
         }
     }

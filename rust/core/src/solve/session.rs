@@ -154,6 +154,12 @@ impl Session {
             total.add_fixed(&reduced)?;
             return Ok(());
         }
+        let is_first = columns.first() == Some(&0);
+        if call.progress.is_finishing() && !is_first && reduced.constraints.is_none() {
+            // Each column takes some factorizations to come anywhere.
+            total.add(&fast::untouched(reduced)?, &structure.free.free, columns);
+            return Ok(());
+        }
         let outcome = match call.method {
             Method::Clarabel(solver) => {
                 let method = if solver == Solver::ClarabelFaer { "faer" } else { "qdldl" };

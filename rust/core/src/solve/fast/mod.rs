@@ -82,6 +82,17 @@ pub fn minimize<const K: usize>(
     Run::new(reduced, system, warm, h, floor, progress)?.iterate(settings, progress)
 }
 
+/// The values that a run would start from, where there is no time for one: no norm is less than zero.
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub fn untouched<const K: usize>(reduced: Reduced<'_, K>) -> Result<Outcome<K>> {
+    let h = reduced.apply(&reduced.target)?;
+    let (floor, primal) = (reduced.floor(&h), reduced.objective(&reduced.target, &h));
+    let (dual, status) = (reduced.offset, Status::Stopped);
+    Ok(Outcome { u: reduced.target, primal, dual, floor, iterations: 0, status, warm: None })
+}
+
 /// What the last look at the certificate found.
 struct Checked {
     primal: f64,

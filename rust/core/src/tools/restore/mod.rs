@@ -107,7 +107,8 @@ fn on(working: &Working<'_>, unit: Unit, options: &RestoreOptions, progress: &Pr
     };
     if restored.surfaces.iter().all(|piece| piece.surface.is_none()) {
         restored.vertices = memory::twin(positions)?;
-        restored.status = RestoreStatus::Unsure;
+        let is_stopped = segments.status == Status::Stopped || progress.is_finishing();
+        restored.status = if is_stopped { RestoreStatus::Stopped } else { RestoreStatus::Unsure };
         return Ok(restored);
     }
     if options.free && has_free && !progress.is_finishing() {

@@ -53,6 +53,9 @@ impl Divide<'_> {
             let members = members(labels)?;
             let mut divided = false;
             for (fresh, faces) in (members.len() as u32..).zip(members) {
+                if self.progress.is_finishing() {
+                    break;
+                }
                 for f in self.second_side(&faces)?.unwrap_or_default() {
                     labels[f as usize] = fresh;
                     divided = true;

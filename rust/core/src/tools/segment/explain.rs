@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::constants::{EVIDENCE_TO_KEEP, LEAST_AROUND, SPECK_TOLERANCE};
 use super::divide::log_likelihood_ratio;
 use super::patches::{Patch, SegmentPlane};
-use super::surface::{members, Surface};
+use super::surface::{contiguous, members, Surface};
 use crate::mesh::vector::{add, dot};
 use crate::progress::Progress;
 use crate::{memory, Result};
@@ -44,6 +44,10 @@ impl Explain<'_> {
     pub(super) fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
         loop {
             self.progress.check()?;
+            if self.progress.is_finishing() {
+                *labels = contiguous(labels)?.0;
+                return Ok(());
+            }
             let segments = self.measured(labels)?;
             let count = segments.members.len();
             let mut order = memory::numbers(count)?;

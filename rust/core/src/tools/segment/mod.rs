@@ -47,7 +47,7 @@ use crate::linear::Columns;
 use crate::memory::Tool;
 use crate::mesh::{Mesh, TJunctions, Working};
 use crate::progress::Progress;
-use crate::solve::Settings;
+use crate::solve::{Settings, Status};
 use crate::tools::answer;
 use crate::tools::Scale;
 use crate::unit::Unit;
@@ -282,6 +282,6 @@ fn whole(
         fidelity: found.fidelity,
         epsilons,
         alternations: found.alternations,
-        status: found.status,
+        status: if progress.is_finishing() { Status::Stopped } else { found.status },
     })
 }

@@ -128,12 +128,15 @@ impl<'a> Passes<'a> {
         if self.planes.is_some() || !self.is_shape || self.options.method != SegmentMethod::Fitted {
             return Ok(None);
         }
+        if self.is_finishing() {
+            return Ok(None);
+        }
         Regions::between_clear_ridges(self.surface, self.noise, &self.explanation(true, None))
     }
 
     /// Divides segments of a shape that lie across a ridge.
     fn divide(&self, labels: &mut Vec<u32>) -> Result<()> {
-        if !self.is_shape {
+        if !self.is_shape || self.is_finishing() {
             return Ok(());
         }
         let [deviation, flat] = self.deviations();
@@ -143,7 +146,7 @@ impl<'a> Passes<'a> {
 
     /// Gives segments of a shape to the planes, and small ones also to the `curved` sides, that explain them.
     fn explain(&self, labels: &mut Vec<u32>, curved: bool) -> Result<()> {
-        if self.is_shape {
+        if self.is_shape && !self.is_finishing() {
             self.explanation(curved, self.groups()).run(labels)?;
         }
         Ok(())
@@ -167,11 +170,14 @@ impl<'a> Passes<'a> {
         self.regions.map(|regions| regions.labels.as_slice())
     }
 
-    /// Merges and relabels in turns.
+    /// Merges and relabels in turns; only merges once the caller wishes to finish.
     fn fit(&self, merging: &Merging<'_>, labels: &mut Vec<u32>) -> Result<()> {
         let relabel = self.relabel(self.least_faces());
         let threshold = BEND * self.options.length_weight;
         for (round, share) in BEND_SHARES.into_iter().enumerate() {
+            if self.is_finishing() {
+                break;
+            }
             self.report(0.9 + 0.02 * round as f64, "segments");
             merging.below(labels, share * threshold)?;
             merging.absorb_small(labels, self.least_faces())?;
@@ -184,8 +190,9 @@ impl<'a> Passes<'a> {
             }
         }
         let [_, flat] = self.deviations();
+        let is_straightened = self.is_shape && !self.is_finishing();
         let straighten =
-            self.is_shape.then(|| Straighten::new(self.surface, flat, self.groups(), self.progress));
+            is_straightened.then(|| Straighten::new(self.surface, flat, self.groups(), self.progress));
         let straighten = straighten.transpose()?;
         if let Some(straighten) = &straighten {
             straighten.run(labels)?;
@@ -194,7 +201,7 @@ impl<'a> Passes<'a> {
         merging.below(labels, threshold)?;
         merging.absorb_small(labels, self.least_faces())?;
         self.explain(labels, true)?;
-        if let Some(straighten) = &straighten {
+        if let (Some(straighten), false) = (&straighten, self.is_finishing()) {
             straighten.run(labels)?;
             relabel.rejoin(labels)?;
         }
@@ -307,6 +314,11 @@ impl<'a> Passes<'a> {
             }
         }
         contiguous(&nested)
+    }
+
+    /// Whether what only makes borders better is left out.
+    fn is_finishing(&self) -> bool {
+        self.progress.is_finishing()
     }
 
     fn report(&self, fraction: f64, stage: &str) {

@@ -55,10 +55,13 @@ impl Relabel<'_> {
     pub(super) fn run(&self, labels: &mut Vec<u32>) -> Result<()> {
         for _ in 0..RELABEL_ROUNDS {
             self.progress.check()?;
+            if self.progress.is_finishing() {
+                break;
+            }
             let before = memory::twin(labels)?;
             let mut round = Round::new(self, memory::twin(labels)?)?;
             for _ in 0..RELABEL_SWEEPS {
-                if !self.sweep(&mut round, labels) {
+                if !self.sweep(&mut round, labels) || self.progress.is_finishing() {
                     break;
                 }
             }

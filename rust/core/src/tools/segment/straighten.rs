@@ -87,6 +87,9 @@ impl<'a> Straighten<'a> {
             }
             for (pair, faces) in borders {
                 self.progress.check()?;
+                if self.progress.is_finishing() {
+                    return Ok(());
+                }
                 self.cut(labels, pair, &faces);
             }
         }
