@@ -149,8 +149,8 @@ impl<'a> Working<'a> {
         Ok(least)
     }
 
-    /// The faces that were turned over because of faces across seams: in the mesh itself they agree with their
-    /// neighbors as they are.
+    /// The faces that were turned over because of faces across seams: in the mesh itself they agree with
+    /// their neighbors as they are.
     ///
     /// # Errors
     /// [`crate::Error::Solve`] where memory is missing.

@@ -158,9 +158,8 @@ pub(crate) fn check(tool: Tool, mesh: &Mesh, random: &mut Random) -> Result<()> 
                 ModeOptions { energy, solve: SolveOptions { solver: Solver::Auto, ..solving(random) } };
             let found = vibration_modes(mesh, 1 + (random.bits() % 3) as usize, &options, &progress)?;
             assert_finite("modes", &found.values.data);
-            // Energies grow with a power of the inverse size, up to the fourth:
-            // of a mesh of 1e-124 they are past all numbers, on the side of 0 where they are; one energy can be
-            // below it, on noisy sheets.
+            // Energies grow with a power of the inverse size, up to the fourth: of a mesh of 1e-124 they are
+            // past all numbers, on the side of 0 where they are. One energy can be below it, on noisy sheets.
             let longest =
                 mesh.edge_lengths().as_flattened().iter().fold(0.0_f64, |longest, l| longest.max(*l));
             let can_be = |energy: f64| energy > 0.0 || energy < 0.0 && kind == Energy::L2CurvedHessian;

@@ -2,8 +2,8 @@
 //!
 //! Each couples all its pairs of facet and corner: a dense block, and a factor that takes the cube of their
 //! number. The block has no more than rank three, though. The system without these blocks is factorized, and
-//! what they add is solved for on top of it [Woodbury: Golub and Van Loan 2013, section 2.1.4]; where both are
-//! far apart digits are lost on the way, and what is left over is solved for again.
+//! what they add is solved for on top of it [Woodbury: Golub and Van Loan 2013, section 2.1.4]; where both
+//! are far apart digits are lost on the way, and what is left over is solved for again.
 
 use std::cmp::Reverse;
 
@@ -64,9 +64,9 @@ impl Hubs {
         Ok(mask)
     }
 
-    /// Solves for `right` where `cholesky` has the factor of the matrix of `values` in `pattern`, to which the
-    /// blocks of all hubs are added: `part` gives the row of a pair for a corner or a facet. Whether rounding
-    /// leaves a solution.
+    /// Solves for `right` where `cholesky` has the factor of the matrix of `values` in `pattern`, to which
+    /// the blocks of all hubs are added: `part` gives the row of a pair for a corner or a facet. Whether
+    /// rounding leaves a solution.
     pub(super) fn solve(
         &self,
         cholesky: &mut Cholesky,

@@ -27,10 +27,10 @@ pub(super) fn options_on(working: &Working<'_>, options: &FillHolesOptions) -> F
 /// Patches in vertices and coordinates of the mesh as it was:
 /// beside an edge of it in the vertices that this edge has.
 ///
-/// A vertex here may be several of the mesh, and a corner of a patch between two seams is that of one of them:
-/// its other edges may then be such as the mesh or another patch has. There the patch gets vertices of its
-/// own, on a seam like those around. Where faces of the mesh disagree about what is outside only across seams,
-/// a patch agrees with most of those that it touches.
+/// A vertex here may be several of the mesh, and a corner of a patch between two seams is that of one of
+/// them: its other edges may then be such as the mesh or another patch has. There the patch gets vertices of
+/// its own, on a seam like those around. Where faces of the mesh disagree about what is outside only across
+/// seams, a patch agrees with most of those that it touches.
 ///
 /// # Errors
 /// [`crate::Error::Solve`] where memory is missing.
