@@ -22,6 +22,16 @@ def keeps_faces(settings: object) -> bool:
     return settings.topology == "KEPT"
 
 
+def makes_faces(settings: object) -> bool:
+    """Whether it gets others."""
+    return not keeps_faces(settings)
+
+
+def has_halves(settings: object) -> bool:
+    """Whether the facets of one half are mirrored."""
+    return makes_faces(settings) and settings.symmetric != "NONE"
+
+
 MODES = items(
     AUTO="As many as the shape gives evidence for",
     COUNT="As many as you choose",
@@ -32,6 +42,15 @@ TOPOLOGIES = items(
     TRIANGLES="Triangles in the plane of each facet",
     QUADS="A quad for each facet with four corners, triangles for the others",
     KEPT="The vertices and faces that the mesh has, each on its facet: only where they are changes",
+)
+
+
+SYMMETRIES = items(
+    NONE="Facets as the shape suggests on each side",
+    AUTO="Across the first axis that the mesh is symmetric across",
+    X="Across the X axis of the object",
+    Y="Across the Y axis of the object",
+    Z="Across the Z axis of the object",
 )
 
 
@@ -67,6 +86,15 @@ class FacetSettings(Settings):
         "gets one",
         shown=keeps_faces,
         flag="--shape-key",
+    )
+    symmetric: choice(
+        "Symmetric",
+        "Make facets of one half and mirror them. The mesh must be symmetric across the plane through its "
+        "origin or its middle",
+        SYMMETRIES,
+        default="NONE",
+        shown=makes_faces,
+        flag="--symmetric",
     )
     keep_volume: boolean(
         "Keep Volume",

@@ -17,7 +17,7 @@ from ..framework.job import Task
 from ..framework.run import Part, Run, counted, meshes_phrase, most, panel_lines, percent, total
 from ..framework.surface import group_weights, painted_edges, surface_of
 from ..framework.volume import is_closed, volume_and_centroid
-from .settings import FacetSettings, by_count, by_error, keeps_faces
+from .settings import FacetSettings, by_count, by_error, has_halves, keeps_faces
 
 KEY_NAME = "Facets"
 
@@ -74,6 +74,8 @@ class Faceting(Run):
         source = faceting.read(obj, surface.weld, taking)
         weights = painted_edges(obj, self.settings, mesh_io.triangles(mesh), surface.weld)
         size = float(np.linalg.norm(np.ptp(surface.mesh.vertices, axis=0)))
+        if has_halves(self.settings):
+            _refuse_parts(obj, self.settings, taking)
         if self.settings.keep_volume and not is_closed(surface.weld.triangles, len(surface.weld.first)):
             raise RefusedError(
                 f'"{obj.name}" encloses no volume to keep: it is open, or its faces disagree on the outside'
@@ -160,6 +162,16 @@ def _taking(obj: bpy.types.Object, settings: object, edited: bool) -> np.ndarray
     return taking
 
 
+def _refuse_parts(obj: bpy.types.Object, settings: object, taking: np.ndarray) -> None:
+    """`RefusedError` where facets cannot be mirrored, with faces `taking` (f,) bool part."""
+    if not taking.all():
+        raise RefusedError(
+            f'Facets of a part of "{obj.name}" cannot be symmetric: select all faces and take no mask'
+        )
+    if settings.keep_volume:
+        raise RefusedError("Symmetric facets cannot keep the volume: choose one of both")
+
+
 def _along_faces(source: Facetable, weights: np.ndarray | None) -> np.ndarray | None:
     """Edge weights (l, 3), or `None`, with which facets do not run through faces that stay whole."""
     old, weld = source.before.old, source.weld
@@ -196,6 +208,7 @@ def _made(
         topology=settings.topology,
         flips=not part.as_key,
         keep_volume=settings.keep_volume,
+        symmetric=settings.symmetric if has_halves(settings) else None,
         flat="SHARP" in settings.marks,
         progress=progress,
         check=part.task.check,

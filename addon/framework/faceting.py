@@ -89,6 +89,7 @@ def facets_of(
     topology: str = "POLYGONS",
     flips: bool = True,
     keep_volume: bool = False,
+    symmetric: str | None = None,
     flat: bool = True,
     progress: ridgeform.Progress | None = None,
     check: Callable[[], None] = lambda: None,
@@ -105,6 +106,8 @@ def facets_of(
         options["keep_triangles"] = True
     if keep_volume:
         options["keep_volume"] = True
+    if symmetric is not None:
+        options["symmetric"] = symmetric.lower()
     wanted = {"facets": facets, "error": error, "progress": progress}
     found, is_known = _known.of(mesh, options, lambda: ridgeform.facet(mesh, **options, **wanted))
     if is_known:

@@ -158,3 +158,42 @@ def test_a_volume_is_refused_on_an_open_mesh():
     half_ball()
     with pytest.raises(RuntimeError, match="encloses no volume to keep"):
         bpy.ops.ridgeform.facet(keep_volume=True)
+
+
+def is_symmetric(obj):
+    """Whether the mesh is its own image across X, to what it stores."""
+    places = np.round(kit.coordinates(obj).astype(float), 6) + 0.0
+    faces = {frozenset(map(tuple, places[list(face)])) for face in faces_of(obj.data)}
+    return faces == {frozenset((-x + 0.0, y, z) for x, y, z in face) for face in faces}
+
+
+@pytest.mark.parametrize("topology", ["POLYGONS", "QUADS"])
+@pytest.mark.parametrize("symmetric", ["X", "AUTO"])
+def test_a_monkey_gets_symmetric_facets(topology, symmetric):
+    bpy.ops.mesh.primitive_monkey_add()
+    obj = bpy.context.object
+    (entry,) = facet(mode="COUNT", facets=60, symmetric=symmetric, topology=topology)
+    assert abs(entry["facets"] - 60) <= 2
+    assert off_planes(obj.data) < 1e-5 and not obj.data.validate()
+    if topology == "POLYGONS":
+        assert is_symmetric(obj)
+
+
+def test_symmetric_facets_are_refused_where_they_cannot_be():
+    obj = kit.bumpy_box()
+    before = read_all(obj.data)
+    with pytest.raises(RuntimeError, match="needs a mesh that is symmetric"):
+        bpy.ops.ridgeform.facet(symmetric="AUTO")
+    with pytest.raises(RuntimeError, match="choose one of both"):
+        bpy.ops.ridgeform.facet(symmetric="X", keep_volume=True)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    obj.data.polygons[0].select = True
+    bpy.ops.object.mode_set(mode="EDIT")
+    with pytest.raises(RuntimeError, match="Facets of a part"):
+        bpy.ops.ridgeform.facet(symmetric="X")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert {name: before[name] for name in ("position", "UVMap")} == {
+        name: read_all(obj.data)[name] for name in ("position", "UVMap")
+    }

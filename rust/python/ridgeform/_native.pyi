@@ -183,6 +183,7 @@ def facet(
     faces: ArrayLike | None = None,
     keep_triangles: bool = False,
     keep_volume: bool = False,
+    symmetric: Literal["x", "y", "z", "auto"] | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Faceted: ...

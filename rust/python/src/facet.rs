@@ -2,7 +2,7 @@
 
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
-use ridgeform_core::tools::{self, FacetMerges, FacetOptions};
+use ridgeform_core::tools::{self, FacetMerges, FacetOptions, Symmetric};
 
 use crate::mesh::Mesh;
 use crate::numbers::at_least_if;
@@ -62,7 +62,7 @@ pub struct Faceted {
     /// Edges of these faces that were flipped, since they would have folded.
     #[pyo3(get)]
     n_flipped: usize,
-    /// Faces that are folded, or no more than a line, all the same.
+    /// Faces that are folded, no more than a line, or not on their facet, all the same.
     #[pyo3(get)]
     n_folded: usize,
     /// "solved", or "stopped" (`Progress.finish` was called).
@@ -110,6 +110,13 @@ impl Faceted {
         )
     }
 }
+
+const SYMMETRIC: [(&str, Symmetric); 4] = [
+    ("x", Symmetric::Across(0)),
+    ("y", Symmetric::Across(1)),
+    ("z", Symmetric::Across(2)),
+    ("auto", Symmetric::Found),
+];
 
 fn run(
     py: Python<'_>,
@@ -177,6 +184,9 @@ fn run(
 ///     the mesh then, and `labels` says which face is in which
 /// keep_volume : whether the facets are to enclose the volume that the mesh does, which must be closed:
 ///     planes move outward by the same distance
+/// symmetric : "x", "y" or "z", the axis across which the mesh is symmetric, "auto" for the first that it is
+///     symmetric across, or None: facets are found on one half, and mirrored. The plane goes through the
+///     origin or the middle of the bounding box; not with `faces`, `keep_triangles` or `keep_volume`
 /// threads : int or None
 /// progress : Progress or None
 ///
@@ -195,7 +205,7 @@ fn run(
 /// and planes in turns: Cohen-Steiner, Alliez and Desbrun, Variational shape approximation, 2004.
 #[pyfunction]
 #[pyo3(signature = (mesh, *, facets=None, error=None, edge_weights=None, faces=None,
-    keep_triangles=false, keep_volume=false, threads=None, progress=None))]
+    keep_triangles=false, keep_volume=false, symmetric=None, threads=None, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn facet(
     py: Python<'_>,
@@ -206,6 +216,7 @@ pub(crate) fn facet(
     faces: Option<&Bound<'_, PyAny>>,
     keep_triangles: bool,
     keep_volume: bool,
+    symmetric: Option<&str>,
     threads: Option<i64>,
     progress: Option<&Bound<'_, Progress>>,
 ) -> PyResult<Faceted> {
@@ -217,6 +228,7 @@ pub(crate) fn facet(
         faces: arrays::mask("faces", faces, m, "face")?,
         keep_triangles,
         keep_volume,
+        symmetric: symmetric.map(|word| options::choice(py, "symmetric", word, &SYMMETRIC)).transpose()?,
         threads: at_least_if(py, "threads", threads, 1)?,
     };
     run(py, mesh.clone().unbind(), None, options, progress)

@@ -27,7 +27,7 @@ pub use diffusion_curves::{
     DiffusionCurvesOptions, Redrawn, TracedCurve,
 };
 pub use energy_options::EnergyOptions;
-pub use facet::{facet, FacetMerges, FacetOptions, Faceted, KeptTriangles};
+pub use facet::{facet, FacetMerges, FacetOptions, Faceted, KeptTriangles, Symmetric};
 pub use fill_holes::{
     fill_holes, filling_demand, FillHolesOptions, Filled, FilledHole, HoleStatus, LoopChoice, PatchShape,
     Sharpness,

@@ -1,5 +1,6 @@
 //! What a call is about: the mesh in the unit of the calculation, and which of its faces take part.
 
+use super::mirror::Mirror;
 use super::options::FacetOptions;
 use super::regions::OUTSIDE;
 use crate::error::MeshError;
@@ -22,10 +23,16 @@ pub(super) struct Job<'a> {
     pub(super) is_held: Vec<bool>,
     /// Whether facets are to be regions of the mesh to the end, on which its triangles can be put.
     pub(super) keeps: bool,
+    /// The plane that the vertices on it stay on, in the unit of the calculation.
+    pub(super) mirror: Option<Mirror>,
 }
 
 impl<'a> Job<'a> {
-    pub(super) fn new(working: &'a Working<'a>, options: &FacetOptions) -> Result<Self> {
+    pub(super) fn new(
+        working: &'a Working<'a>,
+        options: &FacetOptions,
+        mirror: Option<Mirror>,
+    ) -> Result<Self> {
         let here = working.mesh();
         let faces = here.connectivity().faces();
         let positions = here.positions().ok_or(MeshError::NoPositions)?;
@@ -48,7 +55,12 @@ impl<'a> Job<'a> {
             unselected.flat_map(|(face, _)| face).for_each(|&v| is_fixed[v as usize] = true);
         }
         let is_held = |&f: &u32| faces[f as usize].iter().any(|&v| is_fixed[v as usize]);
+        let mirror = mirror.map(|Mirror { axis, at }| {
+            let here = at - working.place([0.0; 3])[axis];
+            Mirror { axis, at: (here - center[axis]) * (1.0 / diagonal) }
+        });
         Ok(Self {
+            mirror,
             working,
             center,
             diagonal,

@@ -27,7 +27,7 @@ pub struct KeptTriangles {
     pub corners: Vec<[u32; 3]>,
     /// Edges that were flipped since a face would have folded.
     pub n_flipped: usize,
-    /// Faces that are folded, or no more than a line, all the same.
+    /// Faces that are folded, no more than a line, or not on their facet, all the same.
     pub n_folded: usize,
 }
 

@@ -13,7 +13,9 @@ mod borders;
 mod constants;
 mod count;
 mod crossings;
+mod doubling;
 mod faces;
+mod faceted;
 mod faults;
 mod fitting;
 mod hierarchy;
@@ -22,6 +24,7 @@ mod job;
 mod joining;
 mod keeping;
 mod merging;
+mod mirror;
 mod moments;
 mod nearest;
 mod options;
@@ -35,65 +38,28 @@ mod skin;
 mod solve;
 mod stage;
 mod straight;
+mod symmetry;
 mod triangulation;
 mod unfolding;
 mod verdict;
 mod volume;
 
+pub use faceted::{FacetMerges, Faceted};
 pub use keeping::KeptTriangles;
-pub use options::FacetOptions;
+pub use options::{FacetOptions, Symmetric};
 
 use crate::error::MeshError;
 use crate::memory::{self, Tool};
-use crate::mesh::vector::{add, scale, Point};
+use crate::mesh::vector::{add, scale};
 use crate::mesh::{Mesh, Working};
 use crate::progress::Progress;
 use crate::solve::Status;
 use crate::Result;
 use job::Job;
 use merging::Merges;
+use mirror::Mirror;
 use regions::OUTSIDE;
 use search::Found;
-
-/// A mesh made of facets.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Faceted {
-    /// The corners of the facets, and the vertices of faces that were to stay.
-    pub vertices: Vec<Point>,
-    /// The vertex of the mesh where each vertex comes from.
-    pub origins: Vec<u32>,
-    /// The facets as simple polygons, counterclockwise seen from outside; one with holes is several.
-    pub polygons: Vec<Vec<u32>>,
-    /// The facet of each polygon.
-    pub polygon_facets: Vec<u32>,
-    /// The facets as triangles.
-    pub faces: Vec<[u32; 3]>,
-    /// The facet of each triangle.
-    pub face_facets: Vec<u32>,
-    /// The facet nearest to each face of the mesh; −1 for faces that name a vertex twice.
-    pub labels: Vec<i32>,
-    /// The plane of each facet: its unit normal and its distance from the origin along that.
-    pub planes: Vec<[f64; 4]>,
-    /// How many facets were made; further ones are faces that stayed.
-    pub n_facets: usize,
-    /// Root mean square distance from the faces of the mesh to the facets.
-    pub rms: f64,
-    /// The largest distance from the middle of a face.
-    pub largest: f64,
-    /// Pairs of facets that pass through each other, and do not on the mesh.
-    pub n_crossings: usize,
-    /// The mesh's own triangles on the facets, where they were asked for.
-    pub kept: Option<KeptTriangles>,
-    /// `Solved`, or `Stopped` if the caller asked to finish early.
-    pub status: Status,
-    /// What other numbers of facets start from.
-    pub merges: FacetMerges,
-}
-
-/// The order in which faces were merged: with it other numbers of facets are quick,
-/// and nested where they start.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct FacetMerges(Merges);
 
 /// Makes facets of `mesh`. With the `merges` of an earlier call, of the same mesh, mask and weights,
 /// that part is not done again.
@@ -108,10 +74,30 @@ pub fn facet(
     progress: &Progress,
 ) -> Result<Faceted> {
     options.check(mesh)?;
+    mesh.positions().ok_or(MeshError::NoPositions)?;
+    match options.symmetric {
+        Some(symmetric) => {
+            let half = symmetry::Half::new(mesh, symmetric)?;
+            half.facets(mesh, merges, options, progress, |merges, options, progress| {
+                run(&half.mesh, merges, options, Some(half.mirror), progress)
+            })
+        }
+        None => run(mesh, merges, options, None, progress),
+    }
+}
+
+/// The facets of a mesh that ends at a mirror's plane, if there is one.
+fn run(
+    mesh: &Mesh,
+    merges: Option<&FacetMerges>,
+    options: &FacetOptions,
+    mirror: Option<Mirror>,
+    progress: &Progress,
+) -> Result<Faceted> {
     options.solve().run(|| {
         mesh.demand(Tool::Facet).admit(None)?;
         let working = Working::contracted(mesh)?;
-        let job = Job::new(&working, options)?;
+        let job = Job::new(&working, options, mirror)?;
         let scan = job.scan(options)?;
         if scan.area.is_nan() || scan.area <= 0.0 {
             return Err(MeshError::NoFaces.into());

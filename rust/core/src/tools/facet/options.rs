@@ -4,6 +4,16 @@ use crate::mesh::Mesh;
 use crate::tools::options::{check_edge_weights, check_faces, check_positive, SolveOptions};
 use crate::{Error, Result};
 
+/// What a mesh is symmetric across: the plane across an axis of coordinates through the origin, or through
+/// the middle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Symmetric {
+    /// The axis: 0, 1 or 2.
+    Across(usize),
+    /// The first axis that it is symmetric across.
+    Found,
+}
+
 /// How to make facets.
 #[derive(Debug, Clone, Default)]
 pub struct FacetOptions {
@@ -23,6 +33,8 @@ pub struct FacetOptions {
     pub keep_triangles: bool,
     /// Whether the facets are to enclose the volume that the mesh does, which must be closed.
     pub keep_volume: bool,
+    /// Whether the facets of a mesh that is symmetric are to be so, and how.
+    pub symmetric: Option<Symmetric>,
     /// Threads to use; all where `None`. The result does not depend on it.
     pub threads: Option<usize>,
 }
@@ -36,7 +48,16 @@ impl FacetOptions {
         check_positive("error", self.error, "it must be positive, a distance")?;
         self.solve().settings()?;
         check_edge_weights(self.edge_weights.as_deref(), m)?;
-        check_faces(self.faces.as_deref(), m)
+        check_faces(self.faces.as_deref(), m)?;
+        let others = [
+            ("faces", self.faces.is_some()),
+            ("keep_triangles", self.keep_triangles),
+            ("keep_volume", self.keep_volume),
+        ];
+        match others.into_iter().find(|(_, given)| self.symmetric.is_some() && *given) {
+            Some((other, _)) => Err(Error::argument("symmetric", format!("does not go with {other}"))),
+            None => Ok(()),
+        }
     }
 
     /// The threads, checked where they are started.

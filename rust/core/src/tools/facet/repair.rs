@@ -6,7 +6,7 @@ use std::collections::HashSet;
 use super::constants::TRIES;
 use super::faces::Faces;
 use super::moments::Moments;
-use super::shape::{sides, Facet, Shape};
+use super::shape::{sides, Corner, Facet, Shape};
 use super::triangulation::triangles;
 use crate::mesh::vector::{between, cross, distance, dot, sub};
 use crate::ordered::Ordered;
@@ -131,8 +131,14 @@ fn contract(shape: &mut Shape, [a, b]: [u32; 2]) -> Result<Option<Option<u32>>> 
     }
     let other = shape.corners[b as usize];
     let corner = &mut shape.corners[a as usize];
-    corner.point = between(corner.point, other.point, 0.5);
-    corner.home = between(corner.home, other.home, 0.5);
+    match (corner.across, other.across) {
+        (None, Some(_)) => *corner = Corner { firmness: corner.firmness, ..other },
+        (Some(_), None) => {}
+        _ => {
+            corner.point = between(corner.point, other.point, 0.5);
+            corner.home = between(corner.home, other.home, 0.5);
+        }
+    }
     for corners in shape.facets.iter_mut().flat_map(|facet| &mut facet.loops) {
         corners.iter_mut().filter(|c| **c == b).for_each(|c| *c = a);
         corners.dedup();

@@ -359,6 +359,11 @@ impl Job<'_> {
         let firmness = |v: u32| (!is_fixed[v as usize]).then(|| refusals.firmness(v));
         let mut shape =
             Shape::new(&regions, &moments, &self.positions, &parts, &is_held, firmness, tolerance)?;
+        if let Some(mirror) = self.mirror {
+            for corner in &mut shape.corners {
+                corner.across = (corner.home[mirror.axis] == mirror.at).then_some(mirror.axis);
+            }
+        }
         let mut faces = Faces { scan, labels, is_held: memory::twin(&refusals.is_held)? };
         fitting::settle(&mut shape, &mut faces, stage)?;
         fitting::fold(&mut shape, &mut faces, stage)?;

@@ -18,6 +18,8 @@ pub(super) struct Corner {
     pub firmness: f64,
     /// Never moved.
     pub is_fixed: bool,
+    /// The axis of coordinates along which it does not move, as on a mirror's plane.
+    pub across: Option<usize>,
     /// The vertex of the mesh.
     pub vertex: u32,
 }
@@ -101,7 +103,14 @@ impl Shape {
                     *names.entry(v).or_insert_with(|| {
                         let point = positions[v as usize];
                         let (firmness, is_fixed) = (firmness(v).unwrap_or(1.0), firmness(v).is_none());
-                        shape.corners.push(Corner { point, home: point, firmness, is_fixed, vertex: v });
+                        shape.corners.push(Corner {
+                            point,
+                            home: point,
+                            firmness,
+                            is_fixed,
+                            across: None,
+                            vertex: v,
+                        });
                         shape.corners.len() as u32 - 1
                     })
                 };
@@ -111,6 +120,14 @@ impl Shape {
             memory::push(&mut shape.facets, Facet { loops, plane, moments: *moments, is_held, part })?;
         }
         Ok(shape)
+    }
+
+    /// What of a vector a corner may move along.
+    pub(super) fn free(&self, corner: usize, mut vector: Point) -> Point {
+        if let Some(axis) = self.corners[corner].across {
+            vector[axis] = 0.0;
+        }
+        vector
     }
 
     pub(super) fn point(&self, corner: u32) -> Point {

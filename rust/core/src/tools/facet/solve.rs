@@ -82,8 +82,9 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point], stage: &S
         let turning: Vec<Turning> = memory::gathered(shape.facets.iter().map(Turning::new))?;
         let of_plane = |i: &Incidence| turning[i.facet].derivative(shape.corners[i.corner].point);
         let of_planes: Vec<Point> = memory::gathered(incidences.iter().map(of_plane))?;
-        let of_corners: Vec<Point> =
-            memory::gathered(incidences.iter().map(|i| shape.facets[i.facet].plane.normal))?;
+        let of_corners: Vec<Point> = memory::gathered(
+            incidences.iter().map(|i| shape.free(i.corner, shape.facets[i.facet].plane.normal)),
+        )?;
         let mut values = memory::repeated(0.0, rows.len())?;
         for k in 0..incidences.len() {
             for e in starts[k]..starts[k + 1] {
@@ -107,7 +108,7 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point], stage: &S
         let pull = |c: usize| {
             let is_pulled = !only_flattens && mobility[c] > 0.0;
             if is_pulled {
-                sub(targets[c], shape.corners[c].point)
+                shape.free(c, sub(targets[c], shape.corners[c].point))
             } else {
                 [0.0; 3]
             }

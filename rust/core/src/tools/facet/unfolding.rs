@@ -52,8 +52,14 @@ impl<'a> Sheet<'a> {
             && self.upright(f, |v| places[v as usize]) <= FILE_ROUNDING
     }
 
+    /// Faces that are folded, or not on their facets, as where more than two faces meet at an edge.
     pub(super) fn n_folded(&self, places: &[Point]) -> usize {
-        (0..self.faces.len()).filter(|&f| self.is_folded(f, places)).count()
+        let is_off = |f: usize| {
+            let facet = self.shape.facets.get(self.labels[f] as usize).filter(|facet| !facet.is_held);
+            let off = |v: u32| facet.map_or(0.0, |facet| facet.plane.height(places[v as usize]).abs());
+            self.faces[f].into_iter().any(|v| off(v) > FILE_ROUNDING)
+        };
+        (0..self.faces.len()).filter(|&f| self.is_folded(f, places) || is_off(f)).count()
     }
 
     /// How many faces of each facet are folded.
