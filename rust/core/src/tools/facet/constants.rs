@@ -97,6 +97,10 @@ pub(super) const COUNTS: usize = 4;
 /// The root mean square distance that facets keep where nothing is asked for.
 pub(super) const ERROR: f64 = 0.005;
 
+/// Planes that meet at less than this (radians; 15 degrees) may be a round shape in many sides: of prisms,
+/// Segment takes those of up to 24 for what they are.
+pub(super) const ROUND: f64 = std::f64::consts::PI / 12.0;
+
 /// Faces with less than this part of their facet's area say nothing about its plane.
 pub(super) const LITTLE: f64 = 1e-3;
 

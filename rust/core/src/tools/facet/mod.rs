@@ -28,6 +28,7 @@ mod mirror;
 mod moments;
 mod nearest;
 mod options;
+mod planes;
 mod reducing;
 mod refusals;
 mod regions;

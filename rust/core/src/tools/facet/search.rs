@@ -126,7 +126,7 @@ impl Job<'_> {
         let [fewest, most] = merges.range(n);
         let area = scan.area.max(f64::MIN_POSITIVE);
         let planes = merges.planes(n, area);
-        let is_evident = matches!(wanted, Wanted::Found) && self.is_made_of(merges, planes)?;
+        let is_evident = matches!(wanted, Wanted::Found) && self.is_made_of(merges, planes, scan)?;
         let aim = merges.count(wanted.and(n_held), n, is_evident, self.positions.len(), area);
         let mut count = aim;
         // With fewer facets than are wanted, and with as many or more.
@@ -201,26 +201,6 @@ impl Job<'_> {
         let (nearest, distances) = settled.faces.nearest(&settled.shape, &inspection)?;
         let labels = if self.keeps { settled.faces.labels } else { nearest };
         Ok(Found { shape: settled.shape, inspection, labels, distances, n_facets, n_crossings })
-    }
-
-    /// Whether most of so many planes that the mesh has are evident: three of their vertices lie on no more
-    /// than three of them, so that planes say where these are. That is no chance, as it is where every face
-    /// has a plane of its own, or every quad of a round shape.
-    fn is_made_of(&self, merges: &Merges, planes: usize) -> Result<bool> {
-        let n = self.parts.len();
-        let (tree, cut) = Hierarchy::new(merges, n, n - planes)?;
-        let (labels, tops) = tree.labels(&cut)?;
-        let faces = self.working.mesh().connectivity().faces();
-        let free = self.parts.iter().zip(&labels).zip(&self.is_held).filter(|(_, &held)| !held);
-        let corners = free.flat_map(|((&f, &label), _)| faces[f as usize].map(|v| (v, label)));
-        let mut at: Vec<(u32, u32)> = memory::sifted(corners)?;
-        at.sort_unstable();
-        at.dedup();
-        let mut n_known = memory::repeated(0_usize, tops.len())?;
-        for of_vertex in at.chunk_by(|a, b| a.0 == b.0).filter(|of_vertex| of_vertex.len() <= 3) {
-            of_vertex.iter().for_each(|&(_, label)| n_known[label as usize] += 1);
-        }
-        Ok(2 * n_known.iter().filter(|&&known| known >= 3).count() > tops.len())
     }
 
     /// The shape of `count` regions; where that is not sound of smaller ones, and of smaller ones everywhere

@@ -1,0 +1,49 @@
+//! Whether a mesh consists of its planes, as what was modeled by hand does.
+
+use super::constants::ROUND;
+use super::faces::Scan;
+use super::hierarchy::Hierarchy;
+use super::job::Job;
+use super::merging::Merges;
+use super::regions::OUTSIDE;
+use crate::mesh::vector::{dot, Point};
+use crate::{memory, Result};
+
+impl Job<'_> {
+    /// Whether most of so many planes that the mesh has are evident: three of their vertices lie on no more
+    /// than three of them, so that planes say where these are, and with most of their neighbors they make
+    /// a sharp edge. That is no chance, as it is where every face has a plane of its own, or every quad of a
+    /// round shape, and no round shape in many sides.
+    pub(super) fn is_made_of(&self, merges: &Merges, planes: usize, scan: &Scan) -> Result<bool> {
+        let n = self.parts.len();
+        let (tree, cut) = Hierarchy::new(merges, n, n - planes)?;
+        let (labels, tops) = tree.labels(&cut)?;
+        let connectivity = self.working.mesh().connectivity();
+        let free = || self.parts.iter().zip(&labels).zip(&self.is_held).filter(|(_, &held)| !held);
+        let corners =
+            free().flat_map(|((&f, &label), _)| connectivity.faces()[f as usize].map(|v| (v, label)));
+        let mut at: Vec<(u32, u32)> = memory::sifted(corners)?;
+        at.sort_unstable();
+        at.dedup();
+        let mut n_known = memory::repeated(0_usize, tops.len())?;
+        for of_vertex in at.chunk_by(|a, b| a.0 == b.0).filter(|of_vertex| of_vertex.len() <= 3) {
+            of_vertex.iter().for_each(|&(_, label)| n_known[label as usize] += 1);
+        }
+        let of_all = self.labels(labels.iter().copied())?;
+        let beside = |h: usize| connectivity.mate(h).map_or(OUTSIDE, |mate| of_all[mate / 3]);
+        let sides = free().flat_map(|((&f, &label), _)| (0..3).map(move |i| (label, 3 * f as usize + i)));
+        let sides = sides.map(|(label, h)| (label, beside(h))).filter(|(label, other)| label != other);
+        let mut neighbors: Vec<(u32, u32)> = memory::sifted(sides)?;
+        neighbors.sort_unstable();
+        neighbors.dedup();
+        let sums = scan.sums(&labels, tops.len())?;
+        let normals: Vec<Point> = memory::gathered(sums.iter().map(|sum| sum.fit().plane.normal))?;
+        let mut n_sharp = memory::repeated(0_isize, tops.len())?;
+        for &(label, other) in &neighbors {
+            let turn = normals.get(other as usize).map(|normal| dot(*normal, normals[label as usize]));
+            n_sharp[label as usize] += if turn.is_none_or(|cosine| cosine < ROUND.cos()) { 1 } else { -1 };
+        }
+        let evident = n_known.iter().zip(&n_sharp).filter(|(&known, &sharp)| known >= 3 && sharp > 0);
+        Ok(2 * evident.count() > tops.len())
+    }
+}
