@@ -48,6 +48,18 @@ def test_facets_of_a_symmetric_mesh_are_symmetric(n, facets, seed):
     assert ((np.cross(b - a, c - a) * normals).sum(1) > 0).mean() > 0.97
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_lines_along_the_mirror_leave_no_face_on_its_own_image(seed):
+    vertices, faces = bumpy(16, seed)
+    on = np.abs(vertices[:, 0]) < 1e-12
+    vertices[on, 1:] += np.random.default_rng(seed).normal(0, 0.06, (on.sum(), 2))
+    found = ridgeform.facet(ridgeform.Mesh(vertices, faces), facets=60, symmetric="x")
+    report = ridgeform.Mesh(found.vertices, found.faces).report
+    assert not len(report.nonmanifold_edges) and not len(report.duplicate_faces)
+    assert len(np.unique(found.faces)) == len(found.vertices)
+    assert report.n_boundary_loops == 0
+
+
 @pytest.mark.parametrize("name", ["cube", "l_shape", "house"])
 @pytest.mark.parametrize("n", [1, 2])
 def test_planes_across_the_mirror_stay_whole(name, n):

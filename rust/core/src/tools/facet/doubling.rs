@@ -43,6 +43,10 @@ impl Half {
         let image = |[a, b, c]: [u32; 3]| [c, b, a].map(|v| images[v as usize]);
         let mut of_facets: BTreeMap<u32, Vec<[u32; 3]>> = BTreeMap::new();
         for (&triangle, &k) in triangles.iter().zip(&owners) {
+            // A line along the plane is its own image: what is on both sides of it meets without it.
+            if triangle.iter().all(|&v| images[v as usize] == v) {
+                continue;
+            }
             memory::push(of_facets.entry(k).or_default(), triangle)?;
             memory::push(of_facets.entry(of_images[k as usize]).or_default(), image(triangle))?;
         }
@@ -61,6 +65,7 @@ impl Half {
             found.faces.extend(own);
         }
         self.without_bends(&mut found, &images)?;
+        without_unused(&mut found)?;
         found.labels = self.labels(mesh, &found.labels, &of_images)?;
         found.n_facets = found.planes.len();
         Ok(found)
@@ -166,6 +171,21 @@ impl Half {
         };
         Ok(memory::gathered(mesh.connectivity().faces().iter().map(label))?)
     }
+}
+
+/// Takes out vertices that no triangle has.
+fn without_unused(found: &mut Faceted) -> Result<()> {
+    let mut names = memory::repeated(u32::MAX, found.vertices.len())?;
+    found.faces.iter().flatten().for_each(|&v| names[v as usize] = 0);
+    let mut kept = names.iter().map(|name| *name == 0);
+    found.vertices.retain(|_| kept.next().unwrap_or(false));
+    let mut kept = names.iter().map(|name| *name == 0);
+    found.origins.retain(|_| kept.next().unwrap_or(false));
+    let mut next = 0..;
+    names.iter_mut().filter(|name| **name == 0).zip(&mut next).for_each(|(name, i)| *name = i);
+    let corners = found.faces.iter_mut().flatten().chain(found.polygons.iter_mut().flatten());
+    corners.for_each(|v| *v = names[*v as usize]);
+    Ok(())
 }
 
 /// The vertices of a mesh, to be found by place.
