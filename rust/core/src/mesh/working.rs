@@ -102,10 +102,10 @@ impl<'a> Working<'a> {
         matches!(self.mesh, Cow::Borrowed(_))
     }
 
-    /// The faces of the mesh itself.
+    /// Whether a face is turned over here.
     #[must_use]
-    pub fn own_faces(&self) -> &[[u32; 3]] {
-        self.original.connectivity().faces()
+    pub fn is_flipped(&self, f: usize) -> bool {
+        self.flipped.as_ref().is_some_and(|flipped| flipped[f])
     }
 
     /// Number of vertices of the mesh itself.
@@ -163,17 +163,14 @@ impl<'a> Working<'a> {
 
     /// The faces in the mesh's own vertices; oriented as here, but for those that are `turned` across seams.
     pub fn faces_as_given<'f>(&'f self, turned: Option<&'f [bool]>) -> impl Iterator<Item = [u32; 3]> + 'f {
-        let is_set = |mask: Option<&[bool]>, f: usize| mask.is_some_and(|mask| mask[f]);
         let faces = self.original.connectivity().faces().iter().enumerate();
-        faces.map(
-            move |(f, &[a, b, c])| {
-                if is_set(self.flipped.as_deref(), f) == is_set(turned, f) {
-                    [a, b, c]
-                } else {
-                    [a, c, b]
-                }
-            },
-        )
+        faces.map(move |(f, &[a, b, c])| {
+            if self.is_flipped(f) == turned.is_some_and(|turned| turned[f]) {
+                [a, b, c]
+            } else {
+                [a, c, b]
+            }
+        })
     }
 
     /// One row a face, column `i` of the edge opposite corner `i`, for the faces here.
@@ -181,8 +178,8 @@ impl<'a> Working<'a> {
     /// # Errors
     /// [`SolveError::Memory`].
     pub fn corner_rows(&self, rows: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, SolveError> {
-        let flip = |f: usize| self.flipped.as_ref().is_some_and(|flipped| flipped[f]);
-        let row = |(f, &[a, b, c]): (usize, &[f64; 3])| if flip(f) { [a, c, b] } else { [a, b, c] };
+        let row =
+            |(f, &[a, b, c]): (usize, &[f64; 3])| if self.is_flipped(f) { [a, c, b] } else { [a, b, c] };
         memory::gathered(rows.iter().enumerate().map(row))
     }
 

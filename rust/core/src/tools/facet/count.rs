@@ -45,23 +45,13 @@ impl Merges {
         self.within(FLAT, n, area)
     }
 
-    /// How many of `n` regions to leave, on a mesh of so many vertices, which consists of its planes or does
-    /// not.
-    pub(super) fn count(
-        &self,
-        wanted: Wanted,
-        n: usize,
-        is_evident: bool,
-        n_vertices: usize,
-        area: f64,
-    ) -> usize {
+    /// How many of `n` regions to leave, on a mesh of so many vertices.
+    pub(super) fn count(&self, wanted: Wanted, n: usize, n_vertices: usize, area: f64) -> usize {
         let [fewest, most] = self.range(n);
-        // More facets than the mesh has planes would only cut these up.
-        let planes = self.planes(n, area);
         match wanted {
-            Wanted::Facets(count) => count.clamp(fewest, planes),
+            // More facets than the mesh has planes would only cut these up.
+            Wanted::Facets(count) => count.clamp(fewest, self.planes(n, area)),
             Wanted::Error(error) => self.within(error, n, area),
-            Wanted::Found if is_evident => planes,
             Wanted::Found => {
                 let data = n_vertices as f64;
                 let unlikely = |&count: &usize| {

@@ -134,7 +134,7 @@ impl Half {
                 let ring = &found.polygons[p];
                 let (i, n) = (ring.iter().position(|&w| w == v).unwrap_or(0), ring.len());
                 let (a, b) = (ring[(i + n - 1) % n] as usize, ring[(i + 1) % n] as usize);
-                // Each is the image of the other, or all three are on the plane.
+                // Each is the image of the other.
                 n > 3 && (images.get(a) == Some(&(b as u32)) || images.get(b) == Some(&(a as u32))) && a != b
             };
             if polygons.len() <= 2 && polygons.iter().all(is_straight) {

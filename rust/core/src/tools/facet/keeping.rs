@@ -72,13 +72,11 @@ impl Job<'_> {
 
     /// Corners of the mesh itself from those here, whose faces may be turned over.
     fn own_corners(&self, mut corners: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
-        let (here, own) = (self.working.mesh().connectivity().faces(), self.working.own_faces());
-        let is_turned = |f: usize| self.working.vertex(own[f][1]) != here[f][1];
         for (f, face) in corners.iter_mut().enumerate() {
-            for corner in face.iter_mut().filter(|corner| is_turned(**corner as usize / 3)) {
+            for corner in face.iter_mut().filter(|corner| self.working.is_flipped(**corner as usize / 3)) {
                 *corner = *corner / 3 * 3 + (3 - *corner % 3) % 3;
             }
-            if is_turned(f) {
+            if self.working.is_flipped(f) {
                 face.swap(1, 2);
             }
         }
@@ -165,7 +163,7 @@ impl<'a> Membrane<'a> {
         let mut entries = memory::room(6 * self.regions.labels.len() + free.len())?;
         let mut right = memory::repeated([0.0; 6], free.len())?;
         let positions = self.regions.positions;
-        for (face, _) in self.regions.connectivity.faces().iter().zip(&self.regions.labels) {
+        for face in self.regions.connectivity.faces() {
             let corners = face.map(|v| positions[v as usize]);
             let middle = centroid(corners);
             for i in 0..3 {

@@ -10,12 +10,13 @@ use crate::mesh::vector::{dot, Point};
 use crate::{memory, Result};
 
 impl Job<'_> {
-    /// Whether most of so many planes that the mesh has are evident: three of their vertices lie on no more
-    /// than three of them, so that planes say where these are, and with most of their neighbors they make
-    /// a sharp edge. That is no chance, as it is where every face has a plane of its own, or every quad of a
-    /// round shape, and no round shape in many sides.
-    pub(super) fn is_made_of(&self, merges: &Merges, planes: usize, scan: &Scan) -> Result<bool> {
+    /// How many planes the mesh has, if it consists of them: if most are evident, since three of their
+    /// vertices lie on no more than three of them, so that planes say where these are, and with most of
+    /// their neighbors they make a sharp edge. That is no chance, as it is where every face has a plane of
+    /// its own, or every quad of a round shape, and no round shape in many sides.
+    pub(super) fn evident_planes(&self, merges: &Merges, scan: &Scan) -> Result<Option<usize>> {
         let n = self.parts.len();
+        let planes = merges.planes(n, scan.area.max(f64::MIN_POSITIVE));
         let (tree, cut) = Hierarchy::new(merges, n, n - planes)?;
         let (labels, tops) = tree.labels(&cut)?;
         let connectivity = self.working.mesh().connectivity();
@@ -44,6 +45,6 @@ impl Job<'_> {
             n_sharp[label as usize] += if turn.is_none_or(|cosine| cosine < ROUND.cos()) { 1 } else { -1 };
         }
         let evident = n_known.iter().zip(&n_sharp).filter(|(&known, &sharp)| known >= 3 && sharp > 0);
-        Ok(2 * evident.count() > tops.len())
+        Ok((2 * evident.count() > tops.len()).then_some(planes))
     }
 }

@@ -125,9 +125,11 @@ impl Job<'_> {
         let n_held = self.is_held.iter().filter(|held| **held).count();
         let [fewest, most] = merges.range(n);
         let area = scan.area.max(f64::MIN_POSITIVE);
-        let planes = merges.planes(n, area);
-        let is_evident = matches!(wanted, Wanted::Found) && self.is_made_of(merges, planes, scan)?;
-        let aim = merges.count(wanted.and(n_held), n, is_evident, self.positions.len(), area);
+        let evident = match wanted {
+            Wanted::Found => self.evident_planes(merges, scan)?,
+            _ => None,
+        };
+        let aim = evident.unwrap_or_else(|| merges.count(wanted.and(n_held), n, self.positions.len(), area));
         let mut count = aim;
         // With fewer facets than are wanted, and with as many or more.
         let mut best: [Option<(Rank, Divided<'_>)>; 2] = [None, None];
