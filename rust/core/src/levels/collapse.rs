@@ -7,6 +7,7 @@
 use rayon::prelude::*;
 
 use crate::linear::small::Quadric;
+use crate::mesh::partition::Partition;
 use crate::mesh::vector::{add, area_vector, cross, dot, norm, quality, sub, unit, Point};
 use crate::mesh::Connectivity;
 use crate::ordered::Ordered;
@@ -43,7 +44,7 @@ pub(super) struct Collapser {
     /// Which vertices have changed in the present pass.
     is_changed: Vec<bool>,
     /// What a vertex collapsed into; itself while it is there.
-    into: Vec<u32>,
+    into: Partition,
     /// The vertices of the last level that was asked for.
     last: Vec<u32>,
     n_left: usize,
@@ -96,7 +97,7 @@ impl Collapser {
             kinds,
             most: f64::INFINITY,
             is_changed: memory::repeated(false, n)?,
-            into: memory::numbers(n)?,
+            into: Partition::new(n)?,
             last: memory::numbers(n)?,
             mesh,
         })
@@ -154,19 +155,13 @@ impl Collapser {
         let kept: Vec<u32> = memory::sifted(used)?;
         let mut number = memory::repeated(u32::MAX, self.mesh.n_vertices())?;
         kept.iter().zip(0..).for_each(|(&v, new)| number[v as usize] = new);
-        let parents = memory::gathered(self.last.iter().map(|&v| number[self.root(v) as usize]))?;
+        let into = &mut self.into;
+        let parents = memory::gathered(self.last.iter().map(|&v| number[into.root(v) as usize]))?;
         let points = memory::gathered(kept.iter().map(|&v| self.mesh.position(v)))?;
         let faces = self.mesh.faces().map(|(_, face)| face.map(|v| number[v as usize]));
         let faces = memory::sifted(faces)?;
         self.last = kept;
         Ok((points, faces, parents))
-    }
-
-    fn root(&self, mut v: u32) -> u32 {
-        while self.into[v as usize] != v {
-            v = self.into[v as usize];
-        }
-        v
     }
 
     /// Adds the edges at the vertices that have changed, each once.
@@ -230,7 +225,7 @@ impl Collapser {
             return Ok(());
         }
         self.quadrics[to as usize] = self.sum(from, to);
-        self.into[from as usize] = to;
+        self.into.attach(from, to);
         self.n_left -= 1;
         let noted: &[u32] = if self.stays(to) { &[from] } else { &[from, to] };
         memory::extend(changed, 2)?;
