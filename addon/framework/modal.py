@@ -10,6 +10,7 @@ from bpy.app.handlers import persistent
 
 from ..blender.handlers import Handlers
 from ..blender.mesh_state import ChangedError
+from ..blender.redraws import Redraws
 from ..blender.refusals import RefusedError
 from .job import hide_summary
 from .pacing import Estimate, Throttle, status_line
@@ -86,6 +87,7 @@ class ModalRun:
     passes_events = False
     """Whether all but Esc and Enter stays with Blender while a run goes on."""
     _timer = None
+    _redraws: Redraws | None = None
     _area: int | None = None
 
     def finished(self, _context: bpy.types.Context, run: Run) -> set[str]:
@@ -130,7 +132,8 @@ class ModalRun:
         self._run = run
         self._keeping = self._leaving = False
         self._shown = ("", "", "")
-        self._estimate, self._throttle = Estimate(), Throttle(POLL_SECONDS)
+        redraws = self._redraws = self._redraws or Redraws()
+        self._estimate, self._throttle = Estimate(), Throttle(POLL_SECONDS, lambda: redraws.count)
         _running.append(run)
         run.job.start()
 
@@ -246,6 +249,9 @@ class ModalRun:
         _set_header(context, self._area, header)
 
     def _close(self, context: bpy.types.Context) -> None:
+        if self._redraws is not None:
+            self._redraws.end()
+            self._redraws = None
         timer, self._timer = self._timer, None
         if timer is None:
             return

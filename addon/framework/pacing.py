@@ -57,29 +57,39 @@ class Throttle:
     """When to draw, such that drawing takes its share of the time and no more, as measured.
 
     Blender draws what was changed several times, to smooth its edges. So all counts by which the calls come
-    later than they should, from one drawing to the next.
+    later than they should from one drawing to the next, wherever a view was drawn in between. Calls that are
+    late by themselves do not count: a job on all processors delays each of them a little, and would put off
+    drawing for good.
     """
 
-    def __init__(self, interval: float, clock: Clock = time.monotonic) -> None:
-        """Begin; `interval` is what passes between two calls when nothing is drawn."""
+    def __init__(self, interval: float, drawn: Callable[[], int], clock: Clock = time.monotonic) -> None:
+        """Begin.
+
+        `interval` is what passes between two calls when nothing is drawn, and `drawn` says how often views
+        have been drawn so far.
+        """
         self._clock = clock
         self._interval = interval
+        self._drawn = drawn
         self._began: float | None = None
         self._called = 0.0
+        self._count: int | None = 0
         self._cost = 0.0
 
     def is_due(self) -> bool:
         """Whether to draw now; call it first whenever there is time to."""
-        now = self._clock()
+        now, count = self._clock(), self._drawn()
         if self._began is None:
             return True
-        self._cost += max(now - self._called - self._interval, 0.0)
-        self._called = now
+        if count != self._count:
+            self._cost += max(now - self._called - self._interval, 0.0)
+        self._called, self._count = now, count
         return now - self._began >= self._cost / SHARE
 
     def began(self, when: float) -> None:
-        """Something was drawn, from this time on."""
+        """Something was made to be drawn, from this time on, which took time as well."""
         self._began = self._called = when
+        self._count = None
         self._cost = 0.0
 
     def now(self) -> float:

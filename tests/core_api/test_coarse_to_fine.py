@@ -119,24 +119,40 @@ def test_the_sides_of_a_seam_stay_together(torus):
     np.testing.assert_array_equal(copies, result.vertices[split[shared]])
 
 
-def test_a_coarse_step_is_shown_on_the_mesh_and_can_be_kept(torus):
-    mesh, _ = torus
-    progress = ridgeform.Progress()
-    found = []
+def kept_at_first_sight(mesh, **settings):
+    """What is shown first, with the number of its step, and the result when the flow is then kept."""
+    progress, found = ridgeform.Progress(), []
     run = threading.Thread(
-        target=lambda: found.append(ridgeform.stylize(mesh, progress=progress, tolerance=1e-9, **HALF))
+        target=lambda: found.append(ridgeform.stylize(mesh, progress=progress, **settings, **HALF))
     )
     run.start()
     while progress.snapshot() is None and run.is_alive():
         time.sleep(0.01)
+    shown = progress.numbered_snapshot()
     progress.finish()
     run.join()
-    assert progress.snapshot().shape == mesh.vertices.shape
-    (result,) = found
+    return shown, found[0]
+
+
+def test_a_coarse_step_is_shown_on_the_mesh_and_can_be_kept(torus):
+    mesh, _ = torus
+    (number, shown), result = kept_at_first_sight(mesh, tolerance=1e-9)
+    assert number == 1
+    assert shown.shape == mesh.vertices.shape
     assert result.status == "stopped"
     assert result.vertices.shape == mesh.vertices.shape
     assert (result.level_vertices < mesh.n_vertices).all()
     assert 0 < moved(mesh, result) < 0.1
+
+
+def test_what_is_shown_first_on_a_large_mesh_is_all_of_the_coarsest_flow():
+    """To draw it takes longer than those steps."""
+    mesh = noisy_torus(340, 224)
+    (number, shown), result = kept_at_first_sight(mesh)
+    assert number == (result.level_vertices == result.level_vertices[0]).sum() > 2
+    assert shown.shape == mesh.vertices.shape
+    assert result.status == "stopped"
+    assert (result.level_vertices < mesh.n_vertices).all()
 
 
 def dense(name, noise):

@@ -32,8 +32,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 #[derive(Debug, Default)]
 struct State {
     report: Report,
-    snapshot: Option<Arc<Vec<[f64; 3]>>>,
-    n_snapshots: usize,
+    snapshot: Option<(usize, Arc<Vec<[f64; 3]>>)>,
     surface: Option<Arc<Surface>>,
 }
 
@@ -129,27 +128,25 @@ impl Progress {
         self.with(|state| state.report.clone()).unwrap_or_default()
     }
 
-    /// Publish the vertices after a finished flow step; where there is no room for them, the last ones stay.
-    pub fn set_snapshot(&self, vertices: &[[f64; 3]]) {
+    /// Publish the vertices after a finished flow step, its number from 1; where there is no room for them,
+    /// the last ones stay.
+    pub fn set_snapshot(&self, step: usize, vertices: &[[f64; 3]]) {
         let restored = vertices.iter().map(|p| p.map(|x| self.unit.restore(x)));
         let Ok(vertices) = memory::gathered(restored) else { return };
-        self.with(|state| {
-            state.snapshot = Some(Arc::new(vertices));
-            state.n_snapshots += 1;
-        });
+        let vertices = Arc::new(vertices);
+        self.with(|state| state.snapshot = Some((step, vertices)));
     }
 
     /// The vertices after the last finished flow step.
     #[must_use]
     pub fn snapshot(&self) -> Option<Arc<Vec<[f64; 3]>>> {
-        self.with(|state| state.snapshot.clone()).flatten()
+        self.numbered_snapshot().map(|(_, vertices)| vertices)
     }
 
-    /// The same, with how many were published through this handle: for one flow the number of the step,
-    /// from 1.
+    /// The same, with the number of that step, from 1.
     #[must_use]
     pub fn numbered_snapshot(&self) -> Option<(usize, Arc<Vec<[f64; 3]>>)> {
-        self.with(|state| state.snapshot.clone().map(|vertices| (state.n_snapshots, vertices))).flatten()
+        self.with(|state| state.snapshot.clone()).flatten()
     }
 
     /// Publish the faces that the call has made so far, with vertices of their own.
@@ -187,7 +184,7 @@ mod tests {
     #[test]
     fn a_state_that_is_never_released_is_given_up() {
         let progress = Progress::new();
-        progress.set_snapshot(&[[1.0, 2.0, 3.0]]);
+        progress.set_snapshot(1, &[[1.0, 2.0, 3.0]]);
         assert_eq!(progress.snapshot().as_deref(), Some(&vec![[1.0, 2.0, 3.0]]));
         let watcher = progress.clone();
         let held = progress.state.lock();

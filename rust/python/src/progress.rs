@@ -78,7 +78,7 @@ impl Progress {
     }
 
     /// The number of that step, from 1, and its vertices (n,3) float64, read at once; None before the first.
-    /// Counted are the steps that were published through this handle: give every call its own.
+    /// A flow that begins on coarser meshes repeats some numbers on finer ones.
     fn numbered_snapshot<'py>(
         &self,
         py: Python<'py>,

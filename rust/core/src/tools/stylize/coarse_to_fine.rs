@@ -27,6 +27,11 @@ const EXPECTED: usize = 6;
 /// with all).
 const STEPS: usize = 2;
 
+/// A mesh that has so many times as many vertices as its coarsest level is shown what the flow of that level
+/// ends with, and no step before: to draw 500,000 vertices once takes Blender longer than these steps, which
+/// are a second's work, and the picture that matters would have to wait for that of the first one.
+const LARGE: usize = 8;
+
 /// The flow of `mesh` by levels; `finest` is that of the mesh itself, from its beginning.
 pub(super) fn coarse_to_fine(
     mesh: &Mesh,
@@ -55,6 +60,8 @@ pub(super) fn coarse_to_fine(
             Flow::new(&level.mesh, &all[depth], coarse_scale, &onto_mesh)?.within(fractions[depth], STEPS);
         if let Some(legacy) = legacy.take() {
             flow.resume(legacy)?;
+        } else if start.len() >= LARGE * level.mesh.connectivity().n_vertices() {
+            flow = flow.showing_its_end();
         }
         flow.run(settings, progress)?;
         let left = flow.legacy(if depth == levels.len() { None } else { Some(1) }, STEPS);

@@ -46,6 +46,8 @@ pub(super) type Show<'a> = &'a dyn Fn(&[Point]) -> Result<Vec<Point>>;
 pub(super) struct Flow<'a> {
     options: &'a StylizeOptions,
     show: Show<'a>,
+    /// Whether every step is shown, or the last one alone.
+    shows_steps: bool,
     /// The part of the whole that this flow is, for its reports.
     part: [f64; 2],
     /// How many of the last places are kept, the present one not counted.
@@ -107,6 +109,7 @@ impl<'a> Flow<'a> {
         Ok(Self {
             options,
             show,
+            shows_steps: true,
             part: [0.0, 1.0],
             memory: 0,
             trail: VecDeque::new(),
@@ -165,6 +168,12 @@ impl<'a> Flow<'a> {
         self
     }
 
+    /// Shows its end, and none of the steps before.
+    pub(super) fn showing_its_end(mut self) -> Self {
+        self.shows_steps = false;
+        self
+    }
+
     /// What a finer level goes on from, by `count` short steps: the place `back` steps before the end, or so
     /// far back that the flow has gone on from there for no longer than those steps take.
     pub(super) fn legacy(&self, back: Option<usize>, count: usize) -> Legacy {
@@ -217,7 +226,9 @@ impl<'a> Flow<'a> {
             step = self.prepare()?;
             self.note(&step, &solution);
             inaccurate |= solution.status == Status::Inaccurate;
-            progress.set_snapshot(&(self.show)(&self.points)?);
+            if self.shows_steps {
+                progress.set_snapshot(self.done, &(self.show)(&self.points)?);
+            }
             let flatness = Flatness::of(self.connectivity, &self.points)?;
             self.result.flatness[1] = flatness;
             let moved = weighted_distance(self.start, &self.points, &weights) / self.area.sqrt();
@@ -231,6 +242,9 @@ impl<'a> Flow<'a> {
                 self.result.status = end;
                 break;
             }
+        }
+        if !self.shows_steps {
+            progress.set_snapshot(self.done, &(self.show)(&self.points)?);
         }
         self.end = self.result.status;
         if self.memory > 0 && !self.options.delaunay {
