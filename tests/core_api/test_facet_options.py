@@ -151,3 +151,35 @@ def test_thin_shapes_with_holes_keep_their_triangles(seed, facets):
     assert np.isfinite(found.kept_vertices).all()
     assert found.n_crossings == 0
     assert on_facets(found, kept_faces(found, faces)) <= 2e-6
+
+
+@pytest.mark.parametrize("name", ["bust", "spot"])
+@pytest.mark.parametrize("axis", range(3))
+def test_facets_meet_what_a_mask_holds_without_a_crack_or_a_fold(name, axis):
+    vertices, faces = source(name)
+    selected = vertices[faces].mean(1)[:, axis] > np.median(vertices[:, axis])
+    found = ridgeform.facet(ridgeform.Mesh(vertices, faces), facets=60, faces=selected)
+    assert found.n_crossings == 0
+    places, rows = np.asarray(found.vertices), np.asarray(found.faces)
+    beside = {}
+    for row, (a, b, c) in enumerate(rows.tolist()):
+        for side in ((a, b), (b, c), (c, a)):
+            assert side not in beside
+            beside[side] = row
+    assert all((b, a) in beside for a, b in beside)
+    stay = {tuple(place) for place in vertices[np.unique(faces[~selected])].tolist()}
+    is_there = np.array([tuple(place) in stay for place in places.tolist()])
+    assert {tuple(place) for place in places[is_there].tolist()} == stay
+    a, b, c = (places[rows[:, i]] for i in range(3))
+    normals = np.cross(b - a, c - a)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    is_still, is_held = is_there[rows].all(1), np.asarray(found.face_facets) >= found.n_facets
+
+    def bends(one, other):
+        pairs = [(row, beside[b, a]) for (a, b), row in beside.items() if one[row] and other[beside[b, a]]]
+        first, second = np.array(pairs).T
+        return (normals[first] * normals[second]).sum(1)
+
+    # What stays against the rim of triangles that touch it, and that against the facets.
+    assert bends(is_still, ~is_still).min() > 0.0
+    assert (bends(is_held, ~is_held) < -0.5).mean() <= 0.01
