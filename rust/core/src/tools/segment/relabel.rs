@@ -4,7 +4,7 @@
 //! face, as variational shape approximation does (Cohen-Steiner et al. 2004) with the length of the borders
 //! added (Potts 1952, Besag 1986).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::constants::{
     EDGE_COST, LEAST_NOISE, LEAST_NOISE_OF_VALUES, LEAST_TURN, MOST_MISFIT, PLANE_EDGE, PLANE_NOISE,
@@ -117,8 +117,11 @@ impl Relabel<'_> {
     /// # Errors
     /// [`crate::Error::Solve`] where memory is missing.
     pub(super) fn rejoin(&self, labels: &mut [u32]) -> Result<()> {
+        let mut n_before = usize::MAX;
         loop {
             let (piece, count) = pieces(self.surface, labels)?;
+            // Pieces that took each other's names would do so forever.
+            let is_stuck = std::mem::replace(&mut n_before, count) <= count;
             let (mut area, mut size) = (memory::repeated(0.0, count)?, memory::repeated(0, count)?);
             let mut owner = memory::repeated(0, count)?;
             for f in 0..labels.len() {
@@ -162,12 +165,35 @@ impl Relabel<'_> {
             if home.is_empty() {
                 return Ok(());
             }
+            if is_stuck {
+                self.stay_for_others(labels, &piece, &mut home);
+            }
             for (label, p) in labels.iter_mut().zip(&piece) {
                 if let Some((_, new)) = home.get(p) {
                     *label = *new;
                 }
             }
         }
+    }
+
+    /// Lets pieces stay that others next to them are to join, so that there are fewer pieces then.
+    fn stay_for_others(&self, labels: &[u32], piece: &[u32], home: &mut BTreeMap<u32, (f64, u32)>) {
+        let mut beside: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
+        for (f, p) in piece.iter().enumerate() {
+            let Some((_, label)) = home.get(p) else { continue };
+            let joined = self.surface.around(f).filter(|&(_, g)| labels[g] == *label);
+            beside.entry(*p).or_default().extend(joined.map(|(_, g)| piece[g]));
+        }
+        let (mut staying, mut moving) = (BTreeSet::new(), BTreeSet::new());
+        home.retain(|p, _| {
+            let others = beside.remove(p).unwrap_or_default();
+            let moves = !staying.contains(p) && !others.is_subset(&moving);
+            if moves {
+                moving.insert(*p);
+                staying.extend(others);
+            }
+            moves
+        });
     }
 }
 
@@ -248,5 +274,36 @@ impl<'a, 'b> Round<'a, 'b> {
             ring = next;
         }
         None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::shapes::{grid, Shape};
+
+    #[test]
+    fn loose_pieces_that_only_have_each_other_become_one() {
+        // Two segments on a large sheet, and one piece of each on a small one beside it.
+        let Shape { mut vertices, mut faces } = grid(6, 6);
+        let small = grid(2, 2);
+        faces.extend(small.faces.iter().map(|face| face.map(|v| v + vertices.len() as u32)));
+        vertices.extend(small.vertices.iter().map(|p| [p[0] + 100.0, p[1], p[2]]));
+        let mesh = Shape { vertices, faces }.mesh().unwrap();
+        let costs = vec![[1.0; 3]; mesh.connectivity().n_faces()];
+        let surface = Surface::new(mesh.connectivity(), mesh.positions().unwrap(), 1.0, costs).unwrap();
+        let middle = |f: usize| if f < 72 { 36 } else { 76 };
+        let mut labels: Vec<u32> = (0..80).map(|f| u32::from(f >= middle(f))).collect();
+        let relabel = Relabel {
+            surface: &surface,
+            signal: None,
+            noise: 0.0,
+            least_faces: usize::MAX,
+            regions: None,
+            progress: &Progress::new(),
+        };
+        relabel.rejoin(&mut labels).unwrap();
+        assert!(labels[72..].iter().all(|&label| label == labels[72]));
     }
 }
