@@ -2,13 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use crate::mesh::vector::{add, between, distance, dot, norm, scale, sub, Point};
+use crate::mesh::vector::{add, distance, dot, scale, sub, Point};
 use crate::mesh::welding::{rounding, OF_EDGE};
 use crate::mesh::{Connectivity, Mesh};
 use crate::{memory, Result};
-
-/// A segment of a cell, with a tenth of one on either side, begins and ends so many cells apart at most.
-const MOST_CELLS: i64 = 2;
 
 /// Border edges along which two sides meet in different vertices.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -31,18 +28,18 @@ impl TJunctions {
             let [a, b] = ends(h).map(|v| positions[v as usize]);
             distance(a, b)
         };
-        let cell = border.iter().map(|&h| length(h)).sum::<f64>() / border.len().max(1) as f64;
-        if !(cell > 0.0 && cell.is_finite()) {
+        let mean = border.iter().map(|&h| length(h)).sum::<f64>() / border.len().max(1) as f64;
+        if !(mean > 0.0 && mean.is_finite()) {
             return Ok(None);
         }
         let vertices: BTreeSet<u32> = border.iter().flat_map(|&h| ends(h)).collect();
         let tolerance = rounding(vertices.iter().map(|&v| positions[v as usize]));
-        let grid = Grid::new(positions, &vertices, cell)?;
+        let tree = Tree::new(positions, &vertices)?;
         let mut on = BTreeMap::new();
         for &h in &border {
             let [a, b] = ends(h).map(|v| positions[v as usize]);
             let (along, length) = (sub(b, a), length(h));
-            let off = tolerance.min(OF_EDGE * length.min(cell));
+            let off = tolerance.min(OF_EDGE * length.min(mean));
             let place = |v: u32| {
                 let p = positions[v as usize];
                 let t = dot(sub(p, a), along) / dot(along, along);
@@ -50,7 +47,8 @@ impl TJunctions {
                 (inside && distance(add(a, scale(along, t)), p) <= off).then_some((t, v))
             };
             let own = connectivity.faces()[h / 3];
-            let near = grid.near(a, b, off).into_iter().filter(|v| !own.contains(v));
+            // Twice as far, so that rounding on the way loses none.
+            let near = tree.near(a, b, 2.0 * tolerance).into_iter().filter(|v| !own.contains(v));
             let mut inside: Vec<(f64, u32)> = near.filter_map(place).collect();
             inside.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
             if !inside.is_empty() {
@@ -156,52 +154,95 @@ impl Piece {
     }
 }
 
-/// Vertices by cells.
-struct Grid {
-    cells: HashMap<[i64; 3], Vec<u32>>,
-    origin: Point,
-    cell: f64,
+/// Vertices in a tree of boxes: thousands of long edges may meet where there are thousands of vertices, and a
+/// grid as wide as edges are long has them all in one cell.
+struct Tree<'a> {
+    positions: &'a [Point],
+    vertices: Vec<u32>,
+    nodes: Vec<Node>,
 }
 
-impl Grid {
-    fn new(positions: &[Point], vertices: &BTreeSet<u32>, cell: f64) -> Result<Self> {
-        let origin = vertices.first().map_or([0.0; 3], |&v| positions[v as usize]);
-        let mut grid = Self { cells: HashMap::new(), origin, cell };
-        for &v in vertices {
-            memory::extend_map(&mut grid.cells, 1)?;
-            grid.cells.entry(grid.key(positions[v as usize])).or_default().push(v);
+/// Vertices of a tree from `start` to `end`. The first child follows its parent; 0 for the `second` of a
+/// leaf.
+struct Node {
+    low: Point,
+    high: Point,
+    start: usize,
+    end: usize,
+    second: usize,
+}
+
+impl<'a> Tree<'a> {
+    /// Vertices that a leaf holds.
+    const LEAF: usize = 8;
+
+    fn new(positions: &'a [Point], vertices: &BTreeSet<u32>) -> Result<Self> {
+        let vertices = memory::gathered(vertices.iter().copied())?;
+        let n = vertices.len();
+        let mut tree = Self { positions, vertices, nodes: Vec::new() };
+        tree.build(0, n)?;
+        Ok(tree)
+    }
+
+    fn build(&mut self, start: usize, end: usize) -> Result<()> {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for p in self.vertices[start..end].iter().map(|&v| self.positions[v as usize]) {
+            for c in 0..3 {
+                (low[c], high[c]) = (low[c].min(p[c]), high[c].max(p[c]));
+            }
         }
-        Ok(grid)
+        let node = self.nodes.len();
+        memory::push(&mut self.nodes, Node { low, high, start, end, second: 0 })?;
+        if end - start > Self::LEAF {
+            let extent = sub(high, low);
+            let axis = (1..3).fold(0, |most, c| if extent[c] > extent[most] { c } else { most });
+            let middle = (end - start) / 2;
+            let at = |v: u32| self.positions[v as usize][axis];
+            self.vertices[start..end]
+                .select_nth_unstable_by(middle, |&v, &w| at(v).total_cmp(&at(w)).then(v.cmp(&w)));
+            self.build(start, start + middle)?;
+            self.nodes[node].second = self.nodes.len();
+            self.build(start + middle, end)?;
+        }
+        Ok(())
     }
 
-    #[allow(clippy::cast_possible_truncation)]
-    fn key(&self, p: Point) -> [i64; 3] {
-        sub(p, self.origin).map(|x| (x / self.cell).floor() as i64)
-    }
-
-    /// The vertices in the cells that the segment from `a` to `b` runs through, and not farther off than
-    /// `off`, at least; ascending.
-    fn near(&self, a: Point, b: Point, off: f64) -> BTreeSet<u32> {
-        let steps = (norm(sub(b, a)) / self.cell).ceil().max(1.0) as usize;
-        let mut found = BTreeSet::new();
-        for k in 0..steps {
-            let [p, q] = [k, k + 1].map(|k| between(a, b, k as f64 / steps as f64));
-            let low = self.key([0, 1, 2].map(|c| p[c].min(q[c]) - off));
-            let high = self.key([0, 1, 2].map(|c| p[c].max(q[c]) + off));
-            // No more than a cell long: what takes more of them is rounding, so far from the origin that
-            // places are not told apart.
-            if [0, 1, 2].iter().any(|&c| high[c].saturating_sub(low[c]) > MOST_CELLS) {
+    /// The vertices not farther than `off` from the segment from `a` to `b`, and others near it; ascending.
+    fn near(&self, a: Point, b: Point, off: f64) -> Vec<u32> {
+        let (mut found, mut stack) = (Vec::new(), vec![0]);
+        while let Some(n) = stack.pop() {
+            let node = &self.nodes[n];
+            if !node.is_met(a, b, off) {
                 continue;
             }
-            for x in low[0]..=high[0] {
-                for y in low[1]..=high[1] {
-                    for z in low[2]..=high[2] {
-                        found.extend(self.cells.get(&[x, y, z]).into_iter().flatten());
-                    }
-                }
+            if node.second == 0 {
+                found.extend(&self.vertices[node.start..node.end]);
+            } else {
+                stack.extend([node.second, n + 1]);
             }
         }
+        found.sort_unstable();
         found
+    }
+}
+
+impl Node {
+    /// Whether a segment comes as near as `off` to the box, or nearly so.
+    fn is_met(&self, a: Point, b: Point, off: f64) -> bool {
+        let (mut from, mut to) = (0.0_f64, 1.0_f64);
+        for c in 0..3 {
+            let along = b[c] - a[c];
+            let (low, high) = (self.low[c] - off - a[c], self.high[c] + off - a[c]);
+            if along == 0.0 {
+                if low > 0.0 || high < 0.0 {
+                    return false;
+                }
+            } else {
+                let (p, q) = (low / along, high / along);
+                (from, to) = (from.max(p.min(q)), to.min(p.max(q)));
+            }
+        }
+        from <= to
     }
 }
 
@@ -289,5 +330,18 @@ mod tests {
             vec![[0, 1, 2], [3, 5, 4]],
         );
         assert_eq!(split(&standing.unwrap()).map(|found| found.0), None);
+    }
+
+    #[test]
+    fn of_thousands_of_edges_that_meet_in_a_cell_each_has_few_vertices_near() {
+        let n = 4000;
+        let angle = |i: usize| std::f64::consts::TAU * i as f64 / n as f64;
+        let tips = (0..n).map(|i| [angle(i).cos(), angle(i).sin(), 0.5]);
+        let points: Vec<Point> = [[0.0; 3], [0.0, 0.0, 1.0]].into_iter().chain(tips).collect();
+        let tree = Tree::new(&points, &(0..points.len() as u32).collect()).unwrap();
+        for v in 2..points.len() as u32 {
+            let near = tree.near(points[0], points[v as usize], 1e-12);
+            assert!(near.contains(&0) && near.contains(&v) && near.len() <= 8 * Tree::LEAF, "{}", near.len());
+        }
     }
 }
