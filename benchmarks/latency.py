@@ -144,7 +144,7 @@ def main() -> None:
     """Measure, print, and put the table where it belongs."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--vertices", type=int, default=10_000)
-    parser.add_argument("--tools", nargs="*", help="only those whose names begin so; keeps nothing")
+    parser.add_argument("--tools", nargs="*", help="only those whose names begin so")
     given = parser.parse_args()
     chosen = {
         name: call
@@ -154,11 +154,18 @@ def main() -> None:
     heads = ["call", "takes", "longest silence", "in its stage", "until canceled", "until finished"]
     lines = [f"| {' | '.join(heads)} |", "| --- | ---: | ---: | --- | ---: | ---: |"]
     lines += [row(name, call) for name, call in chosen.items()]
-    if not given.tools:
-        text = PAGE.read_text(encoding="utf-8")
-        head, _, rest = text.partition(BEGIN)
-        table = "\n".join([BEGIN, *lines, END])
-        PAGE.write_text(head + table + rest.partition(END)[2], encoding="utf-8")
+    text = PAGE.read_text(encoding="utf-8")
+    head, _, rest = text.partition(BEGIN)
+    before, _, rest = rest.partition(END)
+    if given.tools:
+        measured = {name_of(line): line for line in lines}
+        lines = [measured.get(name_of(line), line) for line in before.strip().splitlines()]
+    PAGE.write_text(head + "\n".join([BEGIN, *lines, END]) + rest, encoding="utf-8")
+
+
+def name_of(line: str) -> str:
+    """The call that a line of the table is about."""
+    return line.split("|")[1].strip()
 
 
 if __name__ == "__main__":

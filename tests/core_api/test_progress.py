@@ -325,3 +325,37 @@ def test_clarabel_is_left_while_it_computes():
         assert isinstance(running.error, ridgeform.Cancelled) == (wish == "cancel")
         if wish == "finish":
             np.testing.assert_array_equal(running.result.vertices, mesh.vertices)
+
+
+def test_facet_that_finishes_while_it_merges_leaves_the_mesh_and_begins_anew_later():
+    mesh = sphere(3)
+    progress = ridgeform.Progress()
+    progress.finish()
+    stopped = ridgeform.facet(mesh, facets=20, progress=progress)
+    assert stopped.status == "stopped" and stopped.n_facets == 0
+    left = np.sort(stopped.origins[stopped.faces], axis=1)
+    np.testing.assert_array_equal(left, np.sort(mesh.faces, axis=1))
+    assert stopped.at(facets=20).n_facets == ridgeform.facet(mesh, facets=20).n_facets
+
+
+def test_a_quadratic_energy_of_many_columns_leaves_those_that_were_not_begun():
+    mesh = sphere(3)
+    values = np.repeat(mesh.vertices, 20, axis=1)
+    progress = ridgeform.Progress()
+    progress.finish()
+    found = ridgeform.denoise(mesh, values, fidelity=1.0, energy="l2_hessian", progress=progress)
+    assert found.status == "stopped" and np.isfinite(found.gap)
+    assert not np.array_equal(found.values[:, 0], values[:, 0])
+    np.testing.assert_array_equal(found.values[:, 1:], values[:, 1:])
+    whole = ridgeform.denoise(mesh, values, fidelity=1.0, energy="l2_hessian")
+    assert found.objective - found.gap * found.objective <= whole.objective <= found.objective
+
+
+def test_fill_holes_that_finishes_at_once_closes_the_holes():
+    vertices, faces = shapes.icosphere(3)
+    mesh = ridgeform.Mesh(vertices, faces[vertices[faces].mean(axis=1)[:, 2] < 0.8])
+    progress = ridgeform.Progress()
+    progress.finish()
+    found = ridgeform.fill_holes(mesh, sharpness=0.5, outer=True, progress=progress)
+    assert found.status == "stopped" and [hole.status for hole in found.holes] == ["stopped"]
+    assert len(ridgeform.find_holes(ridgeform.Mesh(found.vertices, found.faces))) == 0

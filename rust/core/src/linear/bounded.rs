@@ -41,7 +41,7 @@ struct Column {
 /// `x` is the start and the result, `descent` is `b − A x` at the start, 0 in rows that are not to move;
 /// `multiply` replaces columns by `A` times them and is only given columns that are 0 in those rows. The
 /// objective never rises. A step is a product; it rests where the projected gradient of every column has
-/// fallen to that part of its first length.
+/// fallen to that part of its first length, and where that `is_enough`, which is asked before every product.
 ///
 /// # Errors
 /// Those of `multiply`.
@@ -50,9 +50,10 @@ pub fn minimize(
     descent: &Columns,
     bounds: &[[f64; 2]],
     limits: Limits,
+    is_enough: impl Fn() -> bool,
     mut multiply: impl FnMut(&mut Columns) -> Result<()>,
 ) -> Result<()> {
-    let fixed_step = 1.0 / norm(descent, &mut multiply)?.max(f64::MIN_POSITIVE);
+    let fixed_step = 1.0 / norm(descent, &is_enough, &mut multiply)?.max(f64::MIN_POSITIVE);
     let mut columns: Vec<Column> = (0..x.n_columns)
         .map(|c| {
             let gradient = descent.column(c).iter().map(|d| -d).collect();
@@ -60,7 +61,7 @@ pub fn minimize(
         })
         .collect();
     for _ in 0..limits.steps {
-        if columns.iter().all(|column| column.step == Step::Done) {
+        if is_enough() || columns.iter().all(|column| column.step == Step::Done) {
             break;
         }
         let data: Vec<f64> = columns.iter().flat_map(|column| column.vector.iter().copied()).collect();
@@ -75,10 +76,17 @@ pub fn minimize(
 }
 
 /// The largest stretch of a column under `A` after some products, or 0.
-fn norm(start: &Columns, multiply: &mut impl FnMut(&mut Columns) -> Result<()>) -> Result<f64> {
+fn norm(
+    start: &Columns,
+    is_enough: &impl Fn() -> bool,
+    multiply: &mut impl FnMut(&mut Columns) -> Result<()>,
+) -> Result<f64> {
     let mut vectors = start.clone();
     let mut largest = 0.0_f64;
     for _ in 0..NORM_STEPS {
+        if is_enough() {
+            break;
+        }
         for c in 0..vectors.n_columns {
             let length = dot(vectors.column(c), vectors.column(c)).sqrt();
             let scale = if length > 0.0 { 1.0 / length } else { 0.0 };
@@ -246,13 +254,20 @@ mod tests {
             let mut x = Columns::zeros(n, 2);
             let descent = Columns { data: b.clone(), ..x };
             let limits = Limits { steps: 2000, rest: 1e-9 };
-            minimize(&mut x, &descent, &bounds, limits, |columns| {
-                (0..2).for_each(|c| {
-                    let product = times(&a, columns.column(c));
-                    columns.column_mut(c).copy_from_slice(&product);
-                });
-                Ok(())
-            })
+            minimize(
+                &mut x,
+                &descent,
+                &bounds,
+                limits,
+                || false,
+                |columns| {
+                    (0..2).for_each(|c| {
+                        let product = times(&a, columns.column(c));
+                        columns.column_mut(c).copy_from_slice(&product);
+                    });
+                    Ok(())
+                },
+            )
             .unwrap();
             let mut held = 0;
             for (c, [least, most]) in bounds.into_iter().enumerate() {
@@ -275,10 +290,17 @@ mod tests {
         let mut x = Columns::from_column(vec![7.0, 0.0]);
         let descent = Columns::from_column(vec![0.0, 1.0]);
         let limits = Limits { steps: 10, rest: 1e-9 };
-        minimize(&mut x, &descent, &[[0.0, 0.25]], limits, |columns| {
-            assert!(columns.data[0] == 0.0);
-            Ok(())
-        })
+        minimize(
+            &mut x,
+            &descent,
+            &[[0.0, 0.25]],
+            limits,
+            || false,
+            |columns| {
+                assert!(columns.data[0] == 0.0);
+                Ok(())
+            },
+        )
         .unwrap();
         assert_eq!(x.data, [7.0, 0.25]);
     }

@@ -19,6 +19,9 @@ use crate::{memory, Error, Result};
 /// Steps stop when one more would lower the objective by less than this part of it.
 const ENOUGH: f64 = 1e-14;
 
+/// What rounding leaves of a sum of squares whose terms cancel, as a part of their size: 1e-9 squared.
+const ROUNDING: f64 = 1e-18;
+
 /// Minimizes the quadratic reading of `problem`, column by column (its coupling does not matter).
 ///
 /// The problem of Rowe et al. 2024, eq. (21) with squared norms.
@@ -26,20 +29,30 @@ const ENOUGH: f64 = 1e-14;
 /// The gap of the solution is the decrease of the objective that one more step with the factored matrix would
 /// bring, relative like [`Solution::gap`]; without a shift it is the distance to the optimum up to rounding.
 /// Weights may be negative as long as the problem stays convex. Rows of `u` that nothing determines keep
-/// their target.
+/// their target. So do columns that are not begun when it `is_enough`, if 0 is a bound of what they cost.
 ///
 /// # Errors
 /// Arguments that do not fit, constraints that contradict or repeat each other, a problem that is not convex,
 /// or [`Error::Cancelled`].
-pub fn minimize(problem: &Problem<'_>, settings: &Settings, progress: &Progress) -> Result<Solution> {
+pub fn minimize(
+    problem: &Problem<'_>,
+    settings: &Settings,
+    is_enough: impl Fn() -> bool,
+    progress: &Progress,
+) -> Result<Solution> {
     problem.check_shapes()?;
     let free = FreeOperator::new(problem.operator, &problem.fixed)?;
     let mut newton = Newton::new(problem, &free, settings.memory_limit)?;
     let mut values = problem.target.copied()?;
-    let mut total = Totals::default();
+    let (mut total, mut is_stopped) = (Totals::default(), false);
     for c in 0..values.n_columns {
         progress.check()?;
-        newton.column(c, values.column_mut(c), &mut total, progress)?;
+        if c > 0 && newton.may_stay && is_enough() {
+            newton.leave(c, &mut total);
+            is_stopped = true;
+        } else {
+            newton.column(c, values.column_mut(c), &mut total, progress)?;
+        }
     }
     let gap = total.decrease / Problem::gap_scale(total.objective, total.floor);
     let reached = gap <= settings.tolerance.unwrap_or(ENOUGH.sqrt());
@@ -51,7 +64,11 @@ pub fn minimize(problem: &Problem<'_>, settings: &Settings, progress: &Progress)
         gap,
         iterations: total.steps,
         factorisations: newton.cholesky.n_factorizations(),
-        status: if reached { Status::Solved } else { Status::Inaccurate },
+        status: match (is_stopped, reached) {
+            (true, _) => Status::Stopped,
+            (false, true) => Status::Solved,
+            (false, false) => Status::Inaccurate,
+        },
         solver: Solver::Cholesky,
     })
 }
@@ -70,6 +87,8 @@ struct Newton<'a> {
     problem: &'a Problem<'a>,
     free: &'a FreeOperator,
     cholesky: Cholesky,
+    /// Whether the target is an answer, and costs 0 at least.
+    may_stay: bool,
 }
 
 impl<'a> Newton<'a> {
@@ -91,9 +110,10 @@ impl<'a> Newton<'a> {
         } else {
             NormalMatrix::stretched(&free.operator)?
         };
+        let may_stay = !negative && problem.linear_constraints.is_none();
         let mut cholesky = Cholesky::analyze(normal.pattern().copied()?, memory_limit)?;
         if free.free.is_empty() {
-            return Ok(Self { problem, free, cholesky });
+            return Ok(Self { problem, free, cholesky, may_stay });
         }
         let twice: Vec<f64> =
             memory::gathered(free.free.iter().map(|&i| 2.0 * problem.fidelity[i as usize]))?;
@@ -121,7 +141,7 @@ impl<'a> Newton<'a> {
                 values[s] = if *d == 0.0 { scale } else { d + shift * scale };
             }
             match cholesky.factorize(&values) {
-                Ok(()) => return Ok(Self { problem, free, cholesky }),
+                Ok(()) => return Ok(Self { problem, free, cholesky, may_stay }),
                 Err(error @ SolveError::Memory { .. }) => return Err(error.into()),
                 Err(_) if shift < largest => shift = (SHIFT_GROWTH * shift).max(SHIFT),
                 Err(_) if negative => return Err(not_convex()),
@@ -130,11 +150,17 @@ impl<'a> Newton<'a> {
         }
     }
 
+    /// Leaves column `c` at its target: it could cost less by all that it costs.
+    fn leave(&self, c: usize, total: &mut Totals) {
+        let target = self.problem.target.column(c);
+        let at_target = self.objective(target, target);
+        total.floor += (1e-6 * at_target).max(ROUNDING * self.without_cancelling(target));
+        total.decrease += at_target;
+        total.objective += at_target;
+    }
+
     /// Minimizes over the free rows of column `c`; `u` holds the target before.
     fn column(&mut self, c: usize, u: &mut [f64], total: &mut Totals, progress: &Progress) -> Result<()> {
-        /// What rounding leaves of a sum of squares whose terms cancel, as a part of their size: 1e-9
-        /// squared.
-        const ROUNDING: f64 = 1e-18;
         /// Steps at most after the first; well posed problems take one or two, those with a large shift some
         /// ten.
         const MOST_STEPS: usize = 299;

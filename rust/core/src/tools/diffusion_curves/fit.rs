@@ -47,7 +47,7 @@ impl Task<'_> {
             owners = memory::gathered(copies.iter().map(|copies| owner(copies, &values, &target)))?;
             let owned = |copy: usize| owners[self.cut.vertices[copy] as usize] == Some(copy as u32);
             let next = self.weights(&mut roots, owned)?;
-            if next == weights {
+            if next == weights || progress.is_finishing() {
                 break;
             }
             weights = next;
@@ -84,7 +84,8 @@ impl Task<'_> {
         let mut descent = reading.given_back(Columns { data, ..taken })?;
         harmonic.transposed(&mut descent, progress)?;
         let bounds: Vec<[f64; 2]> = (0..taken.n_columns).map(|c| self.range(c)).collect();
-        bounded::minimize(&mut fit.values, &descent, &bounds, FIT, |columns| {
+        let is_enough = || progress.is_finishing();
+        bounded::minimize(&mut fit.values, &descent, &bounds, FIT, is_enough, |columns| {
             harmonic.extend(columns, progress)?;
             *columns = reading.given_back(reading.taken(columns)?)?;
             harmonic.transposed(columns, progress)

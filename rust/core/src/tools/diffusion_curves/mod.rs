@@ -159,7 +159,7 @@ fn in_their_unit(
     (curves.points, curves.point_colors) = (points.clone(), point_colors.clone());
     let fixed = Conditions::new(connectivity, &table, &cut, &curves)?.fixed;
     let mut harmonic = Harmonic::new(&membrane, &fixed)?;
-    if options.refine {
+    if options.refine && !progress.is_finishing() {
         report("improving colors", 0.4)?;
         task.refined(&mut fit, &mut harmonic, progress)?;
         curves = ColoredCurves { points, point_colors, ..borders.colored(&fit.values) };

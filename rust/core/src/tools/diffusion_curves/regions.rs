@@ -56,18 +56,24 @@ pub fn color_regions(
         progress.check()
     };
     report("following colors", 0.0)?;
-    follow(&paint, &groups, false, &mut labels)?;
-    if options.n_segments.is_none() {
+    if !progress.is_finishing() {
+        follow(&paint, &groups, false, &mut labels)?;
+    }
+    if options.n_segments.is_none() && !progress.is_finishing() {
         groups.absorb_islands(connectivity, &mut labels)?;
         groups.split(connectivity, &mut labels)?;
         let least = options.min_faces.unwrap_or(1);
         add_patches(&paint, &paint.sort(&labels)?, &groups, least, &mut labels)?;
-        // What a border does not show because of a vertex on its wrong side must not count for or against it.
-        settle(&paint, &groups, &mut labels)?;
-        report("leaving out borders", 0.5)?;
-        merge_weak(&paint, &mut labels)?;
+        if !progress.is_finishing() {
+            // What a border does not show because of a vertex on its wrong side must not count for or against
+            // it.
+            settle(&paint, &groups, &mut labels)?;
+            report("leaving out borders", 0.5)?;
+            merge_weak(&paint, &mut labels)?;
+        }
     }
-    // Where within a blend the border is best, its own colors tell.
+    // Where within a blend the border is best, its own colors tell. That is all that is left to do where the
+    // caller wishes to finish.
     settle(&original, &groups, &mut labels)?;
     renumber(&mut labels);
     Ok(labels)

@@ -17,6 +17,9 @@ struct Trial<'a> {
 /// Makes one region of two as long as the surface comes back as well without their border: faintest borders
 /// first, as many at once as have no region in common. Finishing stops with what is reached.
 pub(super) fn merge_weak(paint: &Paint<'_>, labels: &mut [i32]) -> Result<()> {
+    if paint.progress.is_finishing() {
+        return Ok(());
+    }
     let mesh = paint.mesh;
     let trial = Trial { paint, mass: voronoi_mass(mesh.connectivity(), mesh.edge_lengths())? };
     let scale = paint.scale();
@@ -43,6 +46,10 @@ pub(super) fn merge_weak(paint: &Paint<'_>, labels: &mut [i32]) -> Result<()> {
         let merged: BTreeMap<i32, i32> = order.iter().map(|&([a, b], _)| (b, a)).collect();
         let tried: Vec<i32> = labels.iter().map(|label| *merged.get(label).unwrap_or(label)).collect();
         let found = trial.run(&tried)?;
+        if paint.progress.is_finishing() {
+            // Not improved to the end: it says nothing about the borders.
+            break;
+        }
         let after = trial.errors(&found, &tried);
         for (pair, _) in order {
             let [a, b] = pair.map(|label| errors.get(&label).copied().unwrap_or_default());

@@ -27,6 +27,8 @@ pub(super) struct Merges {
     pub squared_distances: Vec<f64>,
     /// Whether each is the last of those that were made at once: the regions are facets then.
     pub is_last: Vec<bool>,
+    /// Whether there are all of them: the caller wished to finish before if not.
+    pub are_all: bool,
 }
 
 struct Merging<'r, 'a, W> {
@@ -69,7 +71,7 @@ impl Refused {
 
 /// Merges regions, whose `moments` are given, until none can be merged with another. Regions that are `held`
 /// are none of them. `weight` is what a border along a halfedge costs:
-/// cheap ones stay. `on_mesh` is the nearest point of the mesh.
+/// cheap ones stay. `on_mesh` is the nearest point of the mesh. Ends early where the caller wishes to finish.
 pub(super) fn merges(
     regions: &mut Regions<'_>,
     moments: Vec<Moments>,
@@ -104,6 +106,9 @@ pub(super) fn merges(
         n_popped += 1;
         if n_popped % PATIENCE == 0 {
             progress.check()?;
+            if progress.is_finishing() {
+                return Ok(made);
+            }
             let [from, to] = shares::MERGING;
             let fraction = from + (to - from) * made.pairs.len() as f64 / n as f64;
             progress.report(Report { fraction, stage: "merging".into(), ..Report::default() });
@@ -158,6 +163,7 @@ pub(super) fn merges(
             }
         }
     }
+    made.are_all = true;
     Ok(made)
 }
 
@@ -217,6 +223,7 @@ impl Merges {
             costs: memory::twin(&self.costs)?,
             squared_distances: memory::twin(&self.squared_distances)?,
             is_last: memory::twin(&self.is_last)?,
+            are_all: self.are_all,
         })
     }
 }

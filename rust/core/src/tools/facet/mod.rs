@@ -108,10 +108,15 @@ fn run(
             job.volume(&scan.places)?;
         }
         let merges = match merges {
-            Some(merges) => merges.0.twin()?,
-            None => job.merges(&scan, options, progress)?,
+            Some(merges) if merges.0.are_all => merges.0.twin()?,
+            _ => job.merges(&scan, options, progress)?,
         };
-        let found = job.found(&merges, &scan, options, progress)?;
+        let found = if merges.are_all {
+            job.found(&merges, &scan, options, progress)?
+        } else {
+            // Half of the merges are no facets yet, and to make them sound takes as long as the rest would.
+            job.as_it_is(&merges, &scan, progress)?
+        };
         job.given(mesh, found, merges, progress)
     })
 }

@@ -197,6 +197,21 @@ impl Job<'_> {
             let stage = Stage::new(progress, "keeping the volume", shares::VOLUME, USUAL[2]);
             volume::keep(&mut settled.shape, &settled.faces, self.volume(&scan.places)?, &stage)?;
         }
+        self.given_labels(settled)
+    }
+
+    /// The mesh as it is: all its faces stay.
+    pub(super) fn as_it_is(&self, merges: &Merges, scan: &Scan, progress: &Progress) -> Result<Found> {
+        let n = self.parts.len();
+        let (tree, cut) = Hierarchy::new(merges, n, 0)?;
+        let refusals = Refusals::new(&memory::repeated(true, n)?)?;
+        let is_fixed = memory::repeated(true, self.is_fixed.len())?;
+        let stage = Stage::new(progress, "finding facets", shares::FINDING[0], USUAL[0]);
+        self.given_labels(self.settled(scan, &tree, &cut, &refusals, &is_fixed, &stage)?.0)
+    }
+
+    /// What is found once nothing changes any more.
+    fn given_labels(&self, mut settled: Settled<'_>) -> Result<Found> {
         let n_facets = fitting::order(&mut settled.shape, &mut settled.faces)?;
         let inspection = Inspection::new(&settled.shape, &settled.faces, true)?;
         let n_crossings = inspection.pairs.len();

@@ -4,7 +4,7 @@ use super::completion::{Completion, Watch};
 use super::constants::{COARSE_FACES, FINE_FACES, FINE_ROUNDS, SHARP, SMOOTH_ROUNDS};
 use super::decide::{bends_around, Bends};
 use super::fair::fair;
-use super::filled::Completed;
+use super::filled::{Completed, HoleStatus};
 use super::flips::flip_along_ridges;
 use super::parts::SmoothParts;
 use super::region::Region;
@@ -26,6 +26,9 @@ pub(super) fn complete(
 ) -> Result<Completed> {
     smooth(region, Energy::L2Laplacian, SMOOTH_ROUNDS, progress)?;
     watch(region, 0.05, 0, None)?;
+    if progress.is_finishing() {
+        return Ok(Completed { status: HoleStatus::Stopped, ..Completed::smooth() });
+    }
     let bends = bends_around(region)?;
     let (ridges, segments) = match bends {
         Bends::Ridges(ridges) => (Some(ridges), None),
@@ -68,7 +71,14 @@ impl Completion<'_, '_> {
             return Ok(());
         }
         let coarse = region.twin()?;
-        self.resample(region, self.ridge(), FINE_FACES, FINE_ROUNDS)?;
+        if !self.progress.is_finishing() {
+            self.resample(region, self.ridge(), FINE_FACES, FINE_ROUNDS)?;
+        }
+        if self.progress.is_finishing() {
+            *region = coarse;
+            self.completed.status = HoleStatus::Stopped;
+            return Ok(());
+        }
         flip_along_ridges(region)?;
         fair(region, self.ridge(), self.progress)?;
         if worst_bend(&region.mesh) < worst_bend(&coarse.mesh).min(FOLDED) {

@@ -58,7 +58,8 @@ impl Completion<'_, '_> {
                 return Ok(());
             }
             let flowed = self.flow(region, cycle)?;
-            let moved = if is_sharp { flowed.max(align(region, cycle)?) } else { flowed };
+            let is_aligned = is_sharp && !self.progress.is_finishing();
+            let moved = if is_aligned { flowed.max(align(region, cycle)?) } else { flowed };
             self.report(region, 0.05 + 0.9 * cycle as f64 / cycles as f64)?;
             last.keep(region)?;
             if cycle > SNAP_FROM && moved < STILL_CYCLE * typical_edge(&region.mesh)? {
@@ -80,7 +81,7 @@ impl Completion<'_, '_> {
                 flip_along_ridges(region)?;
             }
         }
-        if is_sharp && cycles > 0 {
+        if is_sharp && cycles > 0 && !self.progress.is_finishing() {
             self.smooth_between(region, self.ridge())?;
             if !last.allows(region) {
                 *region = last.region.twin()?;
@@ -158,6 +159,9 @@ impl Completion<'_, '_> {
         for _ in 0..FAIR_ROUNDS {
             self.resample(region, ridge, COARSE_FACES, RESAMPLE_ROUNDS)?;
             for _ in 0..FAIR_STEPS {
+                if self.progress.is_finishing() {
+                    return Ok(());
+                }
                 flip_along_ridges(region)?;
                 fair(region, ridge, self.progress)?;
             }

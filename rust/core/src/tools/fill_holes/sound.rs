@@ -36,7 +36,7 @@ pub(super) fn completed_in_order(
         return Ok(completed);
     }
     let mut simpler = Vec::new();
-    if completed.sharpness > 0.0 {
+    if completed.sharpness > 0.0 && !progress.is_finishing() {
         let mut smooth = start.twin()?;
         let options = FillHolesOptions { shape: PatchShape::Smooth, ..options.clone() };
         complete(&mut smooth, &options, progress, watch)?;

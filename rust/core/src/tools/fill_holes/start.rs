@@ -9,11 +9,14 @@ use crate::solve::{quadratic, Coupling, Problem, Settings};
 use crate::Result;
 
 /// Moves the patch to the minimizer of a quadratic energy of its coordinates, everything around it fixed,
-/// `rounds` times: the energy is that of the surface before each round.
+/// `rounds` times, or until the caller wishes to finish: the energy is that of the surface before each round.
 pub(super) fn smooth(region: &mut Region, energy: Energy, rounds: usize, progress: &Progress) -> Result<()> {
     let settings = Settings { announce: false, ..Settings::default() };
     for _ in 0..rounds {
         progress.check()?;
+        if progress.is_finishing() {
+            break;
+        }
         let mesh = region.to_mesh()?;
         let form = EnergyForm::new(energy, &mesh, None, Dual::default())?;
         let problem = Problem {
@@ -25,7 +28,7 @@ pub(super) fn smooth(region: &mut Region, energy: Energy, rounds: usize, progres
             linear_constraints: None,
             coupling: Coupling::Joint,
         };
-        let solution = quadratic::minimize(&problem, &settings, progress)?;
+        let solution = quadratic::minimize(&problem, &settings, || false, progress)?;
         for (v, point) in (0..).zip(solution.values.to_points()?).skip(region.anchors.len()) {
             region.mesh.set_position(v, point);
         }

@@ -31,13 +31,17 @@ pub(super) struct Merging<'a> {
 
 impl Merging<'_> {
     /// Merges across borders weaker than `threshold`, weakest first, and measures them again as segments
-    /// grow. `labels` become the names of the segments that are kept.
+    /// grow, unless the caller wishes to finish. `labels` become the names of the segments that are kept.
     ///
     /// # Errors
     /// [`crate::Error::Cancelled`].
     pub(super) fn below(&self, labels: &mut [u32], threshold: f64) -> Result<Vec<Merge>> {
         let mut merges = Vec::new();
         for share in MERGE_SHARES {
+            if self.progress.is_finishing() {
+                merges.extend(self.round(labels, threshold)?);
+                break;
+            }
             merges.extend(self.round(labels, share * threshold)?);
         }
         Ok(merges)
@@ -51,14 +55,19 @@ impl Merging<'_> {
         let mut merges: Vec<Merge> = Vec::new();
         loop {
             let borders = self.borders(labels)?;
-            // A fifth of the borders at a time: the later ones change with the segments.
+            // A fifth of the borders at a time: the later ones change with the segments. Where the caller
+            // wishes to finish, they are not measured again.
             let mut strengths: Vec<f64> = memory::gathered(borders.iter().map(|b| b.strength))?;
-            if strengths.is_empty() {
+            strengths.sort_unstable_by(f64::total_cmp);
+            let most = match strengths.get(strengths.len() / 5) {
+                Some(_) if self.progress.is_finishing() => f64::INFINITY,
+                Some(strength) => strength * (1.0 + 1e-9) + f64::MIN_POSITIVE,
+                None => return Ok(merges),
+            };
+            let round = greedy(&borders, most)?;
+            if round.is_empty() {
                 return Ok(merges);
             }
-            strengths.sort_unstable_by(f64::total_cmp);
-            let most = strengths[strengths.len() / 5] * (1.0 + 1e-9) + f64::MIN_POSITIVE;
-            let round = greedy(&borders, most)?;
             rename(labels, &round);
             memory::extend(&mut merges, round.len())?;
             merges.extend(round);
@@ -91,12 +100,15 @@ impl Merging<'_> {
     /// [`crate::Error::Cancelled`].
     pub(super) fn absorb_small(&self, labels: &mut [u32], least: usize) -> Result<Vec<Merge>> {
         let mut merges = Vec::new();
+        let mut borders = Vec::new();
         loop {
             let mut sizes: BTreeMap<u32, usize> = BTreeMap::new();
             for label in labels.iter() {
                 *sizes.entry(*label).or_default() += 1;
             }
-            let borders = self.borders(labels)?;
+            if borders.is_empty() || !self.progress.is_finishing() {
+                borders = self.borders(labels)?;
+            }
             let mut weakest: BTreeMap<u32, (f64, u32)> = BTreeMap::new();
             for border in &borders {
                 for (own, other) in [(0, 1), (1, 0)].map(|(i, j)| (border.labels[i], border.labels[j])) {
@@ -127,9 +139,32 @@ impl Merging<'_> {
                 return Ok(merges);
             }
             rename(labels, &round);
+            if self.progress.is_finishing() {
+                borders = renamed(&borders, &round);
+            }
             merges.extend(round);
         }
     }
+}
+
+/// The borders that are left after merges, those that became one with their mean strength by length.
+fn renamed(borders: &[Border], merges: &[Merge]) -> Vec<Border> {
+    let mut joined: BTreeMap<[u32; 2], (f64, f64)> = BTreeMap::new();
+    let mut sides: Vec<u32> = borders.iter().flat_map(|border| border.labels).collect();
+    rename(&mut sides, merges);
+    for (border, sides) in borders.iter().zip(sides.chunks_exact(2)) {
+        if sides[0] != sides[1] {
+            let labels = [sides[0].min(sides[1]), sides[0].max(sides[1])];
+            let (length, weighted) = joined.entry(labels).or_default();
+            *length += border.length;
+            *weighted += border.length * border.strength;
+        }
+    }
+    let mean = |(labels, (length, weighted))| {
+        let strength: f64 = weighted / f64::max(length, f64::MIN_POSITIVE);
+        Border { labels, length, strength }
+    };
+    joined.into_iter().map(mean).collect()
 }
 
 /// Names every segment that is gone after the one that it became.
