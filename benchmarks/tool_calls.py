@@ -114,7 +114,7 @@ ESTIMATED: dict[str, tuple[str, int, str]] = {
     "segment": ("segment_coarse_to_fine", 3, "auto"),
     "segment paper": ("segment", 3, "auto"),
     "parts": ("parts", 1, "auto"),
-    "facet": ("facet", 1, "auto"),
+    "facet": ("facet_coarse_to_fine", 1, "auto"),
     "restore": ("restore", 3, "auto"),
     "fill_holes": ("fill_holes", 3, "auto"),
     "remesh": ("remesh", 1, "auto"),

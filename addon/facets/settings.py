@@ -32,6 +32,12 @@ def has_halves(settings: object) -> bool:
     return makes_faces(settings) and settings.symmetric != "NONE"
 
 
+def may_simplify(settings: object) -> bool:
+    """Whether a simplified mesh can say where the facets of a large one are."""
+    is_plain = makes_faces(settings) and not has_halves(settings) and not settings.keep_volume
+    return is_plain and not (settings.ridge_group or settings.strength_group)
+
+
 MODES = items(
     AUTO="As many as the shape gives evidence for",
     COUNT="As many as you choose",
@@ -116,6 +122,11 @@ class FacetSettings(Settings):
         section=WHERE, description="Vertex group painted where ridges should run. Unpainted areas are neutral"
     )
     avoid_ridges: shared.AVOID_RIDGES.but(section=WHERE)
+    coarse_to_fine: shared.COARSE_TO_FINE.but(
+        description="Find the facets of a large mesh on a simplified one. Many times as fast, and as near. "
+        "Not with Kept, Symmetric, Keep Volume, ridges, or a mask",
+        active=may_simplify,
+    )
 
 
 PRESETS = {

@@ -17,7 +17,7 @@ from ..framework.job import Task
 from ..framework.run import Part, Run, counted, meshes_phrase, most, panel_lines, percent, total
 from ..framework.surface import group_weights, painted_edges, surface_of
 from ..framework.volume import is_closed, volume_and_centroid
-from .settings import FacetSettings, by_count, by_error, has_halves, keeps_faces
+from .settings import FacetSettings, by_count, by_error, has_halves, keeps_faces, may_simplify
 
 KEY_NAME = "Facets"
 
@@ -58,7 +58,12 @@ class Faceting(Run):
     name = "facet"
     takes = FacetSettings
     sums = ("facets", "facet", "")
-    call = "facet"
+
+    @property
+    def call(self) -> str:
+        """On a simplified mesh it takes less."""
+        simplifies = self.settings.coarse_to_fine and may_simplify(self.settings)
+        return "facet_coarse_to_fine" if simplifies else "facet"
 
     def prepare(self, obj: bpy.types.Object) -> FacetPart:
         """Read shape, layers, selection, mask and ridge paint of one mesh."""
@@ -209,6 +214,7 @@ def _made(
         flips=not part.as_key,
         keep_volume=settings.keep_volume,
         symmetric=settings.symmetric if has_halves(settings) else None,
+        coarse_to_fine=settings.coarse_to_fine,
         flat="SHARP" in settings.marks,
         progress=progress,
         check=part.task.check,

@@ -90,6 +90,7 @@ def facets_of(
     flips: bool = True,
     keep_volume: bool = False,
     symmetric: str | None = None,
+    coarse_to_fine: bool = True,
     flat: bool = True,
     progress: ridgeform.Progress | None = None,
     check: Callable[[], None] = lambda: None,
@@ -108,6 +109,8 @@ def facets_of(
         options["keep_volume"] = True
     if symmetric is not None:
         options["symmetric"] = symmetric.lower()
+    if not coarse_to_fine:
+        options["coarse_to_fine"] = False
     wanted = {"facets": facets, "error": error, "progress": progress}
     found, is_known = _known.of(mesh, options, lambda: ridgeform.facet(mesh, **options, **wanted))
     if is_known:

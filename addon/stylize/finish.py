@@ -162,6 +162,7 @@ def _make_facets(
         source.facetable,
         ridgeform.Mesh(places, weld.triangles),
         made.coordinates,
+        coarse_to_fine=settings.coarse_to_fine,
         flat="SHARP" in settings.marks,
         progress=progress,
         check=check,

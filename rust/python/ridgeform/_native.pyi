@@ -184,6 +184,7 @@ def facet(
     keep_triangles: bool = False,
     keep_volume: bool = False,
     symmetric: Literal["x", "y", "z", "auto"] | None = None,
+    coarse_to_fine: bool | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Faceted: ...

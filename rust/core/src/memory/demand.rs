@@ -1,6 +1,6 @@
 //! One call and its size: what it needs, and whether that fits.
 
-use super::model::{Cost, CLARABEL, COARSER, DIVIDED, LOOSE};
+use super::model::{Cost, CLARABEL, COARSER, DIVIDED, LOOSE, ON_COARSER};
 use super::threads::settle;
 use super::{available, is_granted, share_of, share_of_free, with_margin, Tool, SMALL};
 use crate::{Error, Result};
@@ -38,11 +38,16 @@ impl Demand {
     #[must_use]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     pub fn estimate(&self) -> usize {
-        if self.tool == Tool::SegmentByLevels && self.n_vertices < COARSER.1 {
-            return Self { tool: Tool::Segment, ..*self }.estimate();
+        let on_itself = match self.tool {
+            Tool::SegmentByLevels => Tool::Segment,
+            Tool::FacetByLevels => Tool::Facet,
+            other => other,
+        };
+        if on_itself != self.tool && self.n_vertices < COARSER {
+            return Self { tool: on_itself, ..*self }.estimate();
         }
         // Most of it is the segments, which are found on coarser meshes here, too.
-        if self.tool == Tool::Restore && self.n_vertices >= COARSER.1 {
+        if self.tool == Tool::Restore && self.n_vertices >= COARSER {
             return Self { tool: Tool::SegmentByLevels, ..*self }.estimate();
         }
         let is_solved = self.tool.solves();
@@ -60,7 +65,8 @@ impl Demand {
         let per_loose = if is_solved { LOOSE[0] } else { LOOSE[1] };
         let fixed = match self.tool {
             Tool::Parts => DIVIDED.1 * faces.min(DIVIDED.0),
-            Tool::SegmentByLevels => COARSER.0,
+            Tool::SegmentByLevels => ON_COARSER[0],
+            Tool::FacetByLevels => ON_COARSER[1],
             _ => 0.0,
         };
         let per_face = face + logarithmic * faces.max(2.0).log2() + column * further;

@@ -43,6 +43,8 @@ pub enum Tool {
     Parts,
     /// [`crate::tools::facet`].
     Facet,
+    /// The same with facets found on a coarser mesh.
+    FacetByLevels,
     /// [`crate::tools::restore`].
     Restore,
     /// [`crate::tools::fill_holes`].
@@ -67,7 +69,7 @@ pub(super) struct Cost {
 
 impl Tool {
     /// Every tool by the name that users call it by.
-    pub const ALL: [(&'static str, Self); 25] = [
+    pub const ALL: [(&'static str, Self); 26] = [
         ("mesh", Self::Mesh),
         ("report", Self::Report),
         ("hessian", Self::Hessian),
@@ -86,6 +88,7 @@ impl Tool {
         ("segment_coarse_to_fine", Self::SegmentByLevels),
         ("parts", Self::Parts),
         ("facet", Self::Facet),
+        ("facet_coarse_to_fine", Self::FacetByLevels),
         ("restore", Self::Restore),
         ("fill_holes", Self::FillHoles),
         ("remesh", Self::Remesh),
@@ -131,6 +134,7 @@ impl Tool {
             Self::SegmentByLevels => (380.0, 0.0, 0.0),
             Self::Parts => (520.0, 0.0, 0.0),
             Self::Facet => (820.0, 0.0, 0.0),
+            Self::FacetByLevels => (580.0, 0.0, 0.0),
             Self::Restore => (2500.0, 77.0, 0.0),
             Self::FillHoles => (2500.0, 0.0, 0.0),
             Self::Remesh => (350.0, 0.0, 0.0),
@@ -149,8 +153,11 @@ pub(super) const CLARABEL: Cost = Cost { face: 4600.0, logarithmic: 100.0, colum
 /// Parts are divided on so many faces or clusters of them at most, which take so many bytes each.
 pub(super) const DIVIDED: (f64, f64) = (4500.0, 1300.0);
 
-/// What segments on a coarser mesh take beside its faces, and the vertices from which there is one.
-pub(super) const COARSER: (f64, usize) = (38e6, 18_000);
+/// What segments and facets on a coarser mesh take beside its faces.
+pub(super) const ON_COARSER: [f64; 2] = [38e6, 9e6];
+
+/// The vertices from which there is a coarser mesh.
+pub(super) const COARSER: usize = 18_000;
 
 /// Bytes for a vertex without faces, in every array that has an entry for each vertex: where a linear system
 /// is solved, and elsewhere.

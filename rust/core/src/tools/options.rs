@@ -15,6 +15,10 @@ pub enum Levels {
     Never,
 }
 
+/// The most vertices of the coarsest level: what tools make of a shape at their usual settings has some
+/// hundred facets or segments, so that each has some tens of vertices; and a whole flow takes about a second.
+pub(super) const ENOUGH: usize = 9000;
+
 impl Levels {
     /// Whether they are used on a mesh with so many vertices, if the coarsest level has `enough` and what is
     /// asked for `is_suited`.

@@ -112,6 +112,14 @@ pub(super) const COVERED: f64 = 1e-9;
 /// a call asks for has room for them.
 pub(super) const KEPT: usize = 500;
 
+/// Vertices of a coarser mesh for each facet: with 30, 300 facets of a bunny are 0.13 % of the diagonal off,
+/// as they are when found on all of its faces. Where there are more facets than expected, half as many do.
+pub(super) const PER_FACET: usize = 30;
+
+/// A coarser mesh may be this part of the error that is allowed away from the mesh: then an eighth of the
+/// square is left for what it loses, noise above all.
+pub(super) const MOST_LOST: f64 = 0.35;
+
 /// Asked after so many merges whether to stop.
 pub(super) const PATIENCE: usize = 1000;
 

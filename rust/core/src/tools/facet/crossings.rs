@@ -36,6 +36,11 @@ impl Standing {
         Ok(Self { pieces, piece, passing })
     }
 
+    /// Whether anything passes through anything.
+    pub(super) fn is_any(&self) -> bool {
+        !(self.pieces.is_empty() && self.passing.is_empty())
+    }
+
     /// Whether the pieces of two faces pass through each other.
     pub(super) fn has(&self, f: u32, g: u32) -> bool {
         self.pieces.contains(&ordered(self.piece[f as usize], self.piece[g as usize]))

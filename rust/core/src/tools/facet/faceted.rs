@@ -1,9 +1,11 @@
 //! What making facets gives.
 
+use super::coarse::Coarse;
 use super::keeping::KeptTriangles;
 use super::merging::Merges;
 use crate::mesh::vector::Point;
 use crate::solve::Status;
+use crate::Result;
 
 /// A mesh made of facets.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,4 +45,19 @@ pub struct Faceted {
 /// The order in which faces were merged: with it other numbers of facets are quick,
 /// and nested where they start.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct FacetMerges(pub(super) Merges);
+pub struct FacetMerges {
+    pub(super) merges: Merges,
+    /// The mesh whose faces were merged, where that is a coarser one.
+    pub(super) coarse: Option<Coarse>,
+}
+
+impl FacetMerges {
+    /// The same.
+    ///
+    /// # Errors
+    /// [`crate::error::SolveError::Memory`].
+    pub(super) fn twin(&self) -> Result<Self> {
+        let coarse = self.coarse.as_ref().map(Coarse::twin).transpose()?;
+        Ok(Self { merges: self.merges.twin()?, coarse })
+    }
+}

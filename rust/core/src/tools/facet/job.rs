@@ -42,7 +42,19 @@ impl<'a> Job<'a> {
                 (low[c], high[c]) = (low[c].min(p[c]), high[c].max(p[c]));
             }
         }
-        let (center, diagonal) = (between(low, high, 0.5), distance(low, high));
+        Self::within(working, options, mirror, (between(low, high, 0.5), distance(low, high)))
+    }
+
+    /// The same in the unit of calculation of a box with this middle and diagonal.
+    pub(super) fn within(
+        working: &'a Working<'a>,
+        options: &FacetOptions,
+        mirror: Option<Mirror>,
+        (center, diagonal): (Point, f64),
+    ) -> Result<Self> {
+        let here = working.mesh();
+        let faces = here.connectivity().faces();
+        let positions = here.positions().ok_or(MeshError::NoPositions)?;
         let is_sound = |f: &[u32; 3]| f[0] != f[1] && f[1] != f[2] && f[2] != f[0];
         let sound = (0..).zip(faces).filter(|(_, face)| is_sound(face));
         let parts: Vec<u32> = memory::sifted(sound.map(|(f, _)| f))?;

@@ -7,9 +7,11 @@
 //! themselves or others ([`faults`], [`crossings`]) are repaired ([`mod@repair`]), or the merges that made
 //! them refused ([`refusals`], [`search`]), and what is too many then is joined ([`reducing`]); faces are
 //! given to the nearest facet, and the planes fitted anew, in turns ([`fitting`]), as in variational shape
-//! approximation [Cohen-Steiner, Alliez and Desbrun 2004].
+//! approximation [Cohen-Steiner, Alliez and Desbrun 2004]. Facets of a large mesh are found on a coarser one
+//! ([`on_coarser`]).
 
 mod borders;
+mod coarse;
 mod constants;
 mod count;
 mod crossings;
@@ -27,6 +29,7 @@ mod merging;
 mod mirror;
 mod moments;
 mod nearest;
+mod on_coarser;
 mod options;
 mod planes;
 mod reducing;
@@ -55,9 +58,9 @@ use crate::mesh::vector::{add, scale};
 use crate::mesh::{Mesh, Working};
 use crate::progress::Progress;
 use crate::solve::Status;
+use crate::tools::options::ENOUGH;
 use crate::Result;
 use job::Job;
-use merging::Merges;
 use mirror::Mirror;
 use regions::OUTSIDE;
 use search::Found;
@@ -96,7 +99,8 @@ fn run(
     progress: &Progress,
 ) -> Result<Faceted> {
     options.solve().run(|| {
-        mesh.demand(Tool::Facet).admit(None)?;
+        let by_levels = options.use_levels(mesh.connectivity().n_vertices(), ENOUGH);
+        mesh.demand(if by_levels { Tool::FacetByLevels } else { Tool::Facet }).admit(None)?;
         let working = Working::contracted(mesh)?;
         let job = Job::new(&working, options, mirror)?;
         let scan = job.scan(options)?;
@@ -107,15 +111,23 @@ fn run(
             // Before the work, so that a mesh that is open costs nothing.
             job.volume(&scan.places)?;
         }
-        let merges = match merges {
-            Some(merges) if merges.0.are_all => merges.0.twin()?,
-            _ => job.merges(&scan, options, progress)?,
-        };
-        let found = if merges.are_all {
-            job.found(&merges, &scan, options, progress)?
-        } else {
-            // Half of the merges are no facets yet, and to make them sound takes as long as the rest would.
-            job.as_it_is(&merges, &scan, progress)?
+        let (found, merges) = match job.found_on_coarser(&scan, merges, options, progress)? {
+            Some(found) => found,
+            None => {
+                mesh.demand(Tool::Facet).admit(None)?;
+                let merges = match merges.filter(|known| known.coarse.is_none()) {
+                    Some(known) if known.merges.are_all => known.merges.twin()?,
+                    _ => job.merges(&scan, options, progress)?,
+                };
+                let found = if merges.are_all {
+                    job.found(&merges, &scan, options, progress)?
+                } else {
+                    // Half of the merges are no facets yet, and to make them sound takes as long as the rest
+                    // would.
+                    job.as_it_is(&merges, &scan, progress)?
+                };
+                (found, FacetMerges { merges, coarse: None })
+            }
         };
         job.given(mesh, found, merges, progress)
     })
@@ -123,7 +135,7 @@ fn run(
 
 impl Job<'_> {
     /// The result in the mesh's own coordinates.
-    fn given(&self, mesh: &Mesh, found: Found, merges: Merges, progress: &Progress) -> Result<Faceted> {
+    fn given(&self, mesh: &Mesh, found: Found, merges: FacetMerges, progress: &Progress) -> Result<Faceted> {
         let kept = self.keeps.then(|| self.kept(&found)).transpose()?;
         let Found { shape, inspection, labels, distances, n_facets, n_crossings } = found;
         let original = mesh.positions().unwrap_or_default();
@@ -176,7 +188,7 @@ impl Job<'_> {
             n_crossings,
             kept,
             status: if progress.is_finishing() { Status::Stopped } else { Status::Solved },
-            merges: FacetMerges(merges),
+            merges,
         })
     }
 }

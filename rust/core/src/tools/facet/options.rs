@@ -1,7 +1,7 @@
 //! How to make facets.
 
 use crate::mesh::Mesh;
-use crate::tools::options::{check_edge_weights, check_faces, check_positive, SolveOptions};
+use crate::tools::options::{check_edge_weights, check_faces, check_positive, Levels, SolveOptions};
 use crate::{Error, Result};
 
 /// What a mesh is symmetric across: the plane across an axis of coordinates through the origin, or through
@@ -35,6 +35,9 @@ pub struct FacetOptions {
     pub keep_volume: bool,
     /// Whether the facets of a mesh that is symmetric are to be so, and how.
     pub symmetric: Option<Symmetric>,
+    /// Whether the facets of a large mesh are found on a coarser one: not where faces stay, borders cost
+    /// something, triangles or the volume are kept, or the shape is to be symmetric.
+    pub levels: Levels,
     /// Threads to use; all where `None`. The result does not depend on it.
     pub threads: Option<usize>,
 }
@@ -58,6 +61,13 @@ impl FacetOptions {
             Some((other, _)) => Err(Error::argument("symmetric", format!("does not go with {other}"))),
             None => Ok(()),
         }
+    }
+
+    /// Whether the facets of a mesh with so many vertices are found on one with `enough` of them.
+    pub(super) fn use_levels(&self, n_vertices: usize, enough: usize) -> bool {
+        let is_plain = self.edge_weights.is_none() && self.faces.is_none() && self.symmetric.is_none();
+        let is_suited = is_plain && !self.keep_triangles && !self.keep_volume;
+        is_suited && self.levels.are_used(n_vertices, enough, true)
     }
 
     /// The threads, checked where they are started.

@@ -175,7 +175,7 @@ impl Half {
             // With more than asked for on the half, it cannot have fewer.
             let has_no_fewer = count.is_some_and(|count| found.n_facets > count);
             let found = self.doubled(mesh, found)?;
-            known = Some(FacetMerges(found.merges.0.twin()?));
+            known = Some(found.merges.twin()?);
             let n = found.n_facets;
             let (Some(asked), Some(before)) = (options.facets, count) else { return Ok(found) };
             let off = asked.abs_diff(n);

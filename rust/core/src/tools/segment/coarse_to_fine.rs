@@ -6,7 +6,6 @@
 
 use std::collections::BTreeMap;
 
-use super::constants::ENOUGH;
 use super::noise::noise_level;
 use super::options::SegmentOptions;
 use super::passes::Passes;
@@ -18,6 +17,7 @@ use crate::linear::Columns;
 use crate::mesh::vector::Point;
 use crate::mesh::Mesh;
 use crate::progress::Progress;
+use crate::tools::options::ENOUGH;
 use crate::tools::{Levels, Scale};
 use crate::{memory, Result};
 

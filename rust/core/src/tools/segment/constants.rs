@@ -3,11 +3,6 @@
 use crate::limits::Limits;
 use crate::tools::Scale;
 
-// Coarser meshes.
-
-/// The most vertices of the mesh that the segments of a large one are found on.
-pub(super) const ENOUGH: usize = 9000;
-
 // Noise and the functional (41).
 
 /// `ε` below this many mean edges makes the indicator rise again everywhere: no row of faces is narrow
@@ -90,7 +85,7 @@ pub(super) const MOST_REACH: f64 = 3.0;
 pub(super) const REACH_ON_A_SHAPE: f64 = 0.06;
 
 /// But not over more mean edges than this: as many as that is on the finest mesh that is segmented itself,
-/// twice [`ENOUGH`].
+/// twice [`crate::tools::options::ENOUGH`].
 pub(super) const MOST_REACH_ON_A_SHAPE: f64 = 7.5;
 
 /// A border that is a smaller part of the smaller segment's perimeter counts as stronger in proportion:

@@ -1,11 +1,11 @@
 //! How to segment.
 
-use super::constants::{CLEAN_FIDELITY, DEFAULT_SCALE, ENOUGH};
+use super::constants::{CLEAN_FIDELITY, DEFAULT_SCALE};
 use crate::linear::Columns;
 use crate::mesh::Mesh;
 use crate::solve::MAX_JOINT_COLUMNS;
 use crate::tools::options::{
-    check_edge_weights, check_faces, check_positive, check_range, check_weights, painted_weight,
+    check_edge_weights, check_faces, check_positive, check_range, check_weights, painted_weight, ENOUGH,
 };
 use crate::tools::{Levels, Scale, SolveOptions};
 use crate::{memory, Error, Result};

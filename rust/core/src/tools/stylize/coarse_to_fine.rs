@@ -8,7 +8,7 @@
 //! sampled.
 
 use super::flow::{Flow, Legacy, Show};
-use super::options::{FlowStatus, StylizeOptions, Stylized, ENOUGH};
+use super::options::{FlowStatus, StylizeOptions, Stylized};
 use super::Flatness;
 use crate::error::MeshError;
 use crate::levels::{face_values, levels, Level};
@@ -16,6 +16,7 @@ use crate::mesh::vector::{add, sub, Point};
 use crate::mesh::{edge_lengths, Mesh};
 use crate::progress::Progress;
 use crate::solve::Settings;
+use crate::tools::options::ENOUGH;
 use crate::tools::Scale;
 use crate::{memory, Result};
 

@@ -6,7 +6,7 @@ use crate::memory;
 use crate::mesh::Mesh;
 use crate::operators::Dual;
 use crate::solve::Coupling;
-use crate::tools::options::{check_fixed, check_positive, check_range, check_weights};
+use crate::tools::options::{check_fixed, check_positive, check_range, check_weights, ENOUGH};
 use crate::tools::{Levels, Scale, SolveOptions};
 
 /// How to stylize.
@@ -65,10 +65,6 @@ impl Default for StylizeOptions {
         }
     }
 }
-
-/// The most vertices of the coarsest level: what a flow makes of a shape at the usual strengths has some
-/// hundred facets, so that each has some tens of vertices; and the whole flow takes about a second.
-pub(super) const ENOUGH: usize = 9000;
 
 impl StylizeOptions {
     /// A copy.
