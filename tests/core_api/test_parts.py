@@ -165,6 +165,38 @@ def test_pieces_are_parts_or_belong_to_what_is_near(ball):
     assert (two[2 * m :] == two[nearest]).all()
 
 
+def test_no_part_is_a_speck_at_any_count():
+    """Less than a disk as wide as the scale on which hollows are measured is none."""
+    vertices, faces = source("bust")
+    noisy = shapes.add_noise(vertices, faces, 0.2, seed=1)
+    found = ridgeform.parts(ridgeform.Mesh(noisy, faces))
+    for count in (4, 8, 16, found.range[1]):
+        areas = areas_of(noisy, faces, found.labels_at(min(count, found.range[1])))
+        assert areas.min() >= 1.25e-3 * areas.sum()
+
+
+def test_beyond_what_is_found_large_parts_are_divided_before_strips_come_off():
+    """A rod in pieces: none is a strip along it."""
+    vertices, faces = shapes.cylinder(32, 64)
+    found = ridgeform.parts(ridgeform.Mesh(vertices * [1, 1, 8], faces))
+    assert found.n_parts == 1
+    areas = areas_of(vertices * [1, 1, 8], faces, found.labels_at(2))
+    assert areas.min() >= 0.1 * areas.sum()
+
+
+def test_closed_pieces_that_pass_through_each_other_are_a_part_each():
+    """The inside of one does not make the other thin."""
+    small, small_faces = shapes.icosphere(3)
+    head = 0.6 * small + np.array([0.0, 0.0, 1.3])
+    arms = [0.35 * small + np.array([x, 0.0, 0.3]) for x in (1.1, -1.1)]
+    balls = [small, head, *arms]
+    n, m = len(small), len(small_faces)
+    faces = np.concatenate([small_faces + i * n for i in range(len(balls))])
+    found = ridgeform.parts(ridgeform.Mesh(np.concatenate(balls), faces))
+    assert found.n_parts == len(balls)
+    assert np.array_equal(found.labels, np.repeat(np.arange(len(balls)), m))
+
+
 @pytest.mark.parametrize("rounding", [0.0, 1e-7, 1e-6])
 def test_loose_triangles_of_one_surface_are_divided_as_that_surface(ball, found, rounding):
     vertices, faces, _ = ball

@@ -141,10 +141,15 @@ impl ClosestPoint {
         best
     }
 
-    /// The first triangle that the ray from `from` along `direction` meets farther than `start` away, and how
-    /// far, in lengths of `direction`.
-    #[must_use]
-    pub fn first_hit(&self, from: Point, direction: Point, start: f64) -> Option<(f64, u32)> {
+    /// The first of the `wanted` triangles that the ray from `from` along `direction` meets farther than
+    /// `start` away, and how far, in lengths of `direction`.
+    pub fn first_hit(
+        &self,
+        from: Point,
+        direction: Point,
+        start: f64,
+        wanted: impl Fn(u32) -> bool,
+    ) -> Option<(f64, u32)> {
         let mut best: Option<(f64, u32)> = None;
         let mut stack = Vec::with_capacity(64);
         if !self.nodes.is_empty() {
@@ -159,7 +164,7 @@ impl ClosestPoint {
                 stack.extend([node.start as usize, n + 1]);
                 continue;
             }
-            for &triangle in self.triangles_of(node) {
+            for &triangle in self.triangles_of(node).iter().filter(|t| wanted(**t)) {
                 let met = ray_meets(from, direction, self.triangles[triangle as usize]);
                 if let Some(far) = met.filter(|far| *far > start && best.is_none_or(|found| *far < found.0)) {
                     best = Some((far, triangle));

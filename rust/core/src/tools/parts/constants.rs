@@ -83,8 +83,11 @@ pub(super) const LEAST_OPENNESS: f64 = 1e-3;
 
 // Dividing.
 
-/// Nothing smaller than this part of the shape is a part of its own: a toe of a figure.
-pub(super) const LEAST_PART: f64 = 3e-4;
+/// Nothing smaller than this part of the shape is a part of its own: a disk as wide as the scale to both
+/// sides of its middle. What is less has no border that was judged apart from it: dents of the noise looked
+/// like parts, and took the place of others (Rand error at the usual count 10.8 with 3e-4, 10.6 with this,
+/// 10.9 with twice as much; as found it is the same). Of what people name 2.5 percent are smaller.
+pub(super) const LEAST_PART: f64 = std::f64::consts::PI * BEND_SCALE * BEND_SCALE;
 
 /// So many parts the finest division has, unless more are asked for.
 pub(super) const MOST_PARTS: usize = 40;

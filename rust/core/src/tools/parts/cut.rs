@@ -51,15 +51,29 @@ impl Side {
 
     /// What a cut with this border between this side and `other` costs.
     pub(super) fn price(self, other: Self, border: f64) -> f64 {
+        self.thinner(other) * self.plain_price(other, border)
+    }
+
+    /// The same without a unit: what parts of one shape cost alike, whatever their size.
+    pub(super) fn price_by_shape(self, other: Self, border: f64) -> f64 {
+        self.thinner(other) * border / self.least(other).sqrt()
+    }
+
+    /// What a border costs less since the smaller side is thinner.
+    fn thinner(self, other: Self) -> f64 {
         let mean = |side: Self| side.thickness / side.area.max(f64::MIN_POSITIVE);
         let (small, large) = if self.area < other.area { (self, other) } else { (other, self) };
         let step = (mean(large) - mean(small)).max(0.0);
-        (-step / STEP).exp() * self.plain_price(other, border)
+        (-step / STEP).exp()
+    }
+
+    fn least(self, other: Self) -> f64 {
+        self.area.min(other.area).max(f64::MIN_POSITIVE)
     }
 
     /// The same where both sides are equally thick.
     pub(super) fn plain_price(self, other: Self, border: f64) -> f64 {
-        border / self.area.min(other.area).max(f64::MIN_POSITIVE).powf(AREA_POWER)
+        border / self.least(other).powf(AREA_POWER)
     }
 }
 

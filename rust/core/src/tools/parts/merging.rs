@@ -4,7 +4,13 @@
 //! off more cheaply than arms. Two parts that touch are two for people the more surely the cheaper the cut
 //! is, as surely as not at the limit: the logarithm of limit over price is the evidence. The Rand index says
 //! what a merge is worth: it joins as many pairs of points as the product of both areas, which is right or
-//! wrong for all of them. The merge with the least evidence against it, times those pairs, comes next.
+//! wrong for all of them. The merge with the least evidence against it, times those pairs, comes next; but a
+//! part goes only to that larger one from which it is set apart least, else strips beside a border painted by
+//! hand would go over it to the limb, since fewer pairs are joined there than with the body.
+//!
+//! Once the count is found, there is no evidence for more: weighed by pairs, specks and strips would come
+//! first beyond it, since they join the fewest. There the shape of a part is all that counts, whatever its
+//! size: the merge whose border is longest for the root of the smaller area comes first.
 
 use std::collections::BTreeMap;
 
@@ -48,17 +54,28 @@ pub(super) struct Merging {
     /// The piece of the surface that a part belongs to, and of how many parts of it besides.
     pieces: Vec<(u32, usize)>,
     limit: f64,
+    beyond: Beyond,
+}
+
+/// What says which of the parts that become a found one merges first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Beyond {
+    /// The pairs expected wrong, as between found parts: to choose the count.
+    Pairs,
+    /// The shape of the parts, whatever their size.
+    Shape,
 }
 
 impl Merging {
     /// The parts by `labels`, from 0, of a graph whose nodes lie in `pieces` that only gaps join; which part
-    /// each comes from that was `found`, and up to which price cuts are made.
+    /// each comes from that was `found`, up to which price cuts are made, and what counts `beyond` the found.
     pub(super) fn new(
         graph: &Graph,
         pieces: &[u32],
         labels: &[u32],
         found: Vec<u32>,
         limit: f64,
+        beyond: Beyond,
     ) -> Result<Self> {
         let parts = graph.quotient(labels, found.len())?;
         let sides = (0..parts.n_nodes()).map(|i| Side::of(&parts, |node| node == i)).collect();
@@ -74,27 +91,62 @@ impl Merging {
         let roots: Vec<u32> = (0..found.len() as u32).map(|part| joined.root(part)).collect();
         let others = |root: u32| roots.iter().filter(|r| **r == root).count() - 1;
         let pieces = roots.iter().map(|&root| (root, others(root))).collect();
-        Ok(Self { sides, borders, found, pieces, limit })
+        Ok(Self { sides, borders, found, pieces, limit, beyond })
     }
 
     /// The merges, one after the other, until one part is left.
     pub(super) fn merges(mut self) -> Vec<Merge> {
         let mut merges = Vec::with_capacity(self.sides.len());
         loop {
-            let allowed = self.borders.iter().filter(|(pair, _)| self.may_merge(**pair));
+            let dearest = self.dearest();
+            let allowed = self.borders.iter().filter(|(pair, border)| {
+                self.may_merge(**pair) && self.is_dearest(**pair, border.cost, &dearest)
+            });
             let judged = allowed.map(|(&pair, &border)| {
                 let [a, b] = pair.map(|part| self.sides[part as usize]);
                 let apart = self.found[pair[0] as usize] != self.found[pair[1] as usize];
                 let price = a.price(b, border.cost);
                 let plain_price = a.plain_price(b, border.length);
                 let merge = Merge { pair, price, plain_price, areas: [a.area, b.area] };
-                (merge, apart, loss(a, b, price / self.limit))
+                let loss = match self.beyond {
+                    Beyond::Shape if !apart => -a.price_by_shape(b, border.cost),
+                    _ => loss(a, b, price / self.limit),
+                };
+                (merge, apart, loss)
             });
             let next = judged.min_by(|a, b| a.1.cmp(&b.1).then(a.2.total_cmp(&b.2)));
             let Some((merge, ..)) = next else { return merges };
             merges.push(merge);
             self.merge(merge.pair);
         }
+    }
+
+    /// For each part the price of the dearest of its borders with larger parts that it may merge with: once the
+    /// count is found, with those of the same found one if there are any.
+    fn dearest(&self) -> Vec<(bool, f64)> {
+        let mut dearest = vec![(false, 0.0); self.sides.len()];
+        for (&pair, border) in self.borders.iter().filter(|(pair, _)| self.may_merge(**pair)) {
+            let (small, price) = self.judged(pair, border.cost);
+            let most = &mut dearest[small];
+            if price > *most {
+                *most = price;
+            }
+        }
+        dearest
+    }
+
+    /// Whether no other border of the smaller part of a pair with a larger one is dearer than this.
+    fn is_dearest(&self, pair: [u32; 2], border: f64, dearest: &[(bool, f64)]) -> bool {
+        let (small, price) = self.judged(pair, border);
+        price >= dearest[small]
+    }
+
+    /// The smaller part of a pair, whether both are of the same found one, and the price of their border.
+    fn judged(&self, pair: [u32; 2], border: f64) -> (usize, (bool, f64)) {
+        let [a, b] = pair.map(|part| self.sides[part as usize]);
+        let alike =
+            self.beyond == Beyond::Shape && self.found[pair[0] as usize] == self.found[pair[1] as usize];
+        (pair[usize::from(b.area < a.area)] as usize, (alike, a.price(b, border)))
     }
 
     /// Across a gap only whole pieces merge: limbs of two figures that nearly touch are no part.
@@ -146,7 +198,7 @@ mod tests {
 
     fn merges(parts: &Graph, pieces: &[u32], found: &[u32]) -> Vec<Merge> {
         let labels: Vec<u32> = (0..found.len() as u32).collect();
-        Merging::new(parts, pieces, &labels, found.to_vec(), 1.0).unwrap().merges()
+        Merging::new(parts, pieces, &labels, found.to_vec(), 1.0, Beyond::Pairs).unwrap().merges()
     }
 
     fn pairs(parts: &Graph, pieces: &[u32], found: &[u32]) -> Vec<[u32; 2]> {
@@ -170,6 +222,21 @@ mod tests {
     fn what_was_found_stays_longest() {
         let row = parts(&[0.25; 4], &[([0, 1], 0.5), ([1, 2], 0.1), ([2, 3], 0.5)]);
         assert_eq!(pairs(&row, &[0; 4], &[0, 1, 1, 2])[0], [1, 2]);
+    }
+
+    #[test]
+    fn beyond_what_is_found_halves_stay_longer_than_specks() {
+        let long = parts(&[0.5, 0.498, 0.002], &[([0, 1], 1.5), ([1, 2], 0.15)]);
+        assert_eq!(pairs(&long, &[0; 3], &[0; 3])[0], [0, 1]);
+        let labels = [0, 1, 2];
+        let shaped = Merging::new(&long, &[0; 3], &labels, vec![0; 3], 1.0, Beyond::Shape).unwrap();
+        assert_eq!(shaped.merges()[0].pair, [1, 2]);
+    }
+
+    #[test]
+    fn a_strip_goes_to_the_side_from_which_it_is_set_apart_least() {
+        let limb = parts(&[0.89, 0.01, 0.1], &[([0, 1], 0.01), ([1, 2], 1e-5)]);
+        assert_eq!(pairs(&limb, &[0; 3], &[0, 1, 2])[0], [0, 1]);
     }
 
     #[test]

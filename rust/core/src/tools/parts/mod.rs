@@ -26,6 +26,7 @@ mod tighten;
 pub use options::PartsOptions;
 
 use crate::memory::{self, Tool};
+use crate::mesh::partition::Partition;
 use crate::mesh::Mesh;
 use crate::progress::{Progress, Report};
 use crate::solve::Status;
@@ -33,6 +34,7 @@ use crate::tools::segment::{boundary_edges, Hierarchy};
 use crate::Result;
 use borders::Drawn;
 use graph::Graph;
+use merging::{Beyond, Merging};
 use surface::Surface;
 
 /// What came out of a division into parts.
@@ -89,15 +91,20 @@ fn found(mesh: &Mesh, options: &PartsOptions, progress: &Progress) -> Result<Par
     Ok(Parts { boundary_edges: boundary_edges(mesh, &labels)?, labels, n_parts, hierarchy, status })
 }
 
-/// Divisions of every count, and how many parts people would see. What is divided cheaply stays longest.
+/// Divisions of every count, and how many parts people would see: what is divided cheaply stays longest, and
+/// what is found stays longer than all others.
 fn nested(graph: &Graph, pieces: &[u32], drawn: Drawn, options: &PartsOptions) -> Result<(Hierarchy, usize)> {
     let count = drawn.divisions.len() + 1;
     let first = drawn.divisions.partition_point(|(_, cost)| *cost <= options.most_cost());
     let mut origin: Vec<u32> = (0..=first as u32).collect();
     drawn.divisions.iter().skip(first).for_each(|([part, _], _)| origin.push(origin[*part as usize]));
-    let merging = merging::Merging::new(graph, pieces, &drawn.labels, origin, options.even_cost())?;
-    let merges = merging.merges();
-    let found = choice::count(&merges, options.even_cost());
+    let (labels, limit) = (&drawn.labels, options.even_cost());
+    let merges = Merging::new(graph, pieces, labels, origin, limit, Beyond::Pairs)?.merges();
+    let found = choice::count(&merges, limit);
+    let mut origin = Partition::new(count)?;
+    merges[..count - found].iter().for_each(|merge| origin.unite(merge.pair[0], merge.pair[1]));
+    let origin = (0..count as u32).map(|part| origin.root(part)).collect();
+    let merges = Merging::new(graph, pieces, labels, origin, limit, Beyond::Shape)?.merges();
     let strengths = merges.iter().map(|merge| (merge.pair, 1.0 / merge.price.max(f64::MIN_POSITIVE)));
     Ok((Hierarchy::new(drawn.labels, count, strengths), found))
 }

@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::constants::LEAST_AREA;
+use super::graph::NONE;
 use crate::error::MeshError;
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::{area_vector, between, centroid, distance, dot, norm, place, scale, Point};
@@ -79,6 +80,22 @@ impl Surface {
         orient(&mut normals, &centers, &welded)?;
         let areas = memory::gathered(normals.iter().map(|&n| norm(n).max(LEAST_AREA)))?;
         Ok(Self { triangles, areas, centers, normals, joints, open })
+    }
+
+    /// For each face the piece that it is of, by a face of that, where the piece is closed; else [`NONE`].
+    pub(super) fn closed_pieces(&self) -> Result<Vec<u32>> {
+        let mut pieces = Partition::new(self.n_faces())?;
+        self.joints.iter().for_each(|joint| pieces.unite(joint.faces[0], joint.faces[1]));
+        let mut closed = memory::repeated(true, self.n_faces())?;
+        self.open.iter().for_each(|h| closed[pieces.root((h / 3) as u32) as usize] = false);
+        Ok(memory::sifted((0..self.n_faces() as u32).map(|f| {
+            let piece = pieces.root(f);
+            if closed[piece as usize] {
+                piece
+            } else {
+                NONE
+            }
+        }))?)
     }
 
     pub(super) fn n_faces(&self) -> usize {

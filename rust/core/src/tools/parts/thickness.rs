@@ -1,10 +1,14 @@
 //! How thick the shape is under each face: the shape diameter (Shapira et al. 2008), the median length of
 //! rays into the shape within a cone around the normal.
+//!
+//! What is closed has an inside of its own: rays there pass through all other pieces. Where an arm is stuck
+//! into a body, the body is as thick as elsewhere.
 
 use rayon::prelude::*;
 
 use super::constants::{LEAST_COSINE, LEAST_RAYS, RAYS, RAY_START, SAMPLES, UNSEEN};
 use super::diffusion::{diffused, Link};
+use super::graph::NONE;
 use super::surface::Surface;
 use crate::memory;
 use crate::mesh::vector::{add, cross, dot, scale, unit, Point};
@@ -25,11 +29,17 @@ pub(super) fn thickness(
     progress: &Progress,
 ) -> Result<Vec<f64>> {
     let tree = ClosestPoint::new(memory::twin(&surface.triangles)?)?;
+    let closed = surface.closed_pieces()?;
     let samples = sampled(&surface.areas)?;
     let found = samples.par_iter().map(|&f| {
         progress.check()?;
-        let turned = |triangle: u32, along: Point| dot(surface.normals[triangle as usize], along) > 0.0;
-        Ok((f, diameter(&tree, surface.centers[f as usize], normals[f as usize], turned)))
+        let own = closed[f as usize];
+        let first = |from: Point, along: Point| {
+            let is_met = |t: u32| own == NONE || closed[t as usize] == own;
+            let (length, t) = tree.first_hit(from, along, RAY_START, is_met)?;
+            (dot(surface.normals[t as usize], along) > 0.0).then_some(length)
+        };
+        Ok((f, diameter(surface.centers[f as usize], normals[f as usize], first)))
     });
     let found: Vec<(u32, Option<f64>)> = memory::all(memory::joined(found)?)?;
     let known = memory::sifted(found.into_iter().filter_map(|(f, d)| d.map(|d| (f, d.ln()))))?;
@@ -64,14 +74,8 @@ fn sampled(areas: &[f64]) -> Result<Vec<u32>> {
     Ok(memory::sifted((0..).zip(areas).filter_map(steps))?)
 }
 
-/// The median length of rays from `from` against `normal` that leave the shape: hit a triangle `turned`
-/// along them.
-fn diameter(
-    tree: &ClosestPoint,
-    from: Point,
-    normal: Point,
-    turned: impl Fn(u32, Point) -> bool,
-) -> Option<f64> {
+/// The median length of rays from `from` against `normal`, given how far a ray goes where it leaves.
+fn diameter(from: Point, normal: Point, leaves: impl Fn(Point, Point) -> Option<f64>) -> Option<f64> {
     let side = if normal[0].abs() < 0.9 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
     let first = unit(cross(normal, side));
     let second = cross(normal, first);
@@ -85,8 +89,7 @@ fn diameter(
         let (s, c) = (golden * step).sin_cos();
         let around = add(scale(first, c * sine), scale(second, s * sine));
         let along = add(scale(normal, -cosine), around);
-        let (length, triangle) = tree.first_hit(from, along, RAY_START)?;
-        turned(triangle, along).then_some(length)
+        leaves(from, along)
     };
     let mut lengths: Vec<f64> = (0..RAYS).filter_map(ray).collect();
     if (lengths.len() as f64) < LEAST_RAYS * RAYS as f64 {
