@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ridgeform: piecewise flat meshes with crisp ridges, in Blender."""
 
-from . import batch, check, job, registry
 from .framework import wheel
+
+if wheel.misfit() is None:
+    from . import batch, check, job, registry
+else:
+    # The tools are not even imported: of another module they may want what it does not have.
+    from .framework import restart as registry
 
 __all__ = ("batch", "check", "job", "register", "unregister")
 """For scripts: `bl_ext.user_default.ridgeform.job.last_summary()` says what the last run did, `check.last()`
@@ -11,7 +16,6 @@ what the last check found, and `batch.main(arguments)` is the batch command."""
 
 def register() -> None:
     """Add the operators, the panels, the menu entries and the command to Blender."""
-    wheel.check_version()
     registry.register()
 
 

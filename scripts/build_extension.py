@@ -17,6 +17,7 @@ import sys
 from pathlib import Path
 
 import help_pages
+import stamped_wheel
 from build_wheel import build_wheel
 from notices import NOTICES, extension_notices
 from setup_env import environments
@@ -92,10 +93,13 @@ def stage(wheels: list[Path], targets: list[str]) -> None:
     shutil.copytree(ROOT / "addon", STAGE, ignore=shutil.ignore_patterns("__pycache__"))
     (STAGE / "wheels").mkdir()
     for wheel in wheels:
-        shutil.copy2(wheel, STAGE / "wheels")
+        if wheel.name.startswith("ridgeform-"):
+            stamped_wheel.stamped(wheel, STAGE / "wheels")
+        else:
+            shutil.copy2(wheel, STAGE / "wheels")
     (STAGE / NOTICES.name).write_text(extension_notices(wheels), encoding="utf-8")
     help_pages.write_help(STAGE / "help")
-    names = sorted({f"./wheels/{wheel.name}" for wheel in wheels})
+    names = sorted(f"./wheels/{wheel.name}" for wheel in (STAGE / "wheels").glob("*.whl"))
     manifest = STAGE / "blender_manifest.toml"
     text = manifest.read_text(encoding="utf-8")
     # A list of plain strings is written the same in JSON and in TOML.
@@ -144,7 +148,7 @@ def build_extension(wheels_folder: Path | None = None) -> list[Path]:
     wheels = own + [wheel for target in targets for wheel in bundled_wheels(target)]
     stamp = STATE / "extension.stamp"
     pages = sorted((ROOT / "docs").glob("manual*.md"))
-    scripts = [Path(__file__), Path(help_pages.__file__)]
+    scripts = [Path(module) for module in (__file__, help_pages.__file__, stamped_wheel.__file__)]
     wanted = digest(
         [*files_in(ROOT / "addon"), NOTICES, *pages, *wheels, *scripts], version(), website() or ""
     )

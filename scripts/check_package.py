@@ -65,7 +65,7 @@ def faults_of_wheel(name: str, data: bytes) -> list[str]:
     target = platform_of_wheel(name)
     if not target:
         faults.append("its tag is of none of the platforms")
-    if not name.startswith(f"ridgeform-{version()}-{ABI}-"):
+    if not re.match(rf"ridgeform-{re.escape(version())}(\+[0-9a-f]+)?-{ABI}-", name):
         faults.append(f"it is not named ridgeform-{version()}-{ABI}-…")
     with zipfile.ZipFile(io.BytesIO(data)) as wheel:
         names = wheel.namelist()

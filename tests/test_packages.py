@@ -1,5 +1,7 @@
 """Versions agree everywhere, and packages of any platform are checked by their tags and contents."""
 
+import base64
+import hashlib
 import io
 import zipfile
 
@@ -7,6 +9,7 @@ import check_package
 import pytest
 import release
 import set_version
+import stamped_wheel
 from workspace import version
 
 HEADERS = {
@@ -117,3 +120,44 @@ def test_checksums_are_as_sha256sum_reads_them(tmp_path):
     (tmp_path / "SHA256SUMS").write_text("old", encoding="utf-8")
     digest = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
     assert release.checksums(tmp_path) == f"{digest}  a.txt\n"
+
+
+@pytest.fixture
+def build(tmp_path):
+    """Makes a wheel whose RECORD is that of a build."""
+
+    def made(record):
+        path = tmp_path / f"ridgeform-{version()}-cp311-abi3-win_amd64.whl"
+        path.write_bytes(wheel(HEADERS["windows-x64"]))
+        info = f"ridgeform-{version()}.dist-info"
+        with zipfile.ZipFile(path, "a") as archive:
+            archive.writestr(
+                f"{info}/METADATA", f"Metadata-Version: 2.4\nName: ridgeform\nVersion: {version()}\n"
+            )
+            archive.writestr(f"{info}/RECORD", record)
+        (tmp_path / "stamped").mkdir(exist_ok=True)
+        return stamped_wheel.stamped(path, tmp_path / "stamped")
+
+    return made
+
+
+def test_every_build_has_a_version_of_its_own(build):
+    names = [build(record).name for record in ("one", "other", "one")]
+    assert names[0] == names[2] != names[1]
+    assert check_package.check(build("one")) == []
+
+
+def test_a_stamped_wheel_says_so_throughout(build):
+    path = build("one")
+    stamp = path.name.split("-")[1]
+    with zipfile.ZipFile(path) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    info = f"ridgeform-{stamp}.dist-info"
+    assert {name.split("/")[0] for name in parts} == {"ridgeform", info}
+    assert f"\nVersion: {stamp}\n".encode() in parts[f"{info}/METADATA"]
+    lines = [line.split(",") for line in parts.pop(f"{info}/RECORD").decode().split()]
+    assert lines.pop() == [f"{info}/RECORD", "", ""]
+    assert sorted(parts) == sorted(name for name, *_ in lines)
+    for name, digest, size in lines:
+        hashed = base64.urlsafe_b64encode(hashlib.sha256(parts[name]).digest()).decode().rstrip("=")
+        assert (digest, int(size)) == (f"sha256={hashed}", len(parts[name]))

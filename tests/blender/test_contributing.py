@@ -27,7 +27,6 @@ ridgeform.scale_mesh = scale_mesh
 
 bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
 import addon
-addon.framework.wheel.check_version = lambda: None
 addon.register()
 from addon.framework import batch, flags
 

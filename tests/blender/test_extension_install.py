@@ -24,7 +24,9 @@ def test_enabled_from_the_profile(profile):
 
 def test_wheel_is_of_the_manifests_version(extension_zip):
     assert ridgeform.__version__ in extension_zip.name
-    assert importlib.metadata.version("ridgeform") == ridgeform.__version__
+    assert importlib.metadata.version("ridgeform") == ridgeform.__build__
+    number, _, build = ridgeform.__build__.partition("+")
+    assert (number, len(build)) == (ridgeform.__version__, 12)
 
 
 def test_bundled_simplification_runs():

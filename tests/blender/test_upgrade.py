@@ -5,6 +5,7 @@ import os
 import zipfile
 from pathlib import Path
 
+import ridgeform
 from own_blender import run_in_blender
 
 FORMER = "0.0.1"
@@ -69,8 +70,8 @@ os._exit(0)
 AFTER = """
 import ridgeform
 from ridgeform import __version__
-from bl_ext.user_default.ridgeform.framework.wheel import check_version
-check_version()
+from bl_ext.user_default.ridgeform.framework.wheel import misfit
+assert misfit() is None
 saved = json.loads((FOLDER / "saved.json").read_text())
 bpy.ops.wm.open_mainfile(filepath=str(FOLDER / "scene.blend"))
 tools = {tool.scene_property: tool for tool in registry.TOOLS}
@@ -115,7 +116,8 @@ def as_version(path: Path, version: str, folder: Path) -> Path:
             data = old.read(name)
             if name == "blender_manifest.toml":
                 text = data.decode().replace(wheel, renamed)
-                data = text.replace(f'version = "{is_of}"', f'version = "{version}"', 1).encode()
+                number, new_number = is_of.partition("+")[0], version.partition("+")[0]
+                data = text.replace(f'version = "{number}"', f'version = "{new_number}"', 1).encode()
             if name == wheel:
                 data = _wheel_as(data, is_of, version, folder)
             new.writestr(renamed if name == wheel else name, data)
@@ -129,7 +131,7 @@ def _wheel_as(data: bytes, is_of: str, version: str, folder: Path) -> bytes:
         for name in old.namelist():
             part = old.read(name)
             if name == "ridgeform/__init__.py":
-                part += f'\n__version__ = "{version}"\n'.encode()
+                part += f'\n__version__ = "{version.partition("+")[0]}"\nIS_FORMER = True\n'.encode()
             if name.endswith(("METADATA", "RECORD")):
                 part = part.decode().replace(is_of, version).encode()
             new.writestr(name.replace(f"ridgeform-{is_of}", f"ridgeform-{version}"), part)
@@ -147,3 +149,34 @@ def test_a_zip_over_the_version_before(extension_zip, tmp_path):
     assert compared > 150
     assert differing == {}
     assert former != extension_zip or gone == []
+
+
+OVER = """
+import sys
+import bpy
+former, this = sys.argv[1:]
+NAME = "bl_ext.user_default.ridgeform"
+def installed(path):
+    bpy.ops.extensions.package_install_files(filepath=path, repo="user_default", enable_on_install=True)
+    assert NAME in bpy.context.preferences.addons
+if former:
+    installed(former)
+    import ridgeform
+    assert ridgeform.IS_FORMER and hasattr(bpy.types, "RIDGEFORM_OT_stylize")
+installed(this)
+assert hasattr(bpy.types, "RIDGEFORM_PT_restart") == bool(former)
+assert hasattr(bpy.types, "RIDGEFORM_OT_stylize") != bool(former)
+import ridgeform
+assert hasattr(ridgeform, "IS_FORMER") == bool(former), ridgeform.__build__
+"""
+
+
+def test_a_zip_over_another_build_of_its_version(extension_zip, tmp_path):
+    """Blender keeps a wheel of the same version, so that every build has one of its own.
+
+    In the session in which it is installed the former one stays loaded, and a panel says to start again.
+    """
+    former = as_version(extension_zip, f"{ridgeform.__version__}+0", tmp_path)
+    said, _ = run_in_blender(OVER, tmp_path, former, extension_zip)
+    assert "Restart Blender" in said
+    run_in_blender(OVER, tmp_path, "", extension_zip)

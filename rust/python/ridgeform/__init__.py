@@ -14,6 +14,7 @@ memory.
 Source: Rowe, Jacobson and Stein, Sharpening and Sparsifying with Surface Hessians, SIGGRAPH Asia 2024.
 """
 
+from importlib.metadata import PackageNotFoundError as _PackageNotFoundError, version as _version
 from types import BuiltinFunctionType
 
 from ._arguments import named
@@ -119,6 +120,12 @@ __all__ = [
     "voronoi_mass",
     "weld",
 ]
+
+try:
+    __build__ = _version("ridgeform")
+    """The version, with the build as its local part in an extension of Blender."""
+except _PackageNotFoundError:
+    __build__ = __version__
 
 for _name in __all__:
     if isinstance(globals()[_name], BuiltinFunctionType):

@@ -121,8 +121,8 @@ impl Merging {
         }
     }
 
-    /// For each part the price of the dearest of its borders with larger parts that it may merge with: once the
-    /// count is found, with those of the same found one if there are any.
+    /// For each part the price of the dearest of its borders with larger parts that it may merge with: once
+    /// the count is found, with those of the same found one if there are any.
     fn dearest(&self) -> Vec<(bool, f64)> {
         let mut dearest = vec![(false, 0.0); self.sides.len()];
         for (&pair, border) in self.borders.iter().filter(|(pair, _)| self.may_merge(**pair)) {
