@@ -13,7 +13,7 @@ def misfit() -> str | None:
     """Why the module that is loaded is not the one that this add-on came with; `None` if it is.
 
     An extension that is installed over another one is enabled in the same session, in which the module of
-    that one stays loaded.
+    that one stays loaded. A wheel of the same version that is of no build, as `pip` installs it, will do.
     """
     manifest = tomllib.loads(_MANIFEST.read_text(encoding="utf-8"))
     wanted, found = manifest["version"], ridgeform.__version__
@@ -22,8 +22,9 @@ def misfit() -> str | None:
         return None
     for path in manifest["wheels"]:
         name, build, *_ = path.rpartition("/")[2].split("-")
-        if name == "ridgeform" and found == wanted and "+" in build:
-            wanted, found = build, getattr(ridgeform, "__build__", found)
+        loaded = getattr(ridgeform, "__build__", found)
+        if name == "ridgeform" and found == wanted and "+" in build and "+" in loaded:
+            wanted, found = build, loaded
     if found == wanted:
         return None
     return (

@@ -336,6 +336,8 @@ def test_a_wheel_of_another_version_or_build_is_named(monkeypatch):
     assert wheel.misfit() is None
     monkeypatch.setattr(wheel.ridgeform, "__build__", f"{wheel.ridgeform.__version__}+0")
     assert re.search(r"found version .+\+0 of its native module. Restart Blender", wheel.misfit())
+    monkeypatch.setattr(wheel.ridgeform, "__build__", wheel.ridgeform.__version__)
+    assert wheel.misfit() is None
     monkeypatch.setattr(wheel.ridgeform, "__version__", "0.0.0")
     assert "found version 0.0.0 of its native module" in wheel.misfit()
 
