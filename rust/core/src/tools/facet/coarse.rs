@@ -47,14 +47,4 @@ impl Coarse {
             faces: memory::twin(level.mesh.connectivity().faces())?,
         }))
     }
-
-    /// The same.
-    pub(super) fn twin(&self) -> Result<Self> {
-        Ok(Self {
-            points: memory::twin(&self.points)?,
-            faces: memory::twin(&self.faces)?,
-            origins: memory::twin(&self.origins)?,
-            homes: memory::twin(&self.homes)?,
-        })
-    }
 }

@@ -1,5 +1,7 @@
 //! What making facets gives.
 
+use std::sync::Arc;
+
 use super::coarse::Coarse;
 use super::keeping::KeptTriangles;
 use super::merging::Merges;
@@ -48,7 +50,7 @@ pub struct Faceted {
 pub struct FacetMerges {
     pub(super) merges: Merges,
     /// The mesh whose faces were merged, where that is a coarser one.
-    pub(super) coarse: Option<Coarse>,
+    pub(super) coarse: Option<Arc<Coarse>>,
 }
 
 impl FacetMerges {
@@ -57,7 +59,6 @@ impl FacetMerges {
     /// # Errors
     /// [`crate::error::SolveError::Memory`].
     pub(super) fn twin(&self) -> Result<Self> {
-        let coarse = self.coarse.as_ref().map(Coarse::twin).transpose()?;
-        Ok(Self { merges: self.merges.twin()?, coarse })
+        Ok(Self { merges: self.merges.twin()?, coarse: self.coarse.clone() })
     }
 }

@@ -6,6 +6,8 @@
 //! the facets, how far the mesh is from them and which is nearest to each face, is measured on the mesh
 //! itself.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::coarse::Coarse;
@@ -46,10 +48,10 @@ impl Job<'_> {
         };
         let mut known = known.filter(is_enough);
         while options.use_levels(n_vertices, enough) {
-            let coarse = match known.and_then(|known| known.coarse.as_ref()) {
-                Some(coarse) => coarse.twin()?,
+            let coarse = match known.and_then(|known| known.coarse.clone()) {
+                Some(coarse) => coarse,
                 None => match Coarse::of(self, enough, progress)? {
-                    Some(coarse) => coarse,
+                    Some(coarse) => Arc::new(coarse),
                     None => break,
                 },
             };
