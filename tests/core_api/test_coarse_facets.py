@@ -62,6 +62,15 @@ def test_an_error_that_is_allowed_holds_on_the_mesh_itself(blob):
         assert 0.5 * error < found.rms < 1.02 * error
 
 
+def test_facets_that_are_wished_for_at_once_are_there(blob):
+    mesh, _ = blob
+    progress = ridgeform.Progress()
+    progress.finish()
+    found = ridgeform.facet(mesh, facets=80, progress=progress)
+    assert found.status == "stopped"
+    assert 0 < found.n_facets < 1000
+
+
 def test_a_dense_polyhedron_keeps_every_plane():
     vertices, faces = boxes(50)
     assert len(vertices) > 18_000

@@ -50,6 +50,8 @@ pub struct Progress {
     state: Arc<Mutex<State>>,
     /// What the coordinates are measured in that are published through this handle.
     unit: Unit,
+    /// Whether a wish to finish is not heard.
+    is_patient: bool,
 }
 
 impl Progress {
@@ -63,13 +65,20 @@ impl Progress {
     /// and what is published through it nobody sees.
     #[must_use]
     pub fn quiet(&self) -> Self {
-        Self { wishes: Arc::clone(&self.wishes), state: Arc::default(), unit: self.unit }
+        Self { state: Arc::default(), ..self.clone() }
     }
 
     /// The handle for a part of the call that measures coordinates in `unit`.
     #[must_use]
     pub fn in_unit(&self, unit: Unit) -> Self {
         Self { unit: self.unit.times(unit), ..self.clone() }
+    }
+
+    /// A handle for a part of the call that takes little time, and without which there would be no result: it
+    /// does not hear a wish to finish.
+    #[must_use]
+    pub fn patient(&self) -> Self {
+        Self { is_patient: true, ..self.clone() }
     }
 
     /// Ask the running call to stop and return [`Error::Cancelled`].
@@ -95,10 +104,10 @@ impl Progress {
         self.is_cancelled() || self.is_finishing()
     }
 
-    /// Whether [`Progress::finish`] was called.
+    /// Whether [`Progress::finish`] was called, and is heard here.
     #[must_use]
     pub fn is_finishing(&self) -> bool {
-        self.wishes.finish.load(Ordering::Relaxed)
+        !self.is_patient && self.wishes.finish.load(Ordering::Relaxed)
     }
 
     /// How often the call has asked whether to stop: between two questions it hears nothing.

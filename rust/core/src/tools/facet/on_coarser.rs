@@ -71,13 +71,9 @@ impl Job<'_> {
             if !passes_itself && options.error.is_none_or(|error| lost <= MOST_LOST * error) {
                 let options = FacetOptions { error, ..options.clone() };
                 let merges = match known.take() {
-                    Some(known) if known.merges.are_all => known.merges.twin()?,
-                    _ => job.merges(&own, &options, progress)?,
+                    Some(known) => known.merges.twin()?,
+                    None => job.merges(&own, &options, &progress.patient())?,
                 };
-                if !merges.are_all {
-                    // Asked to finish: then the mesh itself stays.
-                    break;
-                }
                 let found = job.found(&merges, &own, &options, progress)?;
                 let needed = found.n_facets.saturating_mul(PER_FACET);
                 if needed <= 2 * enough || progress.is_finishing() {
