@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is there instead of the tools until Blender is started again: a panel that says so."""
 
-import textwrap
-
 import bpy
 
-from . import wheel
+from . import wheel, wrapping
 
-COLUMNS = 36
-"""What a line of the sidebar holds at its usual width."""
+REASON = wheel.misfit() or ""
+"""What is wrong: nothing that changes before Blender is started again."""
 
 
 class RIDGEFORM_PT_restart(bpy.types.Panel):  # noqa: N801
@@ -19,16 +17,16 @@ class RIDGEFORM_PT_restart(bpy.types.Panel):  # noqa: N801
     bl_region_type = "UI"
     bl_category = "Ridgeform"
 
-    def draw(self, _context: bpy.types.Context) -> None:
+    def draw(self, context: bpy.types.Context) -> None:
         """Draw the sentence."""
         column = self.layout.column(align=True)
-        for line in textwrap.wrap(wheel.misfit() or "Restart Blender.", COLUMNS):
+        for line in wrapping.label_lines(context, REASON):
             column.label(text=line)
 
 
 def register() -> None:
     """Show the panel."""
-    print(wheel.misfit())
+    print(REASON)
     bpy.utils.register_class(RIDGEFORM_PT_restart)
 
 

@@ -39,3 +39,22 @@ impl Partition {
         self.0[a.max(b) as usize] = a.min(b);
     }
 }
+
+/// Labels renumbered from 0 in the order of their first elements, and how many there are.
+///
+/// # Errors
+/// [`SolveError::Memory`].
+pub(crate) fn contiguous(labels: &[u32]) -> Result<(Vec<u32>, usize), SolveError> {
+    let n_names = labels.iter().map(|&label| label as usize + 1).max().unwrap_or(0);
+    let mut names = memory::repeated(u32::MAX, n_names)?;
+    let mut count = 0;
+    let renamed = memory::gathered(labels.iter().map(|&label| {
+        let name = &mut names[label as usize];
+        if *name == u32::MAX {
+            *name = count;
+            count += 1;
+        }
+        *name
+    }))?;
+    Ok((renamed, count as usize))
+}

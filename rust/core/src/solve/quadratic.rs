@@ -29,17 +29,13 @@ const ROUNDING: f64 = 1e-18;
 /// The gap of the solution is the decrease of the objective that one more step with the factored matrix would
 /// bring, relative like [`Solution::gap`]; without a shift it is the distance to the optimum up to rounding.
 /// Weights may be negative as long as the problem stays convex. Rows of `u` that nothing determines keep
-/// their target. So do columns that are not begun when it `is_enough`, if 0 is a bound of what they cost.
+/// their target. So do columns that are not begun when the caller wishes to finish, if 0 is a bound of what
+/// they cost.
 ///
 /// # Errors
 /// Arguments that do not fit, constraints that contradict or repeat each other, a problem that is not convex,
 /// or [`Error::Cancelled`].
-pub fn minimize(
-    problem: &Problem<'_>,
-    settings: &Settings,
-    is_enough: impl Fn() -> bool,
-    progress: &Progress,
-) -> Result<Solution> {
+pub fn minimize(problem: &Problem<'_>, settings: &Settings, progress: &Progress) -> Result<Solution> {
     problem.check_shapes()?;
     let free = FreeOperator::new(problem.operator, &problem.fixed)?;
     let mut newton = Newton::new(problem, &free, settings.memory_limit)?;
@@ -47,7 +43,7 @@ pub fn minimize(
     let (mut total, mut is_stopped) = (Totals::default(), false);
     for c in 0..values.n_columns {
         progress.check()?;
-        if c > 0 && newton.may_stay && is_enough() {
+        if c > 0 && newton.may_stay && progress.is_finishing() {
             newton.leave(c, &mut total);
             is_stopped = true;
         } else {

@@ -113,7 +113,7 @@ impl ScalarProblem<'_> {
         options.solve.run(|| {
             demand.admit(options.solve.memory_limit)?;
             let mut solution = if kind.is_quadratic() {
-                quadratic::minimize(&problem, &settings, || progress.is_finishing(), progress)?
+                quadratic::minimize(&problem, &settings, progress)?
             } else {
                 sharpened(&mut problem, &mesh, options, &settings, progress)?
             };

@@ -38,6 +38,6 @@ pub(super) fn extend(mesh: &Mesh, unseen: &[bool], values: &mut Columns, progres
         linear_constraints: None,
         coupling: Coupling::Separate,
     };
-    *values = quadratic::minimize(&problem, &Settings::default(), || false, progress)?.values;
+    *values = quadratic::minimize(&problem, &Settings::default(), &progress.patient())?.values;
     Ok(())
 }

@@ -4,15 +4,15 @@ use super::job::Job;
 use super::regions::OUTSIDE;
 use crate::error::MeshError;
 use crate::levels::level;
-use crate::mesh::vector::{distance, Point};
+use crate::mesh::vector::distance;
+use crate::mesh::Mesh;
 use crate::progress::Progress;
 use crate::{memory, Result};
 
 /// A coarser mesh, and what its parts stand for.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub(super) struct Coarse {
-    pub points: Vec<Point>,
-    pub faces: Vec<[u32; 3]>,
+    pub mesh: Mesh,
     /// For each vertex the nearest of those that it stands for.
     pub origins: Vec<u32>,
     /// The face that each face of the finer mesh lies on.
@@ -43,8 +43,7 @@ impl Coarse {
         Ok(Some(Self {
             origins,
             homes: memory::gathered(homes.into_iter().map(|home| home.unwrap_or(0)))?,
-            points: memory::twin(points)?,
-            faces: memory::twin(level.mesh.connectivity().faces())?,
+            mesh: level.mesh,
         }))
     }
 }

@@ -114,7 +114,9 @@ fn run(
         let (found, merges) = match job.found_on_coarser(&scan, merges, options, progress)? {
             Some(found) => found,
             None => {
-                mesh.demand(Tool::Facet).admit(None)?;
+                if by_levels {
+                    mesh.demand(Tool::Facet).admit(None)?;
+                }
                 let merges = match merges.filter(|known| known.coarse.is_none()) {
                     Some(known) if known.merges.are_all => known.merges.twin()?,
                     _ => job.merges(&scan, options, progress)?,

@@ -19,7 +19,7 @@ use super::options::FacetOptions;
 use super::regions::OUTSIDE;
 use super::search::Found;
 use crate::mesh::vector::{distance, sub};
-use crate::mesh::{Mesh, Working};
+use crate::mesh::Working;
 use crate::progress::Progress;
 use crate::tools::options::ENOUGH;
 use crate::{memory, Result};
@@ -44,7 +44,7 @@ impl Job<'_> {
             return Ok(None);
         }
         let is_enough = |known: &&FacetMerges| {
-            known.coarse.as_ref().is_some_and(|coarse| 2 * coarse.points.len() >= enough)
+            known.coarse.as_ref().is_some_and(|coarse| 2 * coarse.mesh.connectivity().n_vertices() >= enough)
         };
         let mut known = known.filter(is_enough);
         while options.use_levels(n_vertices, enough) {
@@ -55,8 +55,7 @@ impl Job<'_> {
                     None => break,
                 },
             };
-            let mesh = Mesh::new(memory::twin(&coarse.points)?, memory::twin(&coarse.faces)?)?;
-            let working = Working::contracted(&mesh)?;
+            let working = Working::contracted(&coarse.mesh)?;
             let job = {
                 let center = sub(self.center, working.place([0.0; 3]));
                 Job::within(&working, options, None, (center, self.diagonal))?

@@ -7,7 +7,7 @@ use super::job::Job;
 use super::merging::Merges;
 use super::moments::Plane;
 use super::regions::OUTSIDE;
-use crate::mesh::partition::Partition;
+use crate::mesh::partition::{contiguous, Partition};
 use crate::mesh::vector::{area_vector, dot, unit, Point};
 use crate::{memory, Result};
 
@@ -47,17 +47,9 @@ impl Job<'_> {
                 }
             }
         }
-        let mut names = memory::repeated(OUTSIDE, self.parts.len())?;
-        let mut n_planes = 0_u32;
-        let mut labels = memory::room(self.parts.len())?;
-        for part in 0..self.parts.len() as u32 {
-            let name = &mut names[joined.root(part) as usize];
-            if *name == OUTSIDE {
-                (*name, n_planes) = (n_planes, n_planes + 1);
-            }
-            labels.push(*name);
-        }
-        self.are_evident(&labels, n_planes as usize, scan)
+        let roots = memory::gathered((0..self.parts.len() as u32).map(|part| joined.root(part)))?;
+        let (labels, n_planes) = contiguous(&roots)?;
+        self.are_evident(&labels, n_planes, scan)
     }
 
     /// Whether most of `n_planes` planes are evident, which the parts of each label are.

@@ -53,7 +53,7 @@ pub(super) fn fair(region: &mut Region, ridge: f64, progress: &Progress) -> Resu
         coupling: Coupling::Joint,
     };
     let settings = Settings { announce: false, ..Settings::default() };
-    let goal = quadratic::minimize(&problem, &settings, || false, progress)?.values.to_points()?;
+    let goal = quadratic::minimize(&problem, &settings, &progress.patient())?.values.to_points()?;
     move_guarded(region, &goal)
 }
 

@@ -28,7 +28,7 @@ pub(super) fn smooth(region: &mut Region, energy: Energy, rounds: usize, progres
             linear_constraints: None,
             coupling: Coupling::Joint,
         };
-        let solution = quadratic::minimize(&problem, &settings, || false, progress)?;
+        let solution = quadratic::minimize(&problem, &settings, &progress.patient())?;
         for (v, point) in (0..).zip(solution.values.to_points()?).skip(region.anchors.len()) {
             region.mesh.set_position(v, point);
         }

@@ -7,7 +7,8 @@
 use super::constants::{
     FEW_FACES, FLAT_SHARE, LEAST_INSIDE, MOST_TURN_IN_A_PLANE, SINGLE_PRECISION, SLIVER_ROUNDINGS,
 };
-use super::surface::{contiguous, Surface};
+use super::surface::Surface;
+use crate::mesh::partition::contiguous;
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::{add, distance, norm, sub, unit, Point};
 use crate::mesh::FILE_ROUNDING;

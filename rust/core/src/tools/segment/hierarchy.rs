@@ -1,6 +1,6 @@
 //! From the finest segmentation to one segment for each connected part: nested, one merge after the other.
 
-use super::surface::contiguous;
+use crate::mesh::partition::contiguous;
 use crate::mesh::partition::Partition;
 use crate::{memory, Error, Result};
 

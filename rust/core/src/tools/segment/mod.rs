@@ -45,6 +45,7 @@ pub use segmentation::Segmentation;
 use crate::error::MeshError;
 use crate::linear::Columns;
 use crate::memory::Tool;
+use crate::mesh::partition::contiguous;
 use crate::mesh::{Mesh, TJunctions, Working};
 use crate::progress::Progress;
 use crate::solve::{Settings, Status};
@@ -60,7 +61,7 @@ use indicator::Functional;
 use noise::noise_level;
 use normalized::Normalized;
 use passes::Passes;
-use surface::{contiguous, Surface};
+use surface::Surface;
 
 /// Divides the faces of `mesh` into segments on which `values`, or without them the vertex positions,
 /// are nearly affine.

@@ -13,10 +13,11 @@ use super::regions::Regions;
 use super::relabel::Relabel;
 use super::slopes::Slopes;
 use super::straighten::Straighten;
-use super::surface::{contiguous, pieces, Surface};
+use super::surface::{pieces, Surface};
 use super::threshold::cut_and_merge;
 use super::watershed::watershed;
 use crate::linear::Columns;
+use crate::mesh::partition::contiguous;
 use crate::mesh::partition::Partition;
 use crate::progress::{Progress, Report};
 use crate::{memory, Result};
@@ -313,7 +314,7 @@ impl<'a> Passes<'a> {
                 *nested = n_leaves as u32 + label;
             }
         }
-        contiguous(&nested)
+        Ok(contiguous(&nested)?)
     }
 
     /// Whether what only makes borders better is left out.

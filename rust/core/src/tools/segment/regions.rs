@@ -12,7 +12,8 @@ use super::constants::{
 use super::crease::Border;
 use super::explain::Explain;
 use super::merge::{greedy, rename};
-use super::surface::{contiguous, pieces, Surface};
+use super::surface::{pieces, Surface};
+use crate::mesh::partition::contiguous;
 use crate::mesh::partition::Partition;
 use crate::mesh::vector::{add, distance, norm, scale, unit, Point};
 use crate::{memory, Result};

@@ -2,7 +2,7 @@
 
 use super::options::SegmentOptions;
 use super::segmentation::{boundary_edges, Segmentation};
-use super::surface::contiguous;
+use crate::mesh::partition::contiguous;
 use crate::mesh::{triangle, Mesh, SplitFaces};
 use crate::{memory, Result};
 

@@ -155,8 +155,8 @@ impl<'a> Straighten<'a> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::surface::contiguous;
     use super::*;
+    use crate::mesh::partition::contiguous;
     use crate::shapes;
 
     #[test]

@@ -1,5 +1,6 @@
 //! What all parts of the segmentation know of the surface: sizes in the chosen unit, neighbors, frames.
 
+use crate::mesh::partition::contiguous;
 use crate::mesh::vector::area_vector;
 use crate::mesh::{edge_lengths, triangle, Connectivity};
 use crate::operators::mollify;
@@ -85,21 +86,6 @@ impl<'a> Surface<'a> {
     pub(super) fn vector_area(&self, f: usize) -> [f64; 3] {
         area_vector(self.connectivity.faces()[f].map(|v| self.positions[v as usize]))
     }
-}
-
-/// Labels renumbered from 0 in the order of their first faces, and how many there are.
-pub(super) fn contiguous(labels: &[u32]) -> Result<(Vec<u32>, usize)> {
-    let mut names = memory::repeated(NONE, labels.iter().map(|&l| l as usize + 1).max().unwrap_or(0))?;
-    let mut count = 0;
-    let renamed = memory::gathered(labels.iter().map(|&label| {
-        let name = &mut names[label as usize];
-        if *name == NONE {
-            *name = count;
-            count += 1;
-        }
-        *name
-    }))?;
-    Ok((renamed, count as usize))
 }
 
 /// Renumbers the labels in place, as [`contiguous`] does, and lists the faces of each segment.

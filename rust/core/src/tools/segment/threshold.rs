@@ -3,7 +3,8 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::surface::{contiguous, Surface};
+use super::surface::Surface;
+use crate::mesh::partition::contiguous;
 use crate::{memory, Result};
 
 /// Cuts the mesh along the edges where the mean of the indicator over both faces is below `threshold`, and
@@ -57,7 +58,7 @@ pub(super) fn cut_and_merge(
             *label = home[*label as usize];
         }
     }
-    contiguous(&labels)
+    Ok(contiguous(&labels)?)
 }
 
 /// The pieces of the dual graph with only the edges that `joins`.

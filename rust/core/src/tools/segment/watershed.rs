@@ -1,7 +1,8 @@
 //! Watershed by persistence on the dual graph (Edelsbrunner, Letscher and Zomorodian 2002; Couprie and
 //! Bertrand 1997).
 
-use super::surface::{contiguous, Surface};
+use super::surface::Surface;
+use crate::mesh::partition::contiguous;
 use crate::mesh::partition::Partition;
 use crate::{memory, Result};
 
@@ -54,5 +55,5 @@ pub(super) fn watershed(
         sets.attach(face, home);
     }
     let roots: Vec<u32> = memory::gathered((0..m as u32).map(|f| sets.root(f)))?;
-    contiguous(&roots)
+    Ok(contiguous(&roots)?)
 }

@@ -243,7 +243,7 @@ impl<'a> Flow<'a> {
                 break;
             }
         }
-        if !self.shows_steps {
+        if !self.shows_steps && self.done > 0 {
             progress.set_snapshot(self.done, &(self.show)(&self.points)?);
         }
         self.end = self.result.status;
