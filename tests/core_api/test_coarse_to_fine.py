@@ -62,6 +62,15 @@ def test_it_is_as_flat_as_all_steps_on_the_mesh_itself_make_it(torus):
     assert result.energy[0] == alone.energy[0]
 
 
+def test_one_step_on_the_mesh_itself_is_enough_where_nothing_is_to_be_cleared_away():
+    mesh = ridgeform.Mesh(*shapes.torus(170, 112))
+    result = ridgeform.stylize(mesh, **HALF)
+    alone = ridgeform.stylize(mesh, coarse_to_fine=False, **HALF)
+    assert (result.level_vertices == mesh.n_vertices).sum() == 1
+    assert result.flat_share[1] >= alone.flat_share[1] - 0.02
+    assert result.energy[-1] <= 1.05 * alone.energy[-1]
+
+
 def test_a_noisy_cube_is_restored_as_well():
     vertices, faces = shapes.cube(60)
     mesh = ridgeform.Mesh(shapes.add_noise(vertices, faces, 0.2), faces)

@@ -3,7 +3,8 @@
 //! A flow says where planes will be, and a coarse mesh says the same of them at a fraction of the cost. So
 //! the whole flow is done on the coarsest level, which also finds where it ends; each finer one takes the
 //! displacement over and relaxes what the coarser one does not have, its detail and its noise, by two steps
-//! as short as the flow's first: what is large has been found, and what is small needs no more time. All
+//! as short as the flow's first, or by one where that leaves as much flat as the flow had: what is large has
+//! been found, and what is small needs no more time. All
 //! levels have one unit of length, so what a flow makes of a shape does not depend on how densely it is
 //! sampled.
 
@@ -23,9 +24,10 @@ use crate::{memory, Result};
 /// How many steps a flow is expected to take on its coarsest level, for the progress: 2 to 9.
 const EXPECTED: usize = 6;
 
-/// The steps on each finer level: the first clears the noise away, the second finds the ridges. With the
+/// The most steps on each finer level: the first clears the noise away, the second finds the ridges. With the
 /// last step of the flow only, fewer facets of noisy shapes are flat (0.45 of a bust, 0.60 with two, 0.63
-/// with all).
+/// with all). Where there is no noise, one finds them, and the other one takes the most time of all (222
+/// iterations for a monkey of 126,000 vertices, 24 of 32 seconds, for 0.74 of it flat instead of 0.68).
 const STEPS: usize = 2;
 
 /// A mesh that has so many times as many vertices as its coarsest level is shown what the flow of that level
@@ -65,7 +67,7 @@ pub(super) fn coarse_to_fine(
             flow = flow.showing_its_end();
         }
         flow.run(settings, progress)?;
-        let left = flow.legacy(if depth == levels.len() { None } else { Some(1) }, STEPS);
+        let left = flow.legacy(depth == levels.len(), STEPS);
         let result = flow.into_result();
         account.add(&result);
         if progress.is_finishing() {

@@ -174,11 +174,14 @@ impl<'a> Flow<'a> {
         self
     }
 
-    /// What a finer level goes on from, by `count` short steps: the place `back` steps before the end, or so
-    /// far back that the flow has gone on from there for no longer than those steps take.
-    pub(super) fn legacy(&self, back: Option<usize>, count: usize) -> Legacy {
+    /// What a finer level goes on from, by `count` short steps: the place after the first step, where these
+    /// are such steps themselves, else so far back that the flow has gone on from there for no longer than
+    /// those steps take.
+    pub(super) fn legacy(&self, is_coarsest: bool, count: usize) -> Legacy {
         let plan = self.pace.plan(self.end);
-        let back = back.unwrap_or_else(|| plan.within(count)).min(self.trail.len());
+        let n_remembered = self.trail.len();
+        let back = if is_coarsest { plan.within(count) } else { n_remembered.saturating_sub(1) };
+        let back = back.min(n_remembered);
         let points = match back {
             0 => self.points.clone(),
             _ => self.trail[self.trail.len() - back].clone(),

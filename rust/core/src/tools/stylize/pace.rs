@@ -63,6 +63,8 @@ pub(super) struct Plan {
     factors: Vec<f64>,
     /// How it ended; `None` where it could not go on.
     end: Option<FlowStatus>,
+    /// The part of the area that was flat then.
+    flat_share: f64,
 }
 
 impl Plan {
@@ -108,11 +110,19 @@ impl Pace {
         }
     }
 
-    /// What a flow that ended with `status` did, for another one to do.
+    /// What a flow that ended with `status` did, for another one to do; what it was to do itself where it did
+    /// that, in no more steps.
     pub(super) fn plan(&self, status: FlowStatus) -> Plan {
         use FlowStatus::{Converged, Reached, Settled};
         let end = Some(status).filter(|status| matches!(status, Reached | Settled | Converged));
-        Plan { factors: self.factors.clone(), end }
+        match &self.plan {
+            Some(plan) if plan.factors.len() >= self.factors.len() => Plan { end, ..plan.clone() },
+            _ => Plan { factors: self.factors.clone(), end, flat_share: self.flat_share_now() },
+        }
+    }
+
+    fn flat_share_now(&self) -> f64 {
+        self.flat.last().copied().unwrap_or(0.0)
     }
 
     /// The pace of a flow that stands where the one of `plan` stood after `done` steps.
@@ -123,9 +133,13 @@ impl Pace {
         self.plan = Some(plan);
     }
 
-    /// Sets the step after one that a plan had, or says how it ends.
+    /// Sets the step after one that a plan had, or says how it ends: after its steps, or before where as much
+    /// is flat already as the other flow ended with.
     fn planned(&mut self) -> Option<FlowStatus> {
         let plan = self.plan.as_ref()?;
+        if plan.end.is_some() && self.flat_share_now() >= plan.flat_share {
+            return plan.end;
+        }
         match (plan.factors.get(self.factors.len()), plan.end) {
             (Some(&next), _) => self.factor = next,
             (None, Some(end)) => return Some(end),
@@ -170,7 +184,7 @@ impl Pace {
         if !self.looks_for_an_end() {
             return None;
         }
-        let gain = now.flat_share - self.flat.last().copied().unwrap_or(0.0);
+        let gain = now.flat_share - self.flat_share_now();
         self.time += 1.0 / self.factor;
         self.flat.push(now.flat_share);
         if self.plan.is_some() {
