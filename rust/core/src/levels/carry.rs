@@ -138,19 +138,19 @@ fn squared(p: Point, q: Point) -> f64 {
 fn weights(corners: [Point; 3], point: Point) -> [f64; 3] {
     let normal = area_vector(corners);
     let square = dot(normal, normal);
-    if square <= 0.0 {
-        // A triangle without area: the closest corner.
-        let nearest = (0..3).min_by(|&i, &j| {
-            let distance = |k: usize| squared(corners[k], point);
-            distance(i).total_cmp(&distance(j))
-        });
-        return std::array::from_fn(|k| if Some(k) == nearest { 1.0 } else { 0.0 });
-    }
     let part = |k: usize| {
         let area = area_vector([point, corners[(k + 1) % 3], corners[(k + 2) % 3]]);
         (dot(area, normal) / square).clamp(0.0, 1.0)
     };
     let found: [f64; 3] = std::array::from_fn(part);
     let sum: f64 = found.iter().sum();
+    if square <= 0.0 || !sum.is_normal() {
+        // A triangle without area, or with one that is lost in rounding: the closest corner.
+        let nearest = (0..3).min_by(|&i, &j| {
+            let distance = |k: usize| squared(corners[k], point);
+            distance(i).total_cmp(&distance(j))
+        });
+        return std::array::from_fn(|k| if Some(k) == nearest { 1.0 } else { 0.0 });
+    }
     found.map(|weight| weight / sum)
 }

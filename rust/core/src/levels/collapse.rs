@@ -37,6 +37,8 @@ pub(super) struct Collapser {
     mesh: EditableMesh,
     quadrics: Vec<Quadric>,
     kinds: Vec<Kind>,
+    /// The box around the vertices that have faces, wider by its longest side on each.
+    within: [Point; 2],
     /// The area of all faces, as the weights of the quadrics have it.
     area: f64,
     /// The most of it that a vertex of the present level may stand for.
@@ -91,6 +93,7 @@ impl Collapser {
             }
         }
         Ok(Self {
+            within: around(connectivity.faces().iter().flatten().map(|&v| positions[v as usize])),
             n_left: (0..n as u32).filter(|&v| !mesh.faces_of(v).is_empty()).count(),
             area: quadrics.iter().map(Quadric::weight).sum(),
             quadrics,
@@ -205,8 +208,14 @@ impl Collapser {
             (false, false) if one.is_border != other.is_border => {
                 Some(self.mesh.position(if one.is_border { a } else { b }))
             }
-            (false, false) => self.sum(a, b).minimizer(),
+            // Far from the origin rounding can leave it anywhere.
+            (false, false) => self.sum(a, b).minimizer().filter(|point| self.is_within(point)),
         }
+    }
+
+    fn is_within(&self, point: &Point) -> bool {
+        let [low, high] = &self.within;
+        (0..3).all(|c| point[c] >= low[c] && point[c] <= high[c])
     }
 
     /// A vertex with thousands of faces is never moved: each move would look at all of them.
@@ -256,6 +265,18 @@ impl Collapser {
             (norm(normal) <= 0.0 || !is_turned(new, reference)) && !is_thinned(quality(new), thinnest)
         })
     }
+}
+
+/// The box around `points`, wider by its longest side on each.
+fn around(points: impl Iterator<Item = Point>) -> [Point; 2] {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for p in points {
+        for c in 0..3 {
+            (low[c], high[c]) = (low[c].min(p[c]), high[c].max(p[c]));
+        }
+    }
+    let side = (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max);
+    [low.map(|x| x - side), high.map(|x| x + side)]
 }
 
 /// The planes of the faces of `v`, each by a third of its area.

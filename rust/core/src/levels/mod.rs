@@ -100,9 +100,9 @@ pub fn levels(mesh: &Mesh, held: Option<&[bool]>, enough: usize, progress: &Prog
     }
 }
 
-/// The level of `mesh` with about `n_vertices` of its vertices, or as near to that as edges collapse; those
-/// that are `held` are as in [`levels`], and those that are `kept` stay as they are, each on its own. So the
-/// levels of adjoining parts of a surface adjoin if what they share is kept.
+/// The level of `mesh`, of any size, with about `n_vertices` of its vertices, or as near to that as edges
+/// collapse; those that are `held` are as in [`levels`], and those that are `kept` stay as they are, each on
+/// its own. So the levels of adjoining parts of a surface adjoin if what they share is kept.
 ///
 /// # Errors
 /// [`MeshError::NoPositions`] and cancellation.
@@ -113,10 +113,22 @@ pub fn level(
     n_vertices: usize,
     progress: &Progress,
 ) -> Result<Level> {
-    let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
+    let unit = mesh.unit();
+    let measured = mesh.measured(unit)?;
+    let positions = measured.positions().ok_or(MeshError::NoPositions)?;
     let mut collapser = Collapser::new(mesh.connectivity(), positions, held, kept)?;
     collapser.reduce_to(n_vertices, progress)?;
-    made(&mut collapser, mesh)
+    let mut level = made(&mut collapser, &measured)?;
+    if let (false, Some(original)) = (unit.is_one(), mesh.positions()) {
+        let points = level.mesh.positions().ok_or(MeshError::NoPositions)?;
+        let mut restored = memory::gathered(points.iter().map(|p| p.map(|x| unit.restore(x))))?;
+        let is_kept = |v: usize| kept.is_some_and(|kept| kept[v]) && level.parents[v] != u32::MAX;
+        for v in (0..original.len()).filter(|&v| is_kept(v)) {
+            restored[level.parents[v] as usize] = original[v];
+        }
+        level.mesh = Mesh::new(restored, memory::twin(level.mesh.connectivity().faces())?)?;
+    }
+    Ok(level)
 }
 
 /// The level that has been reached above the `finer` mesh.

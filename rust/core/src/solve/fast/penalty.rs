@@ -33,13 +33,14 @@ const SMOOTH_SHARE: f64 = 5.0 / 6.0;
 /// Factorizations that the search may take.
 const MOST_ATTEMPTS: usize = 6;
 
-/// Penalties `R_b = BALANCE · w_b / length_b`, lengths clipped around their mean.
+/// Penalties `R_b = BALANCE · w_b / length_b`, lengths clipped around their mean; the weights alone where
+/// rounding has left no lengths, as with edges where more than two faces meet.
 ///
 /// # Errors
 /// [`crate::error::SolveError::Memory`].
 pub fn reweighted(lengths: &[f64], weights: &[f64]) -> Result<Vec<f64>> {
     let mean = weighted_mean(lengths, weights);
-    if mean <= 0.0 {
+    if mean <= 0.0 || !mean.is_finite() {
         return Ok(memory::twin(weights)?);
     }
     let penalty = |(g, w): (&f64, &f64)| BALANCE * w / g.clamp(CLIP[0] * mean, CLIP[1] * mean);

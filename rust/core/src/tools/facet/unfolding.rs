@@ -114,14 +114,17 @@ impl<'a> Sheet<'a> {
             }
             let mut is_moved = false;
             for v in (0..places.len() as u32).filter(|&v| is_near[v as usize]) {
-                let own = around.of(v as usize);
+                // A face that names a vertex twice lies on no facet.
+                let own: Vec<u32> = memory::sifted(
+                    around.of(v as usize).iter().copied().filter(|&f| self.labels[f as usize] != OUTSIDE),
+                )?;
                 let worst = |place: Point| {
                     let at = |w: u32| if w == v { place } else { places[w as usize] };
                     let faces = own.iter().map(|&f| (Ordered(self.upright(f as usize, at)), f as usize));
                     faces.min().unwrap_or((Ordered(0.0), 0))
                 };
                 let (before, f) = worst(places[v as usize]);
-                let tried = self.better(v, f, own, places).map(|place| (worst(place).0, place));
+                let tried = self.better(v, f, &own, places).map(|place| (worst(place).0, place));
                 let best = tried.into_iter().max_by_key(|&(least, _)| least);
                 if let Some((_, place)) = best.filter(|(least, _)| *least > before) {
                     places[v as usize] = place;
