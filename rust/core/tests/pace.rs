@@ -136,6 +136,23 @@ fn steps_that_run_out_or_miss_the_gap_are_told() {
 }
 
 #[test]
+fn loose_cards_that_were_rounded_are_flat_already() {
+    let card = shapes::grid(1, 1);
+    let turned = |k: u32| {
+        let card = card.clone().rotated([0.3, f64::from(k), -0.7], 0.4 * f64::from(k));
+        card.map(|[x, y, z]| [x + f64::from(k), y, z].map(|x| f64::from(x as f32)))
+    };
+    let mut all = Shape { vertices: Vec::new(), faces: Vec::new() };
+    for card in (0..40).map(turned) {
+        let n = all.vertices.len() as u32;
+        all.faces.extend(card.faces.iter().map(|face| face.map(|v| v + n)));
+        all.vertices.extend(card.vertices);
+    }
+    let result = flow(&all, &options(0.007));
+    assert_eq!((result.status, result.gap.len(), &result.vertices), (FlowStatus::Settled, 0, &all.vertices));
+}
+
+#[test]
 fn flatness_of_known_shapes() {
     let of = |shape: &Shape| {
         let mesh = shape.mesh().unwrap();

@@ -70,13 +70,13 @@ impl Flatness {
                 angle_between(vectors[f], vectors[g], connectivity.tail(h) == connectivity.tail(mate));
             let [a, b] = [connectivity.tail(h), connectivity.head(h)].map(|v| points[v as usize]);
             let length = vector::distance(a, b);
-            let bent = length * angle;
-            bend += bent;
-            if angle < SOFT {
-                soft += bent;
-            }
             // How far the two middles are apart across the edge: a third of each height.
             let across = 2.0 / 3.0 * (areas[f] + areas[g]) / length;
+            // What rounding bends is no bend: loose flat cards have no other.
+            if angle > rounding / across {
+                bend += length * angle;
+                soft += if angle < SOFT { length * angle } else { 0.0 };
+            }
             if angle < FLAT.min((FLAT * across / width).max(rounding / across)) {
                 facets.unite(f as u32, g as u32);
             } else {
