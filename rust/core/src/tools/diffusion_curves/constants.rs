@@ -4,6 +4,10 @@ use crate::limits::Limits;
 
 // Regions.
 
+/// What lies around a neighbor with more neighbors or regions than this is not near: where 2,000 faces meet
+/// at one edge every vertex would be compared with all of them, 15 s.
+pub(super) const HUB: usize = 256;
+
 /// What differs by less than this part of the range of the colors may be shading. A patch differs by more
 /// from its region everywhere, and across its border; a vertex that differs by more from its region is a
 /// blend or noise, and gets no face for itself; borders over which colors jump by more are kept untried.

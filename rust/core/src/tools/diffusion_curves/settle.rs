@@ -15,6 +15,9 @@ pub(super) struct Faces<'a> {
     covers: Vec<u32>,
     /// The faces around every vertex.
     around: Vec<Vec<u32>>,
+    /// For every vertex twice the number of its edges on borders; a rim counts once on each side of the
+    /// vertex. Kept, since around one vertex of thousands of faces it would be counted for each of them.
+    ends: Vec<u32>,
 }
 
 impl<'a> Faces<'a> {
@@ -33,7 +36,14 @@ impl<'a> Faces<'a> {
                 .filter(|&&v| regions[v as usize] == Some(label))
                 .for_each(|&v| covers[v as usize] += 1);
         }
-        Self { connectivity, lengths: mesh.edge_lengths(), groups, regions, labels, covers, around }
+        let (lengths, ends) = (mesh.edge_lengths(), vec![0; regions.len()]);
+        let mut faces = Self { connectivity, lengths, groups, regions, labels, covers, around, ends };
+        for h in 0..connectivity.n_halfedges() {
+            if faces.is_border(h) {
+                faces.at_ends(h, |count| *count += 1);
+            }
+        }
+        faces
     }
 
     /// Gives every group of faces without a vertex of its region to the region of most of its vertices;
@@ -144,21 +154,49 @@ impl<'a> Faces<'a> {
         self.corners(group).map(|v| self.borders_at(v).saturating_sub(2) as f64).sum()
     }
 
-    /// The edges of borders at a vertex, and one for the rim of the mesh.
+    /// The edges of borders at a vertex, and one for the rim of the mesh: every edge is seen from both of its
+    /// faces, those of a rim from one.
     fn borders_at(&self, v: u32) -> usize {
-        let edges = self.around[v as usize].iter().flat_map(|&f| 3 * f as usize..3 * f as usize + 3);
-        let ending = edges.filter(|&h| self.connectivity.opposite(h) != v);
-        let other =
-            |h: usize| self.connectivity.mate(h).is_none_or(|g| self.labels[g / 3] != self.labels[h / 3]);
-        // Every edge is seen from both of its faces, those of a rim from one.
-        ending.filter(|&h| other(h)).count() / 2
+        self.ends[v as usize] as usize / 2
+    }
+
+    fn is_border(&self, h: usize) -> bool {
+        self.connectivity.mate(h).is_none_or(|mate| self.labels[mate / 3] != self.labels[h / 3])
+    }
+
+    /// Changes the counts of the vertices that a halfedge joins.
+    fn at_ends(&mut self, h: usize, change: impl Fn(&mut u32)) {
+        for v in self.connectivity.faces()[h / 3] {
+            if self.connectivity.opposite(h) != v {
+                change(&mut self.ends[v as usize]);
+            }
+        }
+    }
+
+    /// Gives one face to a region.
+    fn give(&mut self, f: u32, region: i32) {
+        for h in 3 * f as usize..3 * f as usize + 3 {
+            let Some(mate) = self.connectivity.mate(h) else { continue };
+            if mate / 3 == h / 3 {
+                continue;
+            }
+            let (was, is) = (self.is_border(h), self.labels[mate / 3] != region);
+            for side in [h, mate] {
+                match (was, is) {
+                    (false, true) => self.at_ends(side, |count| *count += 1),
+                    (true, false) => self.at_ends(side, |count| *count -= 1),
+                    _ => {}
+                }
+            }
+        }
+        self.labels[f as usize] = region;
     }
 
     fn set(&mut self, group: usize, region: i32) {
         let old = self.label(group);
         let groups = self.groups;
         for &f in &groups.members[group] {
-            self.labels[f as usize] = region;
+            self.give(f, region);
             for &v in &self.connectivity.faces()[f as usize] {
                 if self.regions[v as usize] == Some(old) {
                     self.covers[v as usize] -= 1;

@@ -4,7 +4,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::constants::MIXING_STEPS;
+use super::constants::{HUB, MIXING_STEPS};
 use super::patches::PaintedParts;
 use super::sorting::{neighbors, Paint};
 use crate::linear::Columns;
@@ -65,7 +65,8 @@ fn blends(paint: &Paint<'_>, around: &[Vec<u32>]) -> Result<Vec<bool>> {
     // How many more vertices of each part are mixtures than are not.
     let mut mixed = memory::repeated(0_i64, root.len())?;
     for v in (0..root.len()).filter(|&v| !wide[root[v]]) {
-        let near = around[v].iter().flat_map(|&u| &around[u as usize]).chain(&around[v]);
+        let rings = around[v].iter().map(|&u| &around[u as usize]).filter(|ring| ring.len() <= HUB);
+        let near = rings.flatten().chain(&around[v]);
         let mut others: Vec<u32> = near.copied().filter(|&u| root[u as usize] != root[v]).collect();
         others.sort_unstable();
         others.dedup();

@@ -1,7 +1,7 @@
 //! Which region the color of each vertex belongs to.
 
 use super::chains::border_edges;
-use super::constants::{BROAD, NEARER, UNSEEN};
+use super::constants::{BROAD, HUB, NEARER, UNSEEN};
 use super::fit::Task;
 use super::membrane::Membrane;
 use crate::linear::Columns;
@@ -74,7 +74,10 @@ impl Paint<'_> {
         let least = UNSEEN * self.scale();
         let mut sorted = Sorted { regions: memory::room(copies.len())?, off: memory::room(copies.len())? };
         for (v, own) in copies.iter().enumerate() {
-            let beside = around[v].iter().flat_map(|&u| &copies[u as usize]);
+            // Where regions meet by the thousands, those of others there are not near, and the vertex between
+            // them is compared with its own.
+            let is_plain = |at: &&Vec<u32>| at.len() <= HUB && own.len() <= HUB;
+            let beside = around[v].iter().map(|&u| &copies[u as usize]).filter(is_plain).flatten();
             let mut fits = Misfits { labels: &label_of, values: &values, found: Vec::new() };
             own.iter().for_each(|&copy| fits.add(copy));
             let here = fits.found.len();

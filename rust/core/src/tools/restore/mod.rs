@@ -62,7 +62,9 @@ fn on(working: &Working<'_>, unit: Unit, options: &RestoreOptions, progress: &Pr
     let mesh = working.mesh();
     let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
     let (size, _) = extent(mesh.connectivity(), positions);
-    if let Some(noise) = options.noise.filter(|&noise| unit.measure(noise) >= size && size > 0.0) {
+    // A mesh without area has no size, and a noise that is no number beside it is as large all the same.
+    let is_as_large = |noise: f64| noise >= size && size > 0.0 || noise.is_infinite();
+    if let Some(noise) = options.noise.filter(|&noise| is_as_large(unit.measure(noise))) {
         let problem = format!("is {noise:e}, as large as the mesh; pass the height of its bumps, or None");
         return Err(Error::argument("noise", problem));
     }
