@@ -16,6 +16,9 @@ from workspace import ROOT, WHEEL_SITE, stop
 PICTURES = ROOT / "docs/pictures/gallery"
 PAGE = ROOT / "docs/gallery.md"
 FIGURES = (
+    "flow",
+    "cubes",
+    "layouts",
     "modes",
     "scattered",
     "surfaces",
@@ -48,7 +51,7 @@ def main(names: list[str]) -> None:
     if unknown:
         stop(f"no figure is called {', '.join(unknown)}: there are {', '.join(FIGURES)}")
     build_wheel()
-    sys.path[:0] = [str(WHEEL_SITE), str(ROOT)]
+    sys.path[:0] = [str(WHEEL_SITE), str(ROOT), str(ROOT / "benchmarks")]
     # Before everything that might load another NumPy.
     import bpy  # noqa: F401, PLC0415
 

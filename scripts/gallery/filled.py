@@ -1,4 +1,4 @@
-"""Figures 3 (right) and 16: holes across ridges, filled smoothly, by the paper's flow, and by ours."""
+"""Figures 3 and 20 (right), and 16: holes across ridges, filled smoothly, by the paper, and by ours."""
 
 from __future__ import annotations
 
@@ -28,6 +28,9 @@ PATCH = (0.75, 0.36, 0.1)
 """Linear RGB of the patches."""
 RIM_HOLES = ((0.6, -0.5, 1.5), (-0.3, -1.0, 1.2))
 """Directions in which the bust reaches farthest at the middle of a hole: on the rim of its crown."""
+
+ROOF_HOLE = (0.0, 0.0, 0.3)
+"""Middle and radius of the hole in the roof, from above."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +92,28 @@ def _bent(points: Array) -> Array:
     return np.stack([x, y, 0.5 * (points[:, 2] - 0.5)], axis=1)
 
 
+def curved_roof(n: int = 56) -> Open:
+    """A tent over a square whose four sides are curved: two ridges that cross, an X, in a hole."""
+    points, step = domains.irregular_points(n, seed=2), 1.0 / (n - 1)
+    off = np.abs(np.abs(points[:, 0]) - np.abs(points[:, 1])) > 0.8 * step
+    at = np.linspace(-0.5, 0.5, n)
+    on = np.concatenate([np.column_stack([at, at]), np.column_stack([at, -at])[np.abs(at) > 0.1 * step]])
+    plane, faces = domains.triangulated(np.concatenate([points[off], on]))
+    vertices = _on_roof(2.0 * plane[:, :2])
+    away = np.hypot(*(vertices[faces].mean(axis=1)[:, :2] - ROOF_HOLE[:2]).T)
+    used, index = np.unique(faces[away > ROOF_HOLE[2]], return_inverse=True)
+    along = np.linspace(-1.0, 1.0, 4000)
+    ridge = np.concatenate([_on_roof(np.column_stack([along, sign * along])) for sign in (1, -1)])
+    lost = ridge[np.hypot(*(ridge[:, :2] - ROOF_HOLE[:2]).T) < 0.9 * ROOF_HOLE[2]]
+    return Open(vertices[used], index.reshape(-1, 3), lost, (0.5, -0.8, 0.9), _paper(80, 100.0))
+
+
+def _on_roof(plane: Array) -> Array:
+    """Points of the tent over points `(n, 2)` of the square [-1, 1]²."""
+    farther = np.abs(plane).max(axis=1)
+    return np.column_stack([plane, 1.0 - 0.4 * farther - 0.5 * farther**2])
+
+
 def cases() -> dict[str, Open]:
     """The meshes of both figures."""
     cube = holed_shapes.cut(
@@ -111,6 +136,7 @@ def cases() -> dict[str, Open]:
         ),
         "horseshoe": Open(shoe.vertices, shoe.faces, shoe.ridge, (0.5, -0.6, 1.0), _paper(80, 100.0)),
         "bust": bust,
+        "roof": curved_roof(),
     }
 
 

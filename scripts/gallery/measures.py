@@ -36,13 +36,22 @@ def rms(mesh: ridgeform.Mesh, values: Array, where: NDArray[np.bool_] | None = N
 
 def bending_in_tenth(mesh: ridgeform.Mesh, values: Array) -> float:
     """Share of the L1 Hessian energy in that tenth of the area that bends most: 1 for straight pieces."""
-    norm = ridgeform.hessian_norm(mesh, values)
     area = _face_areas(mesh.edge_lengths)
-    order = np.argsort(-norm, kind="stable")
-    before = np.cumsum(area[order]) <= 0.1 * area.sum()
-    energy = norm * area
-    total = energy.sum()
-    return float(energy[order][before].sum() / total) if total > 0 else 1.0
+    return share_in_tenth(ridgeform.hessian_norm(mesh, values) * area, area)
+
+
+def share_in_tenth(amounts: Array, areas: Array) -> float:
+    """How much of what faces have `(m,)` is in that tenth of their area `(m,)` that is densest."""
+    order = np.argsort(-amounts / np.maximum(areas, np.finfo(float).tiny), kind="stable")
+    before = np.cumsum(areas[order]) <= 0.1 * areas.sum()
+    total = amounts.sum()
+    return float(amounts[order][before].sum() / total) if total > 0 else 1.0
+
+
+def face_areas(vertices: Array, faces: NDArray[np.int64]) -> Array:
+    """Of each face `(m,)`."""
+    a, b, c = (vertices[faces[:, i]] for i in range(3))
+    return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
 
 
 def _face_areas(lengths: Array) -> Array:

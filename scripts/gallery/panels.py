@@ -72,6 +72,17 @@ def height_field(vertices: Array, faces: Indices, values: Array, **look: object)
     return pictures.render(np.column_stack([vertices[:, :2], values]), faces, **look)
 
 
+def shaded(vertices: Array, faces: Indices, **look: object) -> Pixels:
+    """A surface in clay."""
+    return pictures.render(vertices, faces, **look)
+
+
+def colored(vertices: Array, faces: Indices, amounts: Array, **look: object) -> Pixels:
+    """What faces have `(m,)`, from 0 to 1 and above."""
+    color = ramp.colors_at(ramp.SEQUENTIAL, np.clip(amounts, 0.0, 1.0))[:, :3]
+    return pictures.render(vertices, faces, color=color, lit=False, **look)
+
+
 def wireframe(vertices: Array, faces: Indices, **look: object) -> Pixels:
     """The edges of a mesh."""
     edges = np.unique(np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)

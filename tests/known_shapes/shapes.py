@@ -178,6 +178,14 @@ def tetrahedron() -> Shape:
 # Curved shapes
 
 
+def octahedron(levels: int = 3) -> Shape:
+    """Octahedron with corners at distance 1 on the axes, its sides each cut in four so many times."""
+    corners = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)], float)
+    sides = [(a, b, c) for a in (0, 1) for b in (2, 3) for c in (4, 5)]
+    faces = [side if np.linalg.det(corners[list(side)]) > 0 else side[::-1] for side in sides]
+    return subdivide(corners, faces, levels)
+
+
 def icosphere(levels: int = 3) -> Shape:
     """Unit sphere from the icosahedron, subdivided `levels` times: `10 · 4^levels + 2` vertices."""
     golden = (1 + np.sqrt(5)) / 2

@@ -137,7 +137,8 @@ fn cut(region: &mut Region, parts: &SmoothParts, labels: &mut Vec<u32>, edge: f6
 }
 
 /// Free vertices that belong where a neighbor is, and that neighbor:
-/// remeshing does not join two vertices that are both fixed.
+/// remeshing does not join two vertices that are both fixed. Where more than three parts meet in a point,
+/// as two ridges that cross, the corners of three of them each are one.
 fn merges(region: &Region, parts: &SmoothParts, labels: &[u32], edge: f64) -> Result<Vec<[u32; 2]>> {
     let found = |v: u32| {
         let own = parts_at(region, parts, labels, v);
@@ -146,7 +147,11 @@ fn merges(region: &Region, parts: &SmoothParts, labels: &[u32], edge: f64) -> Re
                 && if region.is_anchor(w) {
                     own.len() > 1 && own.iter().all(|&part| parts.has(part, region.mesh.position(w), edge))
                 } else {
-                    w < v && own.len() > 2 && own == parts_at(region, parts, labels, w)
+                    let others = parts_at(region, parts, labels, w);
+                    let is_there = |part: &u32| parts.has(*part, region.mesh.position(w), edge);
+                    w < v
+                        && own.len().min(others.len()) > 2
+                        && (own == others || own.iter().chain(&others).all(is_there))
                 }
         };
         region.mesh.neighbors(v).into_iter().find(|&w| joins(w))
