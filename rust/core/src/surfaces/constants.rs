@@ -32,6 +32,13 @@ pub(super) const DAMPING: [f64; 2] = [1e-4, 1e6];
 /// The least of it: less makes no difference in double precision.
 pub(super) const LEAST_DAMPING: f64 = 1e-12;
 
+/// Steps of a fit to points that are exact, which starts close by: they double the digits. It rests where one
+/// lowers the sum of squares by no more than this part.
+pub(super) const THROUGH: Limits = Limits { steps: 16, rest: 0.1 };
+
+/// Its least damping, where a step without went too far.
+pub(super) const LEAST_THROUGH: f64 = 1e-8;
+
 /// What the equations of a fit leave open, as turning a sphere, has eigenvalues below this part of the
 /// largest, as rounding has them.
 pub(super) const UNDETERMINED: f64 = 1e-13;

@@ -8,11 +8,13 @@ mod meeting;
 mod motion;
 mod samples;
 mod starts;
+mod through;
 
 pub use constants::MOST_MISFIT;
 pub use fit::{fit, FittedSurface};
 pub use meeting::meeting;
 pub use samples::{misfit, Samples};
+pub use through::through;
 
 use crate::mesh::vector::{add, cross, dot, norm, scale, sub, unit, Point};
 

@@ -52,6 +52,69 @@ pub(super) const FEW_FACES: usize = 100;
 /// quads have sixteen and are found.
 pub(super) const LEAST_INSIDE: usize = 16;
 
+// Faces on spheres, cylinders, cones and tori, of exact shapes.
+
+/// Kernels put no vertex inside a plane. A mesh with more than this part of its vertices there is remeshed or
+/// subdivided.
+pub(super) const MOST_INSIDE: f64 = 0.1;
+
+/// Two facets of a sphere or torus turn by no more than this from one to the other: kernels make small
+/// fillets of corners two facets wide (eight a turn). Cylinders and cones bend less than the sides of prisms.
+pub(super) const MOST_BEND_ON_A_SURFACE: f64 = 0.8;
+
+/// The normal of a facet turns from those of its surface in its corners by no more, half of that in both
+/// directions (radians), and its middle rises over the surface by no more than this part of its size, as an
+/// arc of eight does over its chord: the disk within the circle where a torus touches it rises by more.
+pub(super) const MOST_TILT: f64 = 0.6;
+pub(super) const MOST_RISE: f64 = 0.1;
+
+/// A surface to begin with is off the facets that it is made of by no more than this part of their size: the
+/// fit would not come close.
+pub(super) const NEAR: f64 = 0.02;
+
+/// Vertices on a surface that is not exact yet may be off by so many roundings, the most with which all are
+/// on it once it is fitted to them: what is known from a few facets is off as much where it has doubled.
+pub(super) const SLACKS: [f64; 3] = [64.0, 8.0, 1.0];
+
+/// What kernels make as balls by turning arcs is none by some roundings (hemispheres of a capsule: eight),
+/// and vertices inside say enough.
+pub(super) const LOOSE_SPHERE: f64 = 10.0;
+
+/// Coincidences that are more than chance. One is not: two strips through three points of a circle that are
+/// tangent to one plane.
+pub(super) const LEAST_EVIDENCE: i64 = 2;
+
+/// Angles that differ by less are those of one row of vertices; finest tessellations turn by fifty times
+/// that.
+pub(super) const ROW_GAP: f64 = 1e-3;
+
+/// An edge that leaves a surface with this slope is tangent to it: known radii are exact to a tenth of that,
+/// and chords of a fine tessellation rise by sixty times that.
+pub(super) const TANGENT_RISE: f64 = 1e-3;
+
+/// What goes on smoothly beside a surface is off it by more than so many roundings. Surfaces that lie on
+/// nothing by more than chance end by one to twenty, true ones by 250 and more.
+pub(super) const CLEAR_STOP: f64 = 30.0;
+
+/// Normals of tangent surfaces differ by less where they meet: by a tenth on parts.
+pub(super) const BLUNT: f64 = 0.01;
+
+/// A ring between two rows of a turned surface goes on where it bends by less: chamfers bend by 0.76.
+pub(super) const MOST_BEND_ALONG_A_ROW: f64 = 0.6;
+
+/// Strips of one cone turn alike to this part of their bend.
+pub(super) const ALIKE_BENDS: f64 = 0.1;
+
+/// Cylinders and cones of triangles without a pattern begin with so many facets.
+pub(super) const FACETS_OF_A_START: [usize; 2] = [4, 7];
+
+/// Curved facets that are looked at first, and the part of them that must be on some surface, and of all
+/// facets in the end: of parts with faces of another kind (lofts, text) or scans hardly any is, of others
+/// nearly all.
+pub(super) const SAMPLED_EDGES: usize = 400;
+pub(super) const LEAST_COVERED_OF_SAMPLE: f64 = 0.25;
+pub(super) const LEAST_COVERED: f64 = 0.5;
+
 // The order of the passes.
 
 /// Two basins of the indicator stay apart if the pass between them lies deeper than this. Low, since

@@ -20,6 +20,8 @@ pub(super) struct Planes {
     pub labels: Vec<u32>,
     /// The unit normal of the plane of each face.
     pub normals: Vec<Point>,
+    /// Only sides of one group are one where they bend little: a group for each face.
+    pub groups: Option<Vec<u32>>,
 }
 
 /// The planes of a shape that is exact and has sides too coarse for the Hessian, where borders are none if
@@ -28,7 +30,8 @@ pub(super) struct Planes {
 /// # Errors
 /// [`crate::Error::Solve`] where memory is missing.
 pub(super) fn coarse_planes(surface: &Surface<'_>, bend: f64) -> Result<Option<Planes>> {
-    let facets = Facets::new(surface)?;
+    let largest = surface.positions.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let facets = Facets::new(surface, FILE_ROUNDING.max(SINGLE_PRECISION * largest))?;
     let edges = facets.turns()?;
     let flat = edges.iter().filter(|edge| edge.is_flat).count();
     if surface.n_faces() >= FEW_FACES && (flat as f64) < FLAT_SHARE * edges.len() as f64 {
@@ -44,7 +47,7 @@ pub(super) fn coarse_planes(surface: &Surface<'_>, bend: f64) -> Result<Option<P
         sums[label as usize] = add(sums[label as usize], surface.vector_area(f));
     }
     let normals = memory::gathered(labels.iter().map(|&label| unit(sums[label as usize])))?;
-    Ok(Some(Planes { labels, normals }))
+    Ok(Some(Planes { labels, normals, groups: None }))
 }
 
 /// Whether a side has too few faces inside.
@@ -57,7 +60,7 @@ fn is_coarse(surface: &Surface<'_>, sides: &[u32]) -> Result<bool> {
 }
 
 /// The faces with what rounding makes of them.
-struct Facets<'a> {
+pub(super) struct Facets<'a> {
     surface: &'a Surface<'a>,
     rounding: f64,
     normals: Vec<Point>,
@@ -65,16 +68,18 @@ struct Facets<'a> {
 }
 
 /// An edge between two faces, neither a sliver, with the distance between their unit normals.
-struct Turn {
+pub(super) struct Turn {
     faces: [u32; 2],
     turn: f64,
-    is_flat: bool,
+    pub is_flat: bool,
 }
 
 impl<'a> Facets<'a> {
-    fn new(surface: &'a Surface<'a>) -> Result<Self> {
-        let largest = surface.positions.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
-        let rounding = FILE_ROUNDING.max(SINGLE_PRECISION * largest);
+    /// The faces of `surface`, whose coordinates are off by `rounding` at most.
+    ///
+    /// # Errors
+    /// [`crate::Error::Solve`] where memory is missing, here and below.
+    pub(super) fn new(surface: &'a Surface<'a>, rounding: f64) -> Result<Self> {
         let n = surface.n_faces();
         let (normals, slivers) = (memory::room(n)?, memory::room(n)?);
         let mut facets = Self { surface, rounding, normals, slivers };
@@ -100,7 +105,7 @@ impl<'a> Facets<'a> {
     }
 
     /// All edges between faces that have normals.
-    fn turns(&self) -> Result<Vec<Turn>> {
+    pub(super) fn turns(&self) -> Result<Vec<Turn>> {
         let connectivity = self.surface.connectivity;
         let turn = |h: usize| {
             let twin = connectivity.twin(h)?;
@@ -130,7 +135,7 @@ impl<'a> Facets<'a> {
 
     /// The faces joined over the edges that `joins`, slivers with the neighbor at their longest edge:
     /// a label for each, from 0.
-    fn joined(&self, edges: &[Turn], joins: impl Fn(&Turn) -> bool) -> Result<Vec<u32>> {
+    pub(super) fn joined(&self, edges: &[Turn], joins: impl Fn(&Turn) -> bool) -> Result<Vec<u32>> {
         let n = self.surface.n_faces();
         let mut partition = Partition::new(n)?;
         for edge in edges.iter().filter(|edge| joins(edge)) {

@@ -5,13 +5,15 @@
 //! ([`crease`], [`merge`]), dividing what lies across a ridge ([`divide`]), joining what a neighbor explains
 //! ([`explain`]), and moving faces at borders to the segment that they fit best ([`relabel`]), or, between
 //! curved segments, along creases ([`straighten`]). Sides of a few triangles, which the Hessian cannot see,
-//! are told by their planes ([`exact`]), those of a few rows under little noise by the clear ridges around
-//! them ([`regions`]). In any case a [`hierarchy`] of nested segmentations comes with it. Faces split at
-//! T-junctions ([`split`]) and [`copies`] of faces are given back as the mesh has them.
+//! are told by their planes ([`exact`]), tangent faces of CAD parts by their surfaces ([`cover`]), sides of a
+//! few rows under little noise by the clear ridges around them ([`regions`]). In any case a [`hierarchy`] of
+//! nested segmentations comes with it. Faces split at T-junctions ([`split`]) and [`copies`] of faces are
+//! given back as the mesh has them.
 
 mod coarse_to_fine;
 mod constants;
 mod copies;
+mod cover;
 mod crease;
 mod divide;
 mod exact;
@@ -56,6 +58,7 @@ use crate::{memory, Result};
 use coarse_to_fine::coarse_to_fine;
 use constants::{BEND, LEAST_EPSILON};
 use copies::Copies;
+use cover::covered;
 use exact::coarse_planes;
 use indicator::Functional;
 use noise::noise_level;
@@ -204,7 +207,11 @@ fn whole(
         None => Columns::from_points(&surface.positions)?,
     };
     let exact = if options.is_plain(values.is_some()) {
-        coarse_planes(&surface, BEND * options.length_weight)?
+        let bend = BEND * options.length_weight;
+        match covered(&surface, bend, progress)? {
+            Some(faces) => Some(faces),
+            None => coarse_planes(&surface, bend)?,
+        }
     } else {
         None
     };

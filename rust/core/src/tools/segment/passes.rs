@@ -89,8 +89,9 @@ impl<'a> Passes<'a> {
     /// [`crate::Error::Cancelled`].
     pub(super) fn joined(&self, merging: &Merging<'_>, leaves: &[u32]) -> Result<Vec<u32>> {
         let mut labels = memory::twin(leaves)?;
-        if self.planes.is_some() {
-            merging.below(&mut labels, BEND * self.options.length_weight)?;
+        if let Some(planes) = self.planes {
+            let within = Merging { groups: planes.groups.as_deref(), ..*merging };
+            within.below(&mut labels, BEND * self.options.length_weight)?;
             merging.absorb_small(&mut labels, self.options.min_faces.unwrap_or(0))?;
         } else if self.options.method == SegmentMethod::Fitted {
             self.fit(&Merging { groups: self.groups(), ..*merging }, &mut labels)?;
