@@ -111,6 +111,9 @@ fn splits_keep_the_surface() {
     assert_eq!(mesh.split_face(0, [0.6, 0.2, 0.0]).unwrap(), Some(6));
     let mesh = checked(mesh, 1);
     assert_eq!((mesh.connectivity().n_faces(), euler_characteristic(&mesh)), (7, 1));
+    // Two faces back to back: the edge to their tip would have four.
+    let mut pillow = EditableMesh::new(vec![[0.0; 3]; 3], vec![[0, 1, 2], [0, 2, 1]]).unwrap();
+    assert_eq!(pillow.split(0, 1, [0.0; 3]).unwrap(), None);
 }
 
 #[test]

@@ -31,7 +31,8 @@ impl EditableMesh {
     }
 
     /// Splits the edge `a b` and its one or two faces at a new vertex at `position`, and returns that vertex;
-    /// does nothing and returns nothing if there is no such edge or it is not manifold.
+    /// does nothing and returns nothing if there is no such edge or it is not manifold, or if its two faces
+    /// lie back to back: the edge to the tip that both have would get four.
     ///
     /// The old face numbers stay at `a`; the new faces at `b` are the last ones,
     /// that of `wings.faces[0]` first.
@@ -41,8 +42,8 @@ impl EditableMesh {
     pub fn split(&mut self, a: u32, b: u32, position: Point) -> Result<Option<u32>> {
         let faces: &[u32] = match &self.edge(a, b) {
             Edge::Border(f, _) => &[*f],
-            Edge::Interior(wings) => &wings.faces.clone(),
-            Edge::None | Edge::NonManifold => return Ok(None),
+            Edge::Interior(wings) if wings.tips[0] != wings.tips[1] => &wings.faces.clone(),
+            Edge::Interior(_) | Edge::None | Edge::NonManifold => return Ok(None),
         };
         self.make_room()?;
         let new = self.add_vertex(position);
