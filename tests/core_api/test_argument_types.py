@@ -58,7 +58,8 @@ class Odd:
 
 @pytest.mark.parametrize(("name", "argument"), CASES, ids=[f"{n}-{a}" for n, a in CASES])
 def test_a_wrong_type_is_named(name, argument):
-    for wrong in (Odd(), b"bytes", 3 + 4j):
+    # The last is what Python makes of a file name that is not UTF-8.
+    for wrong in (Odd(), b"bytes", 3 + 4j, "\udcff"):
         with pytest.raises((TypeError, ridgeform.ArgumentError)) as caught:
             FUNCTIONS[name](**{**arguments_of(name), argument: wrong})
         assert str(caught.value).startswith(f"{argument}: "), str(caught.value)

@@ -13,14 +13,15 @@ NOTE = re.compile(r"while processing '(\w+)'")
 def named(function: Callable[..., Any]) -> Callable[..., Any]:
     """`function`, with errors about the type of an argument that begin with its name, as all others do.
 
-    Raises TypeError for a wrong type, ArgumentError for a whole number that no machine word holds.
+    Raises TypeError for a wrong type, ArgumentError for a whole number that no machine word holds and for
+    text with half a character, as a file name that is not UTF-8 has it in Python.
     """
 
     @functools.wraps(function)
     def call(*positional: Any, **keywords: Any) -> Any:
         try:
             return function(*positional, **keywords)
-        except (TypeError, OverflowError) as error:
+        except (TypeError, OverflowError, UnicodeEncodeError) as error:
             found = NOTE.fullmatch(getattr(error, "__notes__", [""])[-1])
             if found is None:
                 raise
@@ -28,6 +29,8 @@ def named(function: Callable[..., Any]) -> Callable[..., Any]:
         # Outside of the handler: the error that it stands for would only say the same again.
         if isinstance(problem, OverflowError):
             raise ArgumentError(f"{name}: the number is too large")
+        if isinstance(problem, UnicodeEncodeError):
+            raise ArgumentError(f"{name}: got {problem.object!a}, which is no text")
         raise TypeError(f"{name}: {problem}")
 
     call.__module__ = "ridgeform"
