@@ -51,3 +51,15 @@ fn a_call_can_be_cancelled_and_finished_early() {
     assert_eq!(found.status, Status::Stopped);
     assert_eq!(found.labels.len(), mesh.connectivity().n_faces());
 }
+
+#[test]
+fn no_part_of_a_coarse_mesh_is_a_crumb_of_few_faces() {
+    let mesh = ball_with_a_limb(3).mesh().unwrap();
+    let options = PartsOptions { n_parts: Some(32), ..PartsOptions::default() };
+    let found = parts(&mesh, &options, &Progress::new()).unwrap();
+    assert!(found.n_parts > 16);
+    for part in 0..found.n_parts as i32 {
+        let n_faces = found.labels.iter().filter(|label| **label == part).count();
+        assert!(n_faces >= 6, "part {part} of {} has {n_faces} faces", found.n_parts);
+    }
+}

@@ -1,8 +1,8 @@
 //! From clusters back to faces: the borders between parts, drawn along edges of the mesh and pulled tight
 //! there.
 
-use super::constants::{CLUSTERS_WIDE, LEAST_PART};
-use super::cut::{area_of, cost};
+use super::constants::CLUSTERS_WIDE;
+use super::cut::{are_parts, area_of, cost};
 use super::division::Division;
 use super::graph::{Graph, NONE};
 use super::tighten::moved;
@@ -62,8 +62,7 @@ pub(super) fn drawn(
 /// The cut with both sides in one piece, unless one is less than a part then.
 fn whole_parts(part: &Graph, mut side: Vec<bool>) -> Result<Option<Vec<bool>>> {
     keep_whole(part, &mut side)?;
-    let area = area_of(part, &side);
-    Ok((area.min(part.area() - area) >= LEAST_PART).then_some(side))
+    Ok(are_parts(part, &side).then_some(side))
 }
 
 /// Which faces are on the second side, by the parts of their clusters; faces of clusters that are in

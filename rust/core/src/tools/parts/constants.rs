@@ -89,6 +89,11 @@ pub(super) const LEAST_OPENNESS: f64 = 1e-3;
 /// 10.9 with twice as much; as found it is the same). Of what people name 2.5 percent are smaller.
 pub(super) const LEAST_PART: f64 = std::f64::consts::PI * BEND_SCALE * BEND_SCALE;
 
+/// Nor what has fewer faces, three sides of a box: by the area alone, 16 and 32 parts of a hand and a cow of
+/// 1,600 faces had crumbs of two faces. On 190 shapes the error as found is 10.40 instead of 10.41, at the
+/// usual count 10.83 instead of 10.82.
+pub(super) const LEAST_FACES: u32 = 6;
+
 /// So many parts the finest division has, unless more are asked for.
 pub(super) const MOST_PARTS: usize = 40;
 

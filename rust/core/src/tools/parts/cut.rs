@@ -3,8 +3,8 @@
 use std::cmp::Ordering;
 
 use super::constants::{
-    AREA_POWER, BAND, FUNCTIONS, FUNCTION_ACCURACY, LEAST_PART, LEAST_PATCHES, LEVELS, LEVELS_APART,
-    SAME_CUT, STEP, TIGHTENED, TIGHTENINGS,
+    AREA_POWER, BAND, FUNCTIONS, FUNCTION_ACCURACY, LEAST_FACES, LEAST_PART, LEAST_PATCHES, LEVELS,
+    LEVELS_APART, SAME_CUT, STEP, TIGHTENED, TIGHTENINGS,
 };
 use super::graph::Graph;
 use super::tighten::moved;
@@ -20,17 +20,19 @@ pub(super) struct Cut {
     pub side: Vec<bool>,
 }
 
-/// One side of a cut: its area, and the integral of the logarithm of the thickness over it.
+/// One side of a cut: its area, the integral of the logarithm of the thickness over it, and its faces.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Side {
     pub(super) area: f64,
     thickness: f64,
+    faces: u32,
 }
 
 impl Side {
     fn add(&mut self, graph: &Graph, i: usize) {
         self.area += graph.areas[i];
         self.thickness += graph.areas[i] * graph.thickness(i);
+        self.faces += graph.faces(i);
     }
 
     /// The side of all nodes in `inside`.
@@ -41,12 +43,25 @@ impl Side {
     }
 
     fn rest_of(self, whole: Self) -> Self {
-        Self { area: whole.area - self.area, thickness: whole.thickness - self.thickness }
+        Self {
+            area: whole.area - self.area,
+            thickness: whole.thickness - self.thickness,
+            faces: whole.faces - self.faces,
+        }
+    }
+
+    /// Whether it is no less than a part.
+    pub(super) fn is_part(self) -> bool {
+        self.area >= LEAST_PART && self.faces >= LEAST_FACES
     }
 
     /// Both sides as one.
     pub(super) fn with(self, other: Self) -> Self {
-        Self { area: self.area + other.area, thickness: self.thickness + other.thickness }
+        Self {
+            area: self.area + other.area,
+            thickness: self.thickness + other.thickness,
+            faces: self.faces + other.faces,
+        }
     }
 
     /// What a cut with this border between this side and `other` costs.
@@ -82,6 +97,11 @@ pub(super) fn cost(graph: &Graph, side: &[bool]) -> f64 {
     let parted = |ends: [u32; 2]| side[ends[0] as usize] != side[ends[1] as usize];
     let border = graph.edges.iter().filter(|e| parted(e.ends)).map(|e| e.cost).sum();
     Side::of(graph, |i| side[i]).price(Side::of(graph, |i| !side[i]), border)
+}
+
+/// Whether neither side is less than a part.
+pub(super) fn are_parts(graph: &Graph, side: &[bool]) -> bool {
+    Side::of(graph, |i| side[i]).is_part() && Side::of(graph, |i| !side[i]).is_part()
 }
 
 /// The area of one side.
@@ -138,7 +158,10 @@ fn tightened(graph: &Graph, mut side: Vec<bool>) -> Result<Vec<bool>> {
     let width = BAND * area.min(graph.area() - area).max(0.0).sqrt();
     for _ in 0..TIGHTENINGS {
         let Some(better) = moved(graph, &side, width)? else { break };
-        if !(is_whole(graph, &better)? && cost(graph, &better) < cost(graph, &side)) {
+        if !(is_whole(graph, &better)?
+            && are_parts(graph, &better)
+            && cost(graph, &better) < cost(graph, &side))
+        {
             break;
         }
         side = better;
@@ -198,7 +221,7 @@ fn sweep(graph: &Graph, function: &[f64], found: &mut Vec<Cut>) -> Result<()> {
         border += rise;
         below.add(graph, node as usize);
         let above = below.rest_of(all);
-        let allowed = below.area.min(above.area) >= LEAST_PART;
+        let allowed = below.is_part() && above.is_part();
         levels.push((if allowed { below.price(above, border.max(0.0)) } else { f64::INFINITY }, below.area));
     }
     for _ in 0..LEVELS {
@@ -215,8 +238,7 @@ fn sweep(graph: &Graph, function: &[f64], found: &mut Vec<Cut>) -> Result<()> {
         // With two pieces each is the other's rest.
         for piece in 0..if count == 2 { 1 } else { count as u32 } {
             let side = memory::gathered(pieces.iter().map(|p| *p == piece))?;
-            let area = area_of(graph, &side);
-            if area.min(whole - area) >= LEAST_PART {
+            if are_parts(graph, &side) {
                 found.push(Cut { cost: cost(graph, &side), side });
             }
         }

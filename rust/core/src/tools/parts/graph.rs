@@ -33,6 +33,8 @@ pub(super) struct Graph {
     pub centers: Vec<Point>,
     /// The logarithm of the thickness under each, or nothing where it does not count.
     thickness: Vec<f64>,
+    /// How many faces each is made of, or nothing where each is one.
+    faces: Vec<u32>,
     pub edges: Vec<Edge>,
     /// The edges of each node: the other node, and the edge.
     arcs: Buckets<[u32; 2]>,
@@ -55,7 +57,7 @@ impl Graph {
                 visit(b as usize, [a, i]);
             }
         })?;
-        Ok(Self { areas, centers, thickness: Vec::new(), edges, arcs })
+        Ok(Self { areas, centers, thickness: Vec::new(), faces: Vec::new(), edges, arcs })
     }
 
     /// The same with the logarithm of the thickness under each node.
@@ -68,10 +70,16 @@ impl Graph {
         self.thickness.get(i).copied().unwrap_or(0.0)
     }
 
+    /// How many faces node `i` is made of.
+    pub(super) fn faces(&self, i: usize) -> u32 {
+        self.faces.get(i).copied().unwrap_or(1)
+    }
+
     /// The same nodes with other edges.
     pub(super) fn with_edges(&self, edges: Vec<Edge>) -> Result<Self> {
+        let (thickness, faces) = (memory::twin(&self.thickness)?, memory::twin(&self.faces)?);
         let same = Self::new(memory::twin(&self.areas)?, memory::twin(&self.centers)?, edges)?;
-        Ok(same.with_thickness(memory::twin(&self.thickness)?))
+        Ok(Self { thickness, faces, ..same })
     }
 
     pub(super) fn n_nodes(&self) -> usize {
@@ -102,10 +110,10 @@ impl Graph {
             }
         }
         nodes.iter().for_each(|&node| place[node as usize] = NONE);
-        let of =
-            |values: &[f64]| memory::sifted(nodes.iter().filter_map(|&i| values.get(i as usize).copied()));
         let centers = memory::gathered(nodes.iter().map(|&i| self.centers[i as usize]))?;
-        Ok(Self::new(of(&self.areas)?, centers, edges)?.with_thickness(of(&self.thickness)?))
+        let areas = of_nodes(&self.areas, nodes)?;
+        let (thickness, faces) = (of_nodes(&self.thickness, nodes)?, of_nodes(&self.faces, nodes)?);
+        Ok(Self { thickness, faces, ..Self::new(areas, centers, edges)? })
     }
 
     /// The graph of `n` clusters, given the one of each node: costs add up.
@@ -113,10 +121,12 @@ impl Graph {
         let mut areas = memory::repeated(0.0, n)?;
         let mut centers = memory::repeated([0.0; 3], n)?;
         let mut thickness = memory::repeated(0.0, n)?;
+        let mut faces = memory::repeated(0_u32, n)?;
         for (i, &label) in labels.iter().enumerate() {
             areas[label as usize] += self.areas[i];
             centers[label as usize] = add(centers[label as usize], scale(self.centers[i], self.areas[i]));
             thickness[label as usize] += self.areas[i] * self.thickness(i);
+            faces[label as usize] += self.faces(i);
         }
         thickness.iter_mut().zip(&areas).for_each(|(thickness, area)| *thickness /= area);
         centers.iter_mut().zip(&areas).for_each(|(center, area)| *center = scale(*center, 1.0 / area));
@@ -137,7 +147,7 @@ impl Graph {
             distance: apart(ends),
         });
         let edges = memory::gathered(edges)?;
-        Ok(Self::new(areas, centers, edges)?.with_thickness(thickness))
+        Ok(Self { thickness, faces, ..Self::new(areas, centers, edges)? })
     }
 
     /// The connected pieces over the edges that `keep` takes, numbered in the order of their first nodes,
@@ -191,6 +201,11 @@ impl Graph {
         }
         Ok((distances, nearest))
     }
+}
+
+/// The values of these nodes; nothing where there are none.
+fn of_nodes<T: Copy>(values: &[T], nodes: &[u32]) -> Result<Vec<T>> {
+    Ok(memory::sifted(nodes.iter().filter_map(|&i| values.get(i as usize).copied()))?)
 }
 
 #[cfg(test)]
