@@ -21,7 +21,7 @@ from pathlib import Path
 
 from growth_shapes import SHAPES
 from reliability_page import Records, write_section
-from tool_calls import CALLS
+from tool_calls import CALLS, PARTS_OF_CALLS
 
 HERE = Path(__file__).resolve().parent
 RECORDS = HERE / "growth.json"
@@ -40,11 +40,11 @@ sys.path.insert(0, {here!r})
 import warnings; warnings.simplefilter("ignore")
 import ridgeform
 from growth_shapes import SHAPES
-from tool_calls import CALLS
+from tool_calls import CALLS, PARTS_OF_CALLS
 mesh = ridgeform.Mesh(*SHAPES[{shape!r}]({size}))
 begin = time.process_time()
 try:
-    CALLS[{call!r}](mesh, {{}}); outcome = "ok"
+    (CALLS | PARTS_OF_CALLS)[{call!r}](mesh, {{}}); outcome = "ok"
 except ridgeform.RidgeformError as error:
     outcome = str(error)[:80]
 print(json.dumps([time.process_time() - begin, outcome]))
@@ -102,7 +102,7 @@ def main() -> None:
     options = parser.parse_args()
     kept = Records(RECORDS)
     for shape in options.only or SHAPES:
-        for call in options.call or CALLS:
+        for call in options.call or CALLS | PARTS_OF_CALLS:
             record = kept.of.get(shape, {}).get(call)
             if record is None or options.again:
                 record = measured(shape, call, options.first)

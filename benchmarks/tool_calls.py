@@ -51,6 +51,25 @@ def _paint(mesh: ridgeform.Mesh) -> np.ndarray:
     return np.column_stack([stripes, x / size, y / size])
 
 
+def _sides(mesh: ridgeform.Mesh) -> np.ndarray:
+    """Every edge once."""
+    faces = mesh.faces
+    sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    return np.unique(np.sort(sides), axis=0)
+
+
+def _redrawn(mesh: ridgeform.Mesh) -> ridgeform.Redrawn:
+    """From colors along every edge."""
+    edges = _sides(mesh)
+    colors = np.linspace(0, 1, 6 * len(edges)).reshape(-1, 2, 3)
+    return ridgeform.redraw(mesh, edges, colors, colors)
+
+
+def _halfway(found: ridgeform.Segmentation | ridgeform.Parts) -> np.ndarray:
+    fewest, most = found.range
+    return found.labels_at((fewest + most) // 2)
+
+
 CALLS: dict[str, Call] = {
     "report": lambda mesh, options: mesh.report,
     "hessian": lambda mesh, options: ridgeform.hessian(mesh),
@@ -97,6 +116,21 @@ CALLS: dict[str, Call] = {
     ),
 }
 """Name in the tables → the call; `options` are keywords that all tools take, such as `progress`."""
+
+PARTS_OF_CALLS: dict[str, Call] = {
+    "voronoi_mass": lambda mesh, options: ridgeform.voronoi_mass(mesh),
+    "hessian_norm": lambda mesh, options: ridgeform.hessian_norm(mesh, _heights(mesh)),
+    "boundary_loops": lambda mesh, options: ridgeform.boundary_loops(mesh),
+    "orient": lambda mesh, options: ridgeform.orient(mesh.faces),
+    "weld": lambda mesh, options: ridgeform.weld(mesh.vertices, mesh.faces),
+    "coarsen": lambda mesh, options: ridgeform.coarsen(mesh, max(mesh.n_vertices // 4, 1)),
+    "smooth_curves": lambda mesh, options: ridgeform.smooth_curves(mesh, _sides(mesh)),
+    "redraw": lambda mesh, options: _redrawn(mesh),
+    "segment, labels_at": lambda mesh, options: _halfway(ridgeform.segment(mesh)),
+    "parts, labels_at": lambda mesh, options: _halfway(ridgeform.parts(mesh)),
+    "facet, at": lambda mesh, options: ridgeform.facet(mesh, facets=20).at(facets=10),
+}
+"""What the package has beside its tools, for the table of growth alone."""
 
 ESTIMATED: dict[str, tuple[str, int, str]] = {
     "hessian": ("hessian", 1, "auto"),
