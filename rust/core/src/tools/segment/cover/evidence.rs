@@ -95,7 +95,7 @@ impl Shape<'_> {
     }
 
     /// Whether the facet across leaves the edge in the tangent plane of a surface.
-    fn is_tangent(&self, link: &Link, surface: &Named) -> bool {
+    pub(super) fn is_tangent(&self, link: &Link, surface: &Named) -> bool {
         link.ends.iter().all(|&v| {
             self.links(link.facet).iter().any(|edge| {
                 let other = match edge.ends {

@@ -1,7 +1,7 @@
 //! Surfaces grown over the facets that lie on them.
 
 use super::super::constants::{LOOSE_SPHERE, MOST_BEND_ON_A_SURFACE, MOST_RISE, MOST_TILT, NEAR, SLACKS};
-use super::facets::{Marks, Shape};
+use super::facets::{Link, Marks, Shape};
 use crate::mesh::vector::{dot, Point};
 use crate::surfaces::{through, Surface as Named};
 use crate::{memory, Result};
@@ -39,6 +39,20 @@ impl Shape<'_> {
             let (off, normal) = surface.distance(self.positions[v as usize]);
             off.abs() <= most && side * dot(normal, self.normals[k]) >= MOST_TILT.cos()
         })
+    }
+
+    /// Whether facet `f`, beside a surface at `link`, is one of it but for vertices on ridges, near it still.
+    pub(super) fn is_cut_from(&self, f: u32, link: &Link, surface: &Named) -> bool {
+        let (side, most) = (self.side(link.facet, surface), MOST_RISE * self.sizes[f as usize]);
+        let is_on_ridge = |v: u32| self.links(f).iter().any(|l| l.bend >= self.bend && l.ends.contains(&v));
+        let is_near = |&v: &u32| {
+            let (off, normal) = surface.distance(self.positions[v as usize]);
+            let is_level = side * dot(normal, self.normals[f as usize]) >= MOST_TILT.cos();
+            is_level && (off.abs() <= self.rounding || off.abs() <= most && is_on_ridge(v))
+        };
+        let rise = surface.distance(self.centers[f as usize]).0.abs();
+        let back = Link { facet: f, ..*link };
+        rise <= most && self.vertices(f).iter().all(is_near) && !self.is_tangent(&back, surface)
     }
 
     /// The facets on a surface that are connected with `seed`, about `most` of them.

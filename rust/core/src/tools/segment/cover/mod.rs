@@ -19,7 +19,7 @@ use super::exact::Planes;
 use super::surface::{Surface, NONE};
 use crate::mesh::vector::{cross, norm};
 use crate::progress::Progress;
-use crate::surfaces::Kind;
+use crate::surfaces::{Kind, Surface as Named};
 use crate::{memory, Result};
 use facets::{Marks, Shape};
 use grow::Grown;
@@ -59,7 +59,9 @@ pub(super) fn covered(surface: &Surface<'_>, bend: f64, progress: &Progress) -> 
     }
     search.at_edges(&curved)?;
     search.by_normals(&curved)?;
-    let taken = without_strips(&shape, search.taken()?)?;
+    let (mut taken, surfaces) = search.taken()?;
+    without_strips(&shape, &mut taken, &surfaces)?;
+    with_cut_facets(&shape, &mut taken, &surfaces);
     let n_taken = curved.iter().filter(|&&f| taken[f as usize] != NONE).count();
     if (n_taken as f64) < LEAST_COVERED * curved.len() as f64 {
         return Ok(None);
@@ -189,11 +191,11 @@ impl Search<'_> {
 }
 
 /// Which surface each facet belongs to, or [`NONE`], and the surfaces.
-type Taken = (Vec<u32>, Vec<crate::surfaces::Surface>);
+type Taken = (Vec<u32>, Vec<Named>);
 
 /// The same without surfaces that meet another one too bluntly for an edge everywhere, yet are not tangent to
 /// it: a bevel swept along a curve has a cylinder for each of its chords, and is one face.
-fn without_strips(shape: &Shape<'_>, (mut taken, surfaces): Taken) -> Result<Vec<u32>> {
+fn without_strips(shape: &Shape<'_>, taken: &mut [u32], surfaces: &[Named]) -> Result<()> {
     // By pairs, whether their normals differ anywhere, and the most that facets bend: a miter begins bluntly.
     let mut borders: std::collections::BTreeMap<[u32; 2], (bool, f64)> = std::collections::BTreeMap::new();
     for f in 0..shape.len() as u32 {
@@ -215,12 +217,30 @@ fn without_strips(shape: &Shape<'_>, (mut taken, surfaces): Taken) -> Result<Vec
     for (pair, _) in borders.iter().filter(|(_, (is_blunt, most))| *is_blunt && *most < shape.bend) {
         pair.iter().for_each(|&k| is_strip[k as usize] = true);
     }
-    for taken in &mut taken {
+    for taken in taken {
         if *taken != NONE && is_strip[*taken as usize] {
             *taken = NONE;
         }
     }
-    Ok(taken)
+    Ok(())
+}
+
+/// Gives surfaces the facets beside them that would lie on them but for vertices on ridges: where modeled
+/// shapes are cut, these lie on the facets of both, not on the surfaces.
+fn with_cut_facets(shape: &Shape<'_>, taken: &mut [u32], surfaces: &[Named]) {
+    for f in 0..shape.len() as u32 {
+        if taken[f as usize] != NONE {
+            continue;
+        }
+        let beside = shape.links(f).iter().filter(|link| link.bend < shape.bend);
+        let known =
+            beside.filter_map(|link| Some((link, *surfaces.get(*taken.get(link.facet as usize)? as usize)?)));
+        let cut = known
+            .filter(|(link, surface)| shape.is_cut_from(f, link, surface))
+            .map(|(link, _)| taken[link.facet as usize])
+            .next();
+        taken[f as usize] = cut.unwrap_or(NONE);
+    }
 }
 
 /// The largest of the connected pieces of some facets.
