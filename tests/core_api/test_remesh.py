@@ -81,6 +81,7 @@ def test_progress_stops_and_cancels(cancelled):
         ({"edge_length": float("nan")}, "edge_length"),
         ({"edge_length": 1e-9}, "faces"),
         ({"iterations": -1}, "iterations"),
+        ({"iterations": 2**31}, "iterations"),
         ({"feature_angle": 200.0}, "feature_angle"),
         ({"fixed": [99999]}, "fixed"),
     ],

@@ -47,7 +47,7 @@ impl Remeshed {
 /// ----------
 /// mesh : Mesh with positions
 /// edge_length : float > 0, the target; None is the mean of the mesh's edges
-/// iterations : number of rounds, ≥ 0
+/// iterations : number of rounds, 0 to 10,000
 /// fixed : vertices that stay, bit by bit: (n,) booleans or (j,) indices; border and feature edges between
 ///     two of them and faces with three stay too
 /// feature_angle : degrees, 0 to 180; edges whose faces turn by more are kept as lines; None keeps none

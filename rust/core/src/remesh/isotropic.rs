@@ -17,12 +17,15 @@ use crate::remesh::split::split_long_edges;
 use crate::remesh::EditableMesh;
 use crate::{Progress, Result};
 
+/// More rounds than these are a slip of the pen: a mesh has settled after some ten.
+const MOST_ITERATIONS: usize = 10_000;
+
 /// How a mesh is remeshed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RemeshOptions {
     /// The target edge length, > 0; without it, the mean of the mesh's.
     pub edge_length: Option<f64>,
-    /// Rounds of all passes.
+    /// Rounds of all passes, at most 10,000.
     pub iterations: usize,
     /// Vertices that stay, bit by bit, and with them the border and feature edges between two of them and the
     /// faces with three.
@@ -97,6 +100,10 @@ fn in_its_unit(
     if n_given != positions.len() {
         let problem = format!("expected one entry for each of {} vertices, got {n_given}", positions.len());
         return Err(Error::argument("fixed", problem));
+    }
+    if options.iterations > MOST_ITERATIONS {
+        let problem = format!("got {}; pass at most {MOST_ITERATIONS}", options.iterations);
+        return Err(Error::argument("iterations", problem));
     }
     mesh.demand(Tool::Remesh).admit(None)?;
     let fixed = match &options.fixed {

@@ -2,12 +2,12 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::constants::FLAT;
+use super::constants::{FARTHEST_CORNER, FLAT};
 use super::faces::{Faces, Scan};
 use super::shape::{self, Shape};
 use super::triangulation::{forced, triangles};
 use crate::memory;
-use crate::mesh::vector::Point;
+use crate::mesh::vector::{distance, Point};
 use crate::remesh::crossings::crossings;
 use crate::Result;
 
@@ -30,8 +30,10 @@ impl Inspection {
         let mut found = Self::default();
         for (k, facet) in (0..).zip(&shape.facets) {
             let is_upright = facet.is_held || facet.moments.faces(facet.plane.normal);
+            let is_near = |c: u32| distance(shape.point(c), shape.home(c)) <= FARTHEST_CORNER;
+            let is_near = facet.is_held || facet.corners().all(is_near);
             let simple = triangles(shape, facet)?;
-            if !is_upright || simple.is_none() {
+            if !is_upright || !is_near || simple.is_none() {
                 memory::push(&mut found.crossed, k)?;
             }
             let own = match simple {

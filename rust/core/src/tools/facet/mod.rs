@@ -58,6 +58,7 @@ use crate::mesh::vector::{add, scale};
 use crate::mesh::{Mesh, Working};
 use crate::progress::Progress;
 use crate::solve::Status;
+use crate::tools::answer::{self, Surroundings};
 use crate::tools::options::ENOUGH;
 use crate::Result;
 use job::Job;
@@ -131,7 +132,14 @@ fn run(
                 (found, FacetMerges { merges, coarse: None })
             }
         };
-        job.given(mesh, found, merges, progress)
+        let found = job.given(mesh, found, merges, progress)?;
+        let (positions, corners) = (mesh.positions().unwrap_or_default(), mesh.connectivity().faces());
+        let around = Surroundings::of(corners.iter().flatten().map(|&v| &positions[v as usize]));
+        if found.faces.iter().flatten().all(|&v| around.hold([&found.vertices[v as usize]])) {
+            Ok(found)
+        } else {
+            Err(answer::refused())
+        }
     })
 }
 
