@@ -6,7 +6,10 @@ import numpy as np
 from hypothesis import strategies as st
 from known_shapes import shapes
 
-BASES = ["grid", "sphere", "torus", "cube", "moebius", "soup", "fan"]
+LARGE = ["grid", "sphere", "torus", "cube", "moebius", "soup", "fan"]
+TINY = ["one face", "book", "band", "triples", "few vertices", "few faces"]
+BASES = TINY * 4 + LARGE
+"""Most are tiny: faults of connections and of numbers show on few faces."""
 FAULTS = [
     "none",
     "holes",
@@ -84,7 +87,37 @@ def _base(base: str, k: int, rng: np.random.Generator) -> tuple[np.ndarray, np.n
         "soup": lambda: _soup(4 * k, 6 * k, rng),
         "fan": lambda: _fan(12 * k**2),
     }
+    if base in TINY:
+        faces = _tiny_faces(base, k, rng)
+        return _places(int(faces.max()) + 1, rng), faces
     return makers[base]()
+
+
+def _tiny_faces(base: str, k: int, rng: np.random.Generator) -> np.ndarray:
+    """Up to some twenty faces."""
+    i = np.arange(2 * k)
+    if base == "one face":
+        return np.array([[0, 1, 2], [1, 2, 0], [0, 2, 1]])[rng.integers(0, 3, k)]
+    if base == "book":
+        return np.c_[0 * i, 0 * i + 1, 2 + i]
+    if base == "band":
+        # With an odd number of faces one with a twist.
+        n = 2 * k + 2 + rng.integers(0, 2)
+        i = np.arange(n)
+        return np.c_[i % n, (i + 1 + i % 2) % n, (i + 2 - i % 2) % n]
+    n = 3 + k % 4
+    if base == "triples":
+        triples = np.array([[a, b, c] for a in range(n) for b in range(a) for c in range(b)])
+        return triples[np.r_[True, rng.random(len(triples) - 1) < 0.5]]
+    return rng.integers(0, n, (k if base == "few faces" else 3 * k, 3))
+
+
+def _places(n: int, rng: np.random.Generator) -> np.ndarray:
+    """Anywhere, on a lattice of few places, in a plane, or in line; or nearly so."""
+    kind = rng.integers(0, 4)
+    free = rng.normal(size=(n, 3))
+    on = [free, rng.integers(0, 3, (n, 3)) / 3.0, free * [1, 1, 0], np.arange(n)[:, None] / 3.0 * np.ones(3)]
+    return on[kind] + rng.choice([0.0, 0.0, 1e-16, 1e-12, 1e-6]) * rng.normal(size=(n, 3))
 
 
 def _faulty(
