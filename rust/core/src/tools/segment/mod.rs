@@ -35,6 +35,7 @@ mod slopes;
 mod split;
 mod straighten;
 mod surface;
+mod tangent;
 mod threshold;
 mod walk;
 mod watershed;

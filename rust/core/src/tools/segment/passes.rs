@@ -14,6 +14,7 @@ use super::relabel::Relabel;
 use super::slopes::Slopes;
 use super::straighten::Straighten;
 use super::surface::{pieces, Surface};
+use super::tangent;
 use super::threshold::cut_and_merge;
 use super::watershed::watershed;
 use crate::linear::Columns;
@@ -247,9 +248,17 @@ impl<'a> Passes<'a> {
             return Ok(());
         }
         let mut merged = memory::twin(labels)?;
-        let merges = merging.all(&mut merged)?;
+        let merges = self.all_merges(merging, &mut merged)?;
         rename(labels, &merges[..(count - n).min(merges.len())]);
         Ok(())
+    }
+
+    /// Merges until nothing that may merge touches. Bends say nothing of faces that are tangent.
+    fn all_merges(&self, merging: &Merging<'_>, labels: &mut [u32]) -> Result<Vec<Merge>> {
+        match self.planes {
+            Some(Planes { groups: Some(_), .. }) => tangent::merged(self.surface, labels),
+            _ => merging.all(labels),
+        }
     }
 
     /// The finest segments are the pieces of `leaves` inside the segments `labels`; they merge to those, and
@@ -269,7 +278,7 @@ impl<'a> Passes<'a> {
         let mut merges = within_order(&finest, n_leaves, &merges)?;
         let mut current = memory::twin(&finest)?;
         rename(&mut current, &merges);
-        let outer = merging.all(&mut current)?;
+        let outer = self.all_merges(merging, &mut current)?;
         memory::extend(&mut merges, outer.len())?;
         merges.extend(outer);
         let merges = merges.iter().map(|m| ([m.kept, m.gone], m.strength));
