@@ -52,3 +52,11 @@ def test_what_comes_out_is_sound_and_what_is_to_stay_does(make, seed):
         corners = mesh.vertices[mesh.faces]
         areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
         assert areas.max(initial=0) < 1e-12
+
+
+@pytest.mark.parametrize("faces", [[[0, 1, 2]], [[0, 1, 2], [0, 2, 1]], [[0, 1, 2], [0, 1, 2], [1, 1, 2]]])
+@pytest.mark.parametrize("tool", [ridgeform.stylize, ridgeform.segment, ridgeform.restore, ridgeform.facet])
+def test_one_triangle_and_its_copies_have_a_size(tool, faces):
+    vertices = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)], float)
+    found = tool(ridgeform.Mesh(vertices, np.array(faces)))
+    assert found.status not in {"stopped", "diverged"}

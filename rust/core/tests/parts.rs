@@ -63,3 +63,21 @@ fn no_part_of_a_coarse_mesh_is_a_crumb_of_few_faces() {
         assert!(n_faces >= 6, "part {part} of {} has {n_faces} faces", found.n_parts);
     }
 }
+
+#[test]
+fn what_is_round_falls_into_pieces_of_about_one_size() {
+    let ball = shapes::icosphere(4).rotated([0.3, -1.0, 0.7], 0.8);
+    let egg = ball.clone().map(|[x, y, z]| [x, y, 1.4 * z + 0.3 * z * z]);
+    for shape in [ball, egg] {
+        let mesh = shape.mesh().unwrap();
+        for count in [2, 4, 8] {
+            let options = PartsOptions { n_parts: Some(count), ..PartsOptions::default() };
+            let found = parts(&mesh, &options, &Progress::new()).unwrap();
+            for part in 0..count as i32 {
+                let share = found.labels.iter().filter(|label| **label == part).count() as f64
+                    / found.labels.len() as f64;
+                assert!(share * count as f64 > 0.25, "part {part} of {count} has {share}");
+            }
+        }
+    }
+}

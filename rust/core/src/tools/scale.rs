@@ -6,6 +6,9 @@ use crate::mesh::{rows_of_lengths, triangle, Connectivity};
 /// 0.25 + 2/12 for a side of 1.
 const SIDE_OF_EXTENT: f64 = 1.549_193_338_482_966_8;
 
+/// Barycenters whose squared distances are this part of those within faces are in one place, to rounding.
+const ONE_PLACE: f64 = 1e-9;
+
 /// The unit of length: energies grow with length, fidelity terms with its fourth power.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Scale {
@@ -37,9 +40,10 @@ impl Scale {
 }
 
 /// Root mean square distance of the face barycenters, weighted by area, from their center (a size that
-/// rotations do not change), and the area.
+/// rotations do not change), and the area. Where these are in one place, as of one triangle and its copies,
+/// that of all points of the faces.
 pub(super) fn extent(connectivity: &Connectivity, points: &[[f64; 3]]) -> (f64, f64) {
-    let (mut total, mut first, mut second) = (0.0, [0.0; 3], 0.0);
+    let (mut total, mut first, mut second, mut inside) = (0.0, [0.0; 3], 0.0, 0.0);
     for (face, l) in connectivity.faces().iter().zip(rows_of_lengths(connectivity.faces(), points)) {
         let area = triangle::area(l);
         let center: [f64; 3] =
@@ -49,12 +53,15 @@ pub(super) fn extent(connectivity: &Connectivity, points: &[[f64; 3]]) -> (f64, 
             *f += area * c;
         }
         second += area * center.iter().map(|c| c * c).sum::<f64>();
+        inside += area * l.iter().map(|l| l * l).sum::<f64>() / 36.0;
     }
     if total <= 0.0 {
         return (0.0, 0.0);
     }
     let mean = first.map(|f| f / total);
-    ((second / total - mean.iter().map(|m| m * m).sum::<f64>()).max(0.0).sqrt(), total)
+    let apart = (second / total - mean.iter().map(|m| m * m).sum::<f64>()).max(0.0);
+    let is_one_place = apart * total < ONE_PLACE * inside;
+    (if is_one_place { inside / total } else { apart }.sqrt(), total)
 }
 
 /// The longest side of the bounding box of the vertices that faces use.

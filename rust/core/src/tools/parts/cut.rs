@@ -74,6 +74,12 @@ impl Side {
         self.thinner(other) * border / self.least(other).sqrt()
     }
 
+    /// The same for borders that follow nothing: the smaller a part, the more (Cheeger 1970), so that what is
+    /// round falls into pieces of about one size.
+    pub(super) fn price_by_size(self, other: Self, border: f64) -> f64 {
+        self.thinner(other) * border / self.least(other)
+    }
+
     /// What a border costs less since the smaller side is thinner.
     fn thinner(self, other: Self) -> f64 {
         let mean = |side: Self| side.thickness / side.area.max(f64::MIN_POSITIVE);

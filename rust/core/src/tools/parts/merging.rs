@@ -10,10 +10,13 @@
 //!
 //! Once the count is found, there is no evidence for more: weighed by pairs, specks and strips would come
 //! first beyond it, since they join the fewest. There the shape of a part is all that counts, whatever its
-//! size: the merge whose border is longest for the root of the smaller area comes first.
+//! size: the merge whose border is longest for the root of the smaller area comes first. Where a border
+//! follows nothing, its length all around the smaller part counts against the area of that: round shapes fall
+//! into pieces of about one size.
 
 use std::collections::BTreeMap;
 
+use super::constants::UNSEEN_BORDER;
 use super::cut::Side;
 use super::graph::Graph;
 use crate::mesh::partition::Partition;
@@ -98,7 +101,7 @@ impl Merging {
     pub(super) fn merges(mut self) -> Vec<Merge> {
         let mut merges = Vec::with_capacity(self.sides.len());
         loop {
-            let dearest = self.dearest();
+            let (dearest, around) = (self.dearest(), self.around());
             let allowed = self.borders.iter().filter(|(pair, border)| {
                 self.may_merge(**pair) && self.is_dearest(**pair, border.cost, &dearest)
             });
@@ -109,7 +112,14 @@ impl Merging {
                 let plain_price = a.plain_price(b, border.length);
                 let merge = Merge { pair, price, plain_price, areas: [a.area, b.area] };
                 let loss = match self.beyond {
-                    Beyond::Shape if !apart => -a.price_by_shape(b, border.cost),
+                    Beyond::Shape if !apart => {
+                        let small = pair[usize::from(b.area < a.area)];
+                        if border.cost > UNSEEN_BORDER * border.length {
+                            -a.price_by_size(b, around[small as usize])
+                        } else {
+                            -a.price_by_shape(b, border.cost)
+                        }
+                    }
                     _ => loss(a, b, price / self.limit),
                 };
                 (merge, apart, loss)
@@ -119,6 +129,15 @@ impl Merging {
             merges.push(merge);
             self.merge(merge.pair);
         }
+    }
+
+    /// What all borders of each part cost.
+    fn around(&self) -> Vec<f64> {
+        let mut around = vec![0.0; self.sides.len()];
+        for (pair, border) in &self.borders {
+            pair.iter().for_each(|&part| around[part as usize] += border.cost);
+        }
+        around
     }
 
     /// For each part the price of the dearest of its borders with larger parts that it may merge with: once
