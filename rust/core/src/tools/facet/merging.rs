@@ -131,7 +131,8 @@ pub(super) fn merges(
         }
         // Only now, as it takes a walk along the border: what was offered is the least that it costs.
         let straight = of_planes + merging.regions.straightened(&set, &on_mesh)?;
-        if straight > cost * (1.0 + f64::EPSILON) {
+        // Rounding makes costs of next to nothing less than nothing.
+        if straight > cost + f64::EPSILON * cost.abs() {
             merging.push(straight, set, of_planes)?;
             continue;
         }
