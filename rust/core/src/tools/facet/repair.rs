@@ -83,8 +83,8 @@ fn around(shape: &Shape, ends: [u32; 2]) -> Result<Vec<u32>> {
     Ok(memory::sifted(shape.facets.iter().filter(at).flat_map(Facet::corners))?)
 }
 
-/// Makes one corner of the ends of a ridge, if every facet keeps three corners,
-/// but for one that may vanish: returned.
+/// Makes one corner of the ends of a ridge, if every facet keeps three corners, but for one that may vanish
+/// where another takes its faces: returned.
 fn contract(shape: &mut Shape, [a, b]: [u32; 2]) -> Result<Option<Option<u32>>> {
     let mut vanishing = None;
     for (k, facet) in (0..).zip(&shape.facets) {
@@ -106,6 +106,10 @@ fn contract(shape: &mut Shape, [a, b]: [u32; 2]) -> Result<Option<Option<u32>>> 
         }
     }
     if let Some(k) = vanishing {
+        let at_ends = |facet: &Facet| !facet.is_held && facet.corners().any(|c| c == a || c == b);
+        if !(0..).zip(&shape.facets).any(|(j, facet)| j != k && at_ends(facet)) {
+            return Ok(None);
+        }
         // The facets behind its other two sides meet along one ridge then: not if they meet already.
         let side_of =
             |[from, to]: [u32; 2]| shape.facets.iter().find(|f| f.sides().any(|side| side == [to, from]));
@@ -158,7 +162,9 @@ fn remove(shape: &mut Shape, faces: &mut Faces<'_>, k: u32) -> Result<()> {
     for (label, &center) in faces.labels.iter_mut().zip(&faces.scan.centers).filter(|(label, _)| **label == k)
     {
         let off = |j: u32| shape.facets[j as usize].plane.height(center).abs();
-        *label = near.iter().copied().min_by(|&i, &j| off(i).total_cmp(&off(j))).unwrap_or(0);
+        if let Some(nearest) = near.iter().copied().min_by(|&i, &j| off(i).total_cmp(&off(j))) {
+            *label = nearest;
+        }
     }
     let last = shape.facets.len() as u32 - 1;
     shape.facets.swap_remove(k as usize);
