@@ -173,8 +173,8 @@ fn run(
 /// facets : number of facets wanted, or None: as `error` has it. It is met unless the shape has no fewer, or
 ///     so few would pass through each other: there are more then
 /// error : root mean square distance from the mesh that is allowed, in its unit, or None: as many facets as
-///     the faces give evidence for (Bayesian information criterion), at most as many as 0.5 % of the diagonal
-///     of the bounding box needs
+///     the faces give evidence for (Bayesian information criterion), at most as many as it takes for every
+///     facet to be within 0.5 % of the diagonal of the bounding box
 /// edge_weights : (m,3) array ≥ 0, what borders of facets cost along edges, column i opposite corner i: 1 is
 ///     neutral, smaller attracts them; the smaller entry of both faces counts
 /// faces : faces to make facets of, (m,) booleans or (j,) indices; None for all. The others,

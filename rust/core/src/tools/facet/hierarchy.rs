@@ -3,6 +3,7 @@
 use std::collections::{BTreeSet, HashMap};
 
 use super::merging::Merges;
+use super::moments::Moments;
 use super::regions::Regions;
 use crate::mesh::partition::Partition;
 use crate::{memory, Result};
@@ -75,6 +76,34 @@ impl Hierarchy {
             }
             cut.extend(within);
         }
+    }
+
+    /// Puts in the place of every node that is `beyond`, by the moments of its faces, the largest nodes below
+    /// it that are not.
+    pub(super) fn split_beyond(
+        &self,
+        cut: &mut Cut,
+        of_faces: &[Moments],
+        is_beyond: impl Fn(&Moments) -> bool,
+    ) -> Result<()> {
+        let mut of_made: Vec<Moments> = memory::room(self.made.len())?;
+        let of = |node: u32, of_made: &[Moments]| match (node as usize).checked_sub(self.n) {
+            Some(i) => of_made[i],
+            None => of_faces[node as usize],
+        };
+        for parts in &self.made {
+            let sum = parts.iter().fold(Moments::default(), |sum, &part| sum.plus(&of(part, &of_made)));
+            of_made.push(sum);
+        }
+        let mut stack: Vec<u32> = memory::gathered(cut.iter().copied())?;
+        while let Some(node) = stack.pop() {
+            if !self.is_face(node) && is_beyond(&of(node, &of_made)) {
+                self.split(cut, node);
+                memory::extend(&mut stack, self.parts(node).len())?;
+                stack.extend(self.parts(node));
+            }
+        }
+        Ok(())
     }
 
     /// The node of the cut that holds each face.

@@ -21,7 +21,8 @@ pub struct FacetOptions {
     pub facets: Option<usize>,
     /// The root mean square distance of the faces from the facets that is allowed, in the unit of the mesh,
     /// where `facets` is `None`. Where both are: as many as the faces give evidence for (Bayesian information
-    /// criterion, Schwarz 1978), at most as many as half a percent of the diagonal of the bounding box needs.
+    /// criterion, Schwarz 1978), at most as many as it takes for every facet to be within half a percent of
+    /// the diagonal of the bounding box.
     pub error: Option<f64>,
     /// What borders of facets cost along each edge, one row a face, column `i` opposite corner `i`; smaller
     /// attracts them. The entry of either face counts.

@@ -62,7 +62,8 @@ struct Trial {
 pub(super) struct Goal {
     /// Until no more are left.
     pub count: usize,
-    /// As long as faces are no farther from their facets, in the root mean square.
+    /// As long as faces are no farther from their facets, in the root mean square, all of them and those of
+    /// every facet that is joined.
     pub error: f64,
 }
 
@@ -112,6 +113,10 @@ pub(super) fn reduce(
             if reduction.tried.len() < KEPT {
                 reduction.tried.insert(pair, trial);
             }
+            continue;
+        }
+        let is_beyond = |one: &Facet| one.squared_distance() > goal.error.powi(2) * one.moments.area;
+        if trial.shape.facets.first().is_some_and(is_beyond) {
             continue;
         }
         squares += trial.farther;

@@ -129,13 +129,23 @@ impl Job<'_> {
             Wanted::Found => self.evident_planes(merges, scan)?,
             _ => None,
         };
-        let aim = evident.unwrap_or_else(|| merges.count(wanted.and(n_held), n, self.positions.len(), area));
+        let mut aim =
+            evident.unwrap_or_else(|| merges.count(wanted.and(n_held), n, self.positions.len(), area));
         let mut count = aim;
+        // Where more are farther off, that is noise, and more facets are less likely.
+        let is_near = merges.distance(n, count, area) <= constants::ERROR;
+        let is_found = matches!(wanted, Wanted::Found) && evident.is_none();
+        let limit = (is_found && is_near).then_some(constants::ERROR);
         // With fewer facets than are wanted, and with as many or more.
         let mut best: [Option<(Rank, Divided<'_>)>; 2] = [None, None];
         let stage = Stage::new(progress, "finding facets", shares::FINDING[0], USUAL[0]);
         for _ in 0..COUNTS {
-            let mut divided = self.sound(merges, count, false, scan, &stage)?;
+            let start = self.start(merges, count, limit, scan)?;
+            if limit.is_some() && count == aim {
+                // However many there are to begin with, more are joined again.
+                aim = start.1.len();
+            }
+            let mut divided = self.sound(merges, count, start, false, scan, &stage)?;
             let Settled { shape, faces } = &mut divided.settled;
             let n_made = shape.facets.len();
             let off = aim as f64 - n_made as f64;
@@ -178,7 +188,8 @@ impl Job<'_> {
                 // Smaller regions everywhere leave more ways to join them.
                 if is_asked && rank.1 > 0.0 && divided.is_local && !progress.is_finishing() {
                     let stage = Stage::new(progress, "finding facets", shares::FINDING[1], USUAL[0]);
-                    let mut other = self.sound(merges, aim, true, scan, &stage)?;
+                    let start = self.start(merges, aim, None, scan)?;
+                    let mut other = self.sound(merges, aim, start, true, scan, &stage)?;
                     let miss = other.join(goal, shares::JOINING[1], progress)?;
                     if (other.n_unsound, miss) < *rank {
                         (*rank, *divided) = ((other.n_unsound, miss), other);
@@ -220,18 +231,18 @@ impl Job<'_> {
         Ok(Found { shape: settled.shape, inspection, labels, distances, n_facets, n_crossings })
     }
 
-    /// The shape of `count` regions; where that is not sound of smaller ones, and of smaller ones everywhere
-    /// if that is not enough, or is wanted at once.
+    /// The shape of the regions of a cut, `count` of them or a few more; where that is not sound of smaller
+    /// ones, and of smaller ones everywhere if that is not enough, or is wanted at once.
     fn sound<'s>(
         &self,
         merges: &Merges,
         mut count: usize,
+        (tree, cut): (Hierarchy, Cut),
         everywhere: bool,
         scan: &'s Scan,
         stage: &Stage<'_>,
     ) -> Result<Divided<'s>> {
         let (n, [_, most]) = (self.parts.len(), merges.range(self.parts.len()));
-        let (tree, cut) = Hierarchy::new(merges, n, n - count)?;
         let mut best = self.divided((&tree, cut), count == most, scan, stage)?;
         let is_done = |best: &Divided<'_>| best.n_unsound == 0 || stage.is_finishing();
         let (first, mut above) = (count, count);
@@ -312,7 +323,7 @@ impl Job<'_> {
     }
 
     /// The regions that `labels` of the parts make.
-    fn regions(&self, labels: &[u32], n: usize) -> Result<Regions<'_>> {
+    pub(super) fn regions(&self, labels: &[u32], n: usize) -> Result<Regions<'_>> {
         let of_all = self.labels(labels.iter().copied())?;
         Regions::new(self.working.mesh().connectivity(), &self.positions, of_all, n)
     }
