@@ -69,3 +69,22 @@ def test_a_round_shape_in_many_flat_sides_is_no_polyhedron(name):
     }[name]
     found = ridgeform.facet(ridgeform.Mesh(vertices, faces))
     assert found.n_facets <= 60
+
+
+def test_a_tube_that_passes_through_itself_has_the_facets_that_are_asked_for():
+    t, s = 2.0 * np.pi * np.arange(96) / 96, 2.0 * np.pi * np.arange(16) / 16
+    center = np.stack([np.sin(t), np.sin(2.0 * t) / 1.5, 0.05 * np.cos(t)], axis=1)
+    along = np.roll(center, -1, axis=0) - np.roll(center, 1, axis=0)
+    side = np.cross(along, [0.0, 0.0, 1.0])
+    side /= np.linalg.norm(side, axis=1, keepdims=True)
+    up = np.cross(side, along / np.linalg.norm(along, axis=1, keepdims=True))
+    around = np.cos(s)[:, None] * side[:, None] + np.sin(s)[:, None] * up[:, None]
+    here = np.arange(96 * 16).reshape(96, 16)
+    right, above = np.roll(here, -1, axis=0), np.roll(here, -1, axis=1)
+    beyond = np.roll(right, -1, axis=1)
+    faces = np.stack([here, right, beyond, here, beyond, above], axis=-1).reshape(-1, 3)
+    mesh = ridgeform.Mesh((center[:, None] + 0.15 * around).reshape(-1, 3), faces)
+    # Three pairs beside where the faces pass were kept apart by facets of single faces.
+    found = ridgeform.facet(mesh, facets=40)
+    assert (found.n_facets, found.n_crossings) == (40, 0)
+    assert found.rms <= 0.02

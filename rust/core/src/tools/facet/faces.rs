@@ -6,7 +6,7 @@ use super::borders::Borders;
 use super::constants::LITTLE;
 use super::crossings::Standing;
 use super::moments::Moments;
-use super::shape::Shape;
+use super::shape::{Facet, Shape};
 use crate::memory;
 use crate::mesh::vector::{area_vector, between, centroid, distance, norm, Point};
 use crate::remesh::closest::ClosestPoint;
@@ -82,9 +82,16 @@ pub(super) struct Faces<'s> {
 }
 
 impl Faces<'_> {
-    /// Facets with faces that pass through others of their piece on the mesh.
-    pub(super) fn standing(&self) -> Result<HashSet<u32>> {
-        self.scan.standing.labels(&self.labels)
+    /// Facets with faces that pass through others of their piece on the mesh, and those that share a corner
+    /// with one of them: where larger facets pass is beside where the faces did.
+    pub(super) fn standing(&self, shape: &Shape) -> Result<HashSet<u32>> {
+        let passing = self.scan.standing.labels(&self.labels)?;
+        let of_passing = |(k, _): &(u32, &Facet)| passing.contains(k);
+        let facets = || (0..).zip(&shape.facets);
+        let corners: HashSet<u32> =
+            memory::distinct(facets().filter(of_passing).flat_map(|(_, facet)| facet.corners()))?;
+        let is_beside = |(_, facet): &(u32, &Facet)| facet.corners().any(|c| corners.contains(&c));
+        Ok(memory::distinct(facets().filter(is_beside).map(|(k, _)| k))?)
     }
 
     /// Gives every facet the integrals over its faces; over its polygon where they are too few.

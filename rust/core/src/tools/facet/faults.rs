@@ -52,7 +52,7 @@ impl Inspection {
                 [p.min(q), p.max(q)]
             };
             let all = crossings(&found.triangles, &found.places(shape)?)?;
-            let standing = faces.standing()?;
+            let standing = faces.standing(shape)?;
             let of = |k: u32| shape.facets[k as usize].part;
             let is_old = |[p, q]: [u32; 2]| {
                 faces.scan.standing.has(of(p), of(q)) || (standing.contains(&p) && standing.contains(&q))

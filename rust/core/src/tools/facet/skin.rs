@@ -29,7 +29,7 @@ pub(super) type Fresh = Vec<(u32, Patch)>;
 pub(super) struct Skin<'s> {
     scan: &'s Scan,
     patches: Vec<Patch>,
-    /// Facets with faces that pass through others on the mesh.
+    /// Facets with faces that pass through others on the mesh, and those beside them.
     is_passing: Vec<bool>,
     parts: Vec<u32>,
 }
@@ -74,7 +74,7 @@ impl Patch {
 
 impl<'s> Skin<'s> {
     pub(super) fn new(shape: &Shape, faces: &Faces<'s>) -> Result<Self> {
-        let standing = faces.standing()?;
+        let standing = faces.standing(shape)?;
         let mut skin = Self {
             scan: faces.scan,
             patches: memory::repeated(Patch::default(), shape.facets.len())?,
