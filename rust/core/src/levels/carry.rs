@@ -1,12 +1,15 @@
 //! Where each vertex of a mesh lies on a coarser one.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 
 use crate::buckets::Buckets;
 use crate::error::MeshError;
 use crate::mesh::vector::{add, area_vector, dot, scale, sub, Point};
 use crate::mesh::Mesh;
-use crate::remesh::closest::closest_on_triangle;
+use crate::remesh::closest::{closest_on_triangle, ClosestPoint};
+use crate::remesh::editable::HUB;
 use crate::{memory, Result};
 
 /// For every vertex of a fine mesh that is not held a point of a coarser one: three of its vertices with
@@ -39,16 +42,30 @@ impl Carry {
             }
         })?;
         let corners = |f: u32| faces[f as usize].map(|v| points[v as usize]);
+        // Where thousands of faces meet, every vertex around would look at all of them.
+        let mut trees: BTreeMap<u32, ClosestPoint> = BTreeMap::new();
+        for v in (0..points.len()).filter(|&v| around.of(v).len() > HUB) {
+            let own = memory::gathered(around.of(v).iter().map(|&f| corners(f)))?;
+            trees.insert(v as u32, ClosestPoint::new(own)?);
+        }
         let place = |p: Point, parent: u32| {
             let mut best: Option<(f64, u32, Point)> = None;
             let (mut known, mut from): ([u32; 3], &[u32]) = ([u32::MAX; 3], &[parent]);
             loop {
                 let before = best.map_or(u32::MAX, |found| found.1);
-                for &f in from.iter().filter(|v| !known.contains(v)).flat_map(|&v| around.of(v as usize)) {
-                    let point = closest_on_triangle(p, corners(f));
+                let mut compare = |f: u32, point: Point| {
                     let distance = squared(p, point);
                     if best.is_none_or(|found| distance < found.0) {
                         best = Some((distance, f, point));
+                    }
+                };
+                for &v in from.iter().filter(|v| !known.contains(v)) {
+                    let own = around.of(v as usize);
+                    match trees.get(&v).map(|tree| tree.closest(p, None, |_| true)) {
+                        Some(near) => {
+                            near.iter().for_each(|near| compare(own[near.triangle as usize], near.point))
+                        }
+                        None => own.iter().for_each(|&f| compare(f, closest_on_triangle(p, corners(f)))),
                     }
                 }
                 let (_, f, point) = best?;

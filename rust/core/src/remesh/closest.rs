@@ -1,5 +1,6 @@
 //! The closest point of a surface, by a tree of boxes.
 
+use super::fans::{self, Fan, Rim};
 use crate::memory;
 use crate::mesh::vector::{add, area_vector, between, centroid, cross, dot, norm, scale, sub, Point};
 use crate::Result;
@@ -32,6 +33,10 @@ pub struct ClosestPoint {
     triangles: Vec<[Point; 3]>,
     nodes: Vec<Node>,
     order: Vec<u32>,
+    /// Where very many triangles meet, and what bounds each node by directions from there; nothing where they
+    /// do not.
+    fans: Vec<Fan>,
+    rims: Vec<Rim>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -50,16 +55,17 @@ impl ClosestPoint {
     /// # Errors
     /// [`crate::error::SolveError::Memory`].
     pub fn new(triangles: Vec<[Point; 3]>) -> Result<Self> {
-        let centers = memory::gathered(triangles.iter().map(|&t| centroid(t)))?;
+        let mut centers = memory::gathered(triangles.iter().map(|&t| centroid(t)))?;
         let order = memory::sifted(0..triangles.len() as u32)?;
-        let mut tree = Self { order, triangles, nodes: Vec::new() };
+        let mut tree = Self { order, triangles, nodes: Vec::new(), fans: Vec::new(), rims: Vec::new() };
         if !tree.triangles.is_empty() {
-            tree.build(0, tree.triangles.len(), &centers)?;
+            tree.build(0, tree.triangles.len(), &mut centers, fans::NONE)?;
         }
         Ok(tree)
     }
 
-    fn build(&mut self, start: usize, end: usize, centers: &[Point]) -> Result<()> {
+    /// The node of a range of triangles, and all below; they are of one fan, or of none.
+    fn build(&mut self, start: usize, end: usize, centers: &mut [Point], fan: u32) -> Result<()> {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for corner in self.order[start..end].iter().flat_map(|&t| self.triangles[t as usize]) {
             for k in 0..3 {
@@ -70,6 +76,7 @@ impl ClosestPoint {
         let node = self.nodes.len();
         let count = (end - start) as u32;
         memory::push(&mut self.nodes, Node { low, high, start: start as u32, count })?;
+        self.bound(node, fan)?;
         if end - start <= LEAF {
             return Ok(());
         }
@@ -82,7 +89,21 @@ impl ClosestPoint {
             self.nodes[node].count |= STACK;
             return Ok(());
         }
-        let extent = sub(high, low);
+        let mut extent = sub(high, low);
+        if fan == fans::NONE {
+            if let Some((found, n)) = fans::gather(&self.triangles, &mut self.order[start..end])? {
+                let fan = self.fans.len() as u32;
+                for &t in &self.order[start..start + n] {
+                    centers[t as usize] = found.direction(self.triangles[t as usize]);
+                }
+                memory::push(&mut self.fans, found)?;
+                return self.divide(node, [start, start + n, end], centers, [fan, fans::NONE]);
+            }
+        } else {
+            let all = || self.order[start..end].iter().map(|&t| centers[t as usize]);
+            let side = |k: usize, f: fn(f64, f64) -> f64, from: f64| all().map(|p| p[k]).fold(from, f);
+            extent = [0, 1, 2].map(|k| side(k, f64::max, -1.0) - side(k, f64::min, 1.0));
+        }
         let axis = if extent[0] >= extent[1] && extent[0] >= extent[2] {
             0
         } else {
@@ -92,10 +113,54 @@ impl ClosestPoint {
         self.order[start..end].select_nth_unstable_by(middle, |&a, &b| {
             centers[a as usize][axis].total_cmp(&centers[b as usize][axis]).then(a.cmp(&b))
         });
-        self.build(start, start + middle, centers)?;
+        self.divide(node, [start, start + middle, end], centers, [fan; 2])
+    }
+
+    /// The two nodes below another, the second of which may have no triangles: then both are one.
+    fn divide(
+        &mut self,
+        node: usize,
+        [start, middle, end]: [usize; 3],
+        centers: &mut [Point],
+        fans: [u32; 2],
+    ) -> Result<()> {
+        if middle == end {
+            self.nodes.truncate(node);
+            self.rims.truncate(node);
+            return self.build(start, end, centers, fans[0]);
+        }
+        self.build(start, middle, centers, fans[0])?;
         let second = self.nodes.len() as u32;
         (self.nodes[node].start, self.nodes[node].count) = (second, 0);
-        self.build(start + middle, end, centers)
+        self.build(middle, end, centers, fans[1])
+    }
+
+    /// Bounds the last node by directions.
+    fn bound(&mut self, node: usize, fan: u32) -> Result<()> {
+        if self.fans.is_empty() {
+            return Ok(());
+        }
+        let more = node + 1 - self.rims.len();
+        memory::extend(&mut self.rims, more)?;
+        self.rims.resize(node, Rim::NOWHERE);
+        let Node { start, count, .. } = self.nodes[node];
+        let of = self.order[start as usize..(start + count) as usize].iter();
+        let rim =
+            self.fans.get(fan as usize).map(|own| own.bounds(fan, of.map(|&t| self.triangles[t as usize])));
+        self.rims.push(rim.unwrap_or(Rim::NOWHERE));
+        Ok(())
+    }
+
+    /// What bounds a node by directions, if anything does.
+    fn fan(&self, node: usize) -> Option<(&Fan, &Rim)> {
+        let rim = self.rims.get(node)?;
+        Some((self.fans.get(rim.fan as usize)?, rim))
+    }
+
+    /// At most the squared distance of a point from the triangles of a node.
+    fn squared_distance(&self, node: usize, p: Point) -> f64 {
+        let of_box = self.nodes[node].squared_distance(p);
+        self.fan(node).map_or(of_box, |(fan, rim)| of_box.max(fan.squared_distance(rim, p)))
     }
 
     /// The point closest to `p` among the triangles that `accept` takes; `guess` is one that may be close. Of
@@ -110,7 +175,7 @@ impl ClosestPoint {
         let mut best = guess.filter(|&g| (g as usize) < self.triangles.len() && accept(g)).map(candidate);
         let mut stack = Vec::with_capacity(64);
         if !self.nodes.is_empty() {
-            stack.push((self.nodes[0].squared_distance(p), 0));
+            stack.push((self.squared_distance(0, p), 0));
         }
         while let Some((squared, n)) = stack.pop() {
             if best.is_some_and(|found| squared >= found.squared) {
@@ -130,8 +195,7 @@ impl ClosestPoint {
                     }
                 }
             } else {
-                let mut children =
-                    [n + 1, node.start as usize].map(|c| (self.nodes[c].squared_distance(p), c));
+                let mut children = [n + 1, node.start as usize].map(|c| (self.squared_distance(c, p), c));
                 if children[0].0 < children[1].0 {
                     children.swap(0, 1);
                 }
@@ -174,8 +238,12 @@ impl ClosestPoint {
         best
     }
 
-    /// Visits the triangles whose boxes, or those of the leaf that they are in, meet a box.
-    pub fn visit_box(&self, low: Point, high: Point, visit: &mut impl FnMut(u32)) {
+    /// Visits the triangles that may cross another: those whose boxes, or those of the leaf that they are in,
+    /// meet its box, but not those that only meet it in a common corner where very many do.
+    pub(super) fn visit_crossing(&self, triangle: [Point; 3], visit: &mut impl FnMut(u32)) {
+        let side =
+            |f: fn(f64, f64) -> f64| [0, 1, 2].map(|k| f(f(triangle[0][k], triangle[1][k]), triangle[2][k]));
+        let (low, high) = (side(f64::min), side(f64::max));
         let mut stack = Vec::with_capacity(64);
         if !self.nodes.is_empty() {
             stack.push(0);
@@ -183,6 +251,9 @@ impl ClosestPoint {
         while let Some(n) = stack.pop() {
             let node = &self.nodes[n];
             if (0..3).any(|k| node.low[k] > high[k] || node.high[k] < low[k]) {
+                continue;
+            }
+            if self.fan(n).is_some_and(|(fan, rim)| !fan.may_cross(rim, triangle)) {
                 continue;
             }
             if node.count == 0 {
@@ -295,7 +366,7 @@ mod tests {
             assert!((found.squared - least).abs() <= 1e-15);
             assert!(n_asked.get() < 150, "{}", n_asked.get());
             let mut n_met = 0;
-            tree.visit_box(a, a, &mut |t| n_met += usize::from(t >= 50));
+            tree.visit_crossing([a; 3], &mut |t| n_met += usize::from(t >= 50));
             assert_eq!(n_met, 4000);
         }
     }

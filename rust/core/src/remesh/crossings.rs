@@ -29,8 +29,7 @@ pub(crate) fn crossings(triangles: &[[u32; 3]], places: &[[Point; 3]]) -> Result
     let mut found = Vec::new();
     for (n, group) in alike.iter().enumerate() {
         let mut pushed = Ok(());
-        let [low, high] = box_of(&place(group));
-        tree.visit_box(low, high, &mut |m| {
+        tree.visit_crossing(place(group), &mut |m| {
             let of =
                 |group: &[([u32; 3], u32)]| (&triangles[group[0].1 as usize], &places[group[0].1 as usize]);
             let others = alike[m as usize];
@@ -112,5 +111,50 @@ mod tests {
         let places = triangles.map(|t| t.map(|v| points[v as usize]));
         let found = crossings(&triangles, &places).unwrap();
         assert_eq!(found, [[0, 1], [0, 4], [1, 2], [1, 3], [2, 4], [3, 4]]);
+    }
+
+    /// Triangles from the origin to every side, or all at one edge, and one that passes through some of them.
+    fn pierced(n: usize, at_edge: bool) -> (Vec<[u32; 3]>, Vec<[Point; 3]>) {
+        let mut points = vec![[0.0; 3], [0.0, 0.0, 1.0], [0.9, -0.1, -0.4], [0.9, 0.3, 0.9], [0.2, 0.2, 0.9]];
+        points.extend((0..n).map(|i| {
+            let angle = std::f64::consts::TAU * i as f64 / n as f64;
+            [angle.cos(), angle.sin(), 0.2 * (5.0 * angle).cos()]
+        }));
+        let rim = |i: usize| 5 + (i % n) as u32;
+        let mut triangles: Vec<[u32; 3]> =
+            (0..n).map(|i| [0, rim(i), if at_edge { 1 } else { rim(i + 1) }]).collect();
+        triangles.push([2, 3, 4]);
+        triangles.push([0, 3, 2]);
+        let places = triangles.iter().map(|t| t.map(|v| points[v as usize])).collect();
+        (triangles, places)
+    }
+
+    #[test]
+    fn where_thousands_of_triangles_meet_crossings_are_those_of_all_pairs() {
+        for at_edge in [false, true] {
+            let (triangles, places) = pierced(2000, at_edge);
+            let of = |i: usize| (&triangles[i], &places[i]);
+            let n = triangles.len();
+            let pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| [i, j]));
+            let expected: Vec<[u32; 2]> =
+                pairs.filter(|&[i, j]| cross(of(i), of(j))).map(|pair| pair.map(|i| i as u32)).collect();
+            assert!(expected.len() > 10, "{}", expected.len());
+            assert_eq!(crossings(&triangles, &places).unwrap(), expected);
+        }
+    }
+
+    #[test]
+    fn of_twice_as_many_triangles_that_meet_about_twice_as_many_pairs_are_looked_at() {
+        for at_edge in [false, true] {
+            let n_pairs = |n: usize| {
+                let (_, places) = pierced(n, at_edge);
+                let tree = ClosestPoint::new(places[..n].to_vec()).unwrap();
+                let mut n_pairs = 0;
+                places[..n].iter().for_each(|&t| tree.visit_crossing(t, &mut |_| n_pairs += 1));
+                n_pairs
+            };
+            let [few, many] = [2000, 4000].map(n_pairs);
+            assert!(4 * many <= 9 * few, "at an edge: {at_edge}; {few}, {many}");
+        }
     }
 }

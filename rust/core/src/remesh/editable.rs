@@ -14,7 +14,7 @@ pub(super) const GONE: [u32; 3] = [u32::MAX; 3];
 /// More faces than this make a vertex a hub ([`EditableMesh::is_hub`]). Around one of 16,000 faces, an edge
 /// that collapses into it takes a thousandth of the time that it took when the vertex moved, and meshes
 /// without such vertices keep their bits.
-const HUB: usize = 256;
+pub(crate) const HUB: usize = 256;
 
 /// Positions, faces, and for every vertex its number before ([`EditableMesh::into_parts`]).
 pub type Parts = (Vec<Point>, Vec<[u32; 3]>, Vec<u32>);

@@ -10,6 +10,7 @@ pub(crate) mod crossings;
 pub(crate) mod curves;
 mod edge;
 pub mod editable;
+mod fans;
 mod flips;
 pub mod guard;
 pub(crate) mod isotropic;

@@ -100,7 +100,7 @@ pub(super) fn reduce(
         shape,
         stage,
     };
-    let pairs = (0..n_left as u32).flat_map(|k| reduction.pairs(k)).collect();
+    let pairs = all_pairs(&reduction.shape.facets)?;
     reduction.offer(pairs)?;
     while n_left > goal.count && !stage.is_finishing() {
         let Some(Reverse((cost, pair, stamp))) = reduction.heap.pop() else { break };
@@ -138,6 +138,22 @@ pub(super) fn reduce(
     faces.labels.iter_mut().for_each(|label| *label = place[name[*label as usize] as usize]);
     shape.facets.retain(|facet| !facet.loops.is_empty());
     Ok(())
+}
+
+/// All facets with each of their neighbors that they may be joined with. Not facet by facet: where thousands
+/// meet at one corner, each would look at all of them.
+fn all_pairs(facets: &[Facet]) -> Result<BTreeSet<[u32; 2]>> {
+    let free = || (0_u32..).zip(facets).filter(|(_, facet)| !facet.is_held);
+    let sides = || free().flat_map(|(k, facet)| facet.sides().map(move |side| (side, k)));
+    let mut of_sides: Vec<([u32; 2], u32)> = memory::sifted(sides())?;
+    of_sides.sort_unstable();
+    let mut pairs = BTreeSet::new();
+    for ([a, b], k) in sides() {
+        let from = of_sides.partition_point(|(side, _)| *side < [b, a]);
+        let behind = of_sides[from..].iter().take_while(|(side, _)| *side == [b, a]);
+        pairs.extend(behind.filter(|(_, j)| *j != k).map(|&(_, j)| [k.min(j), k.max(j)]));
+    }
+    Ok(pairs)
 }
 
 impl Reduction<'_> {

@@ -185,9 +185,9 @@ fn pattern(
     let (mut starts, mut rows) = (memory::room(incidences.len() + 1)?, Vec::new());
     starts.push(0);
     for (k, i) in incidences.iter().enumerate() {
-        let at_corner = at_corners[i.corner].iter().filter(|_| !is_hub[0][i.corner]);
-        let of_facet = at_facets[i.facet].iter().filter(|_| !is_hub[1][i.facet]);
-        let column = at_corner.chain(of_facet).copied().filter(|&row| row > k).chain([k]);
+        let at_corner: &[usize] = if is_hub[0][i.corner] { &[] } else { &at_corners[i.corner] };
+        let of_facet: &[usize] = if is_hub[1][i.facet] { &[] } else { &at_facets[i.facet] };
+        let column = at_corner.iter().chain(of_facet).copied().filter(|&row| row > k).chain([k]);
         let mut column: Vec<usize> = memory::sifted(column)?;
         column.sort_unstable();
         column.dedup();
