@@ -46,14 +46,32 @@ def rounded_box(size, center, radius):
     return inner + radius * away / np.where(lengths > 0.0, lengths, 1.0) + center, faces
 
 
+def joined(pieces):
+    counts = np.cumsum([0] + [len(vertices) for vertices, _ in pieces])
+    faces = np.vstack([faces + n for n, (_, faces) in zip(counts, pieces, strict=False)])
+    return ridgeform.Mesh(np.vstack([vertices for vertices, _ in pieces]), faces)
+
+
+@pytest.mark.parametrize("n_steps", [6, 12, 16])
+def test_the_steps_of_a_spiral_stair_keep_their_sides(n_steps):
+    steps = []
+    for k in range(n_steps):
+        c, s = np.cos(0.3 * k), np.sin(0.3 * k)
+        turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        vertices, faces = rounded_box((1.0, 0.35, 0.06), (0.8, 0.0, 0.18 * k), 0.005)
+        steps.append((vertices @ turn, faces))
+    found = ridgeform.facet(joined(steps))
+    # Faces were near the planes of wedges, but far from the wedges.
+    assert found.n_facets == 6 * n_steps
+    assert found.rms <= 1e-3
+
+
 @pytest.mark.parametrize("radius", [0.005, 0.01])
 def test_the_legs_of_a_stool_keep_their_sides(radius):
     boxes = [rounded_box((1.0, 1.0, 0.1), (0.0, 0.0, 0.5), radius)]
     for x, y in ((-0.4, -0.4), (-0.4, 0.4), (0.4, -0.4), (0.4, 0.4)):
         boxes.append(rounded_box((0.08, 0.08, 0.9), (x, y, 0.0), radius))
-    n = len(boxes[0][0])
-    faces = np.vstack([faces + n * i for i, (_, faces) in enumerate(boxes)])
-    found = ridgeform.facet(ridgeform.Mesh(np.vstack([vertices for vertices, _ in boxes]), faces))
+    found = ridgeform.facet(joined(boxes))
     # They hardly show in the mean of all: two sides less of each leg were within half a percent.
     assert found.n_facets == 30
     assert found.n_crossings == 0

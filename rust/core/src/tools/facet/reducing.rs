@@ -62,8 +62,8 @@ struct Trial {
 pub(super) struct Goal {
     /// Until no more are left.
     pub count: usize,
-    /// As long as faces are no farther from their facets, in the root mean square, all of them and those of
-    /// every facet that is joined.
+    /// As long as faces are no farther from their facets, in the root mean square, all of them and, with how
+    /// far it is from the mesh, those of every facet that is joined.
     pub error: f64,
 }
 
@@ -115,7 +115,8 @@ pub(super) fn reduce(
             }
             continue;
         }
-        let is_beyond = |one: &Facet| one.squared_distance() > goal.error.powi(2) * one.moments.area;
+        let is_beyond =
+            |one: &Facet| one.squared_distance() + trial.off_mesh > goal.error.powi(2) * one.moments.area;
         if trial.shape.facets.first().is_some_and(is_beyond) {
             continue;
         }

@@ -15,7 +15,7 @@ use super::options::FacetOptions;
 use super::reducing::{reduce, Goal};
 use super::refusals::Refusals;
 use super::regions::{Regions, OUTSIDE};
-use super::shape::{Facet, Shape};
+use super::shape::Shape;
 use super::stage::{shares, Stage, USUAL};
 use super::volume;
 use crate::error::MeshError;
@@ -63,12 +63,6 @@ impl Settled<'_> {
 }
 
 impl Divided<'_> {
-    /// How far faces are off the planes of their facets.
-    fn rms(&self) -> f64 {
-        let squares: f64 = self.settled.shape.facets.iter().map(Facet::squared_distance).sum();
-        (squares / self.settled.faces.scan.area.max(f64::MIN_POSITIVE)).sqrt()
-    }
-
     /// Joins facets up to a goal, as far as that goes; how far the number is off.
     fn join(&mut self, goal: Goal, share: [f64; 2], progress: &Progress) -> Result<f64> {
         let Settled { shape, faces } = &mut self.settled;
@@ -163,7 +157,7 @@ impl Job<'_> {
                     ((over - 1.0).max(0.0), (count as f64 * over.max(1.05)).ceil())
                 }
                 Wanted::Found => {
-                    let over = divided.rms() / constants::ERROR.max(divided.tolerance);
+                    let over = divided.settled.distances()?.rms / constants::ERROR.max(divided.tolerance);
                     ((over - 1.0).max(0.0), (count as f64 * over.clamp(1.0, 2.0)).ceil())
                 }
             };
