@@ -24,7 +24,9 @@ by_signals = pytest.mark.skipif(os.name == "nt", reason="Windows has no such sig
 
 def entries(out):
     """The states of the journal beside an output."""
-    found = (json.loads(path.read_text()) for path in out.with_name(out.name + ".ridgeform").glob("*.json"))
+    # What begins with a dot is being written: pathlib finds it, too, and it may be gone when it is read.
+    paths = out.with_name(out.name + ".ridgeform").glob("[!.]*.json")
+    found = (json.loads(path.read_text()) for path in paths)
     return {entry["record"]["file"]: entry["state"] for entry in found}
 
 
