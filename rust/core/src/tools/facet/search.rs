@@ -125,7 +125,7 @@ impl Job<'_> {
         };
         let mut aim =
             evident.unwrap_or_else(|| merges.count(wanted.and(n_held), n, self.positions.len(), area));
-        let mut count = aim;
+        let (first, mut count) = (aim, aim);
         // Where more are farther off, that is noise, and more facets are less likely.
         let is_near = merges.distance(n, count, area) <= constants::ERROR;
         let is_found = matches!(wanted, Wanted::Found) && evident.is_none();
@@ -135,7 +135,7 @@ impl Job<'_> {
         let stage = Stage::new(progress, "finding facets", shares::FINDING[0], USUAL[0]);
         for _ in 0..COUNTS {
             let start = self.start(merges, count, limit, scan)?;
-            if limit.is_some() && count == aim {
+            if limit.is_some() && count == first {
                 // However many there are to begin with, more are joined again.
                 aim = start.1.len();
             }
