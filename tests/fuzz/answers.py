@@ -203,7 +203,9 @@ def facet(mesh: ridgeform.Mesh, given: Given, sane: bool) -> None:
         still = np.unique(mesh.faces[~given["faces"] & ~names_twice])
         kept = found.vertices[np.isin(found.origins, still)]
         np.testing.assert_array_equal(kept, mesh.vertices[found.origins[np.isin(found.origins, still)]])
-        assert np.isin(still, found.origins).all() or not is_plain(mesh)
+        # Of two vertices at the ends of a side of length 0 one is there.
+        places = set(map(tuple, found.vertices.tolist()))
+        assert all(tuple(place) in places for place in mesh.vertices[still].tolist()) or not is_plain(mesh)
 
 
 def restore(mesh: ridgeform.Mesh, given: Given, sane: bool) -> None:
@@ -244,8 +246,9 @@ def fill_holes(mesh: ridgeform.Mesh, given: Given, sane: bool) -> None:
 def remesh(mesh: ridgeform.Mesh, given: Given, sane: bool) -> None:
     """Vertices on the mesh; what stays keeps every bit; manifold stays manifold."""
     found = ridgeform.remesh(mesh, **given)
-    near(found.vertices, mesh)
     kept = found.origin >= 0
+    # A vertex without a face may be fixed anywhere.
+    near(found.vertices[~kept], mesh)
     np.testing.assert_array_equal(found.vertices[kept], mesh.vertices[found.origin[kept]])
     if crowded(mesh.faces) == (0, 0):
         assert crowded(found.faces) == (0, 0)
