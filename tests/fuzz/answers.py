@@ -115,8 +115,10 @@ def _objective(mesh: ridgeform.Mesh, given: Given, found: ridgeform.Solution) ->
     try:
         objective = ridgeform.energy(mesh, found.values, kind=given.get("energy", "l1_hessian"), **words)
         if "fidelity" in given:
-            moved = (ridgeform.voronoi_mass(mesh) @ (found.values - given["values"]) ** 2).sum()
-            objective += given["fidelity"] * moved
+            # The square of what moved by 1e-164 would be lost, that of its product with lengths is not.
+            lengths = np.sqrt(ridgeform.voronoi_mass(mesh))
+            moved = (found.values - given["values"]).reshape(len(lengths), -1)
+            objective += given["fidelity"] * ((lengths[:, None] * moved) ** 2).sum()
     except ridgeform.SolveError:
         return
     if np.isfinite(objective) and objective > 1e-290:
