@@ -29,6 +29,8 @@ pub struct Piece {
     pub side: f64,
     /// Root mean square distance of its vertices from the surface.
     pub rms: f64,
+    /// Whether it is free since its faces were on a surface that does not explain them.
+    pub is_doubted: bool,
     /// What it costs with its parameters.
     pub(super) energy: f64,
 }

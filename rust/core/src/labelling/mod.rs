@@ -12,10 +12,11 @@
 //! free, and one that lies across it counts as far off.
 //!
 //! Moves: fit and exchange the kind ([`pieces`]), [`relabel`] faces at borders, [`merge`] neighbors; each is
-//! taken only if `E` falls.
+//! taken only if `E` falls. In the end faces are free that their surface does not explain ([`mod@doubt`]).
 
 mod constants;
 mod domain;
+mod doubt;
 mod labels;
 mod merge;
 mod pieces;
@@ -58,5 +59,6 @@ pub fn labelling(domain: &Domain<'_>, start: &[i32], progress: &Progress) -> Res
         }
         energy = after;
     }
+    doubt::doubt(domain, &mut state, progress)?;
     Ok(state)
 }

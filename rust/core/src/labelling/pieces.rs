@@ -20,9 +20,9 @@ impl Piece {
         Ok(match best(domain, &faces, &samples, free)? {
             Some((found, energy)) => {
                 let (side, rms) = (samples.side(&found), samples.rms(&found));
-                Self { faces, surface: Some(found), side, rms, energy }
+                Self { faces, surface: Some(found), side, rms, energy, is_doubted: false }
             }
-            None => Self { faces, surface: None, side: 1.0, rms: 0.0, energy: free },
+            None => Self { faces, side: 1.0, energy: free, ..Self::default() },
         })
     }
 

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 
-use super::constants::SAME_PLACE;
+use super::constants::{MOST_MOVE, SAME_PLACE};
 use crate::labelling::{Domain, Labelling, NONE};
 use crate::mesh::vector::{distance, norm, Point};
 use crate::progress::Progress;
@@ -113,6 +113,11 @@ impl Placement {
             return (start, self.on[v].len());
         }
         let surfaces = surfaces(state, &self.on[v]);
+        // At a border labels are less sure than inside: one of the surfaces is where the vertex is.
+        let is_off = |surface: &&Surface| surface.distance(start).0.abs() > MOST_MOVE[0] * domain.sigma;
+        if surfaces.len() > 1 && surfaces.iter().all(is_off) {
+            return (start, 0);
+        }
         for count in (1..=surfaces.len().min(most)).rev() {
             if let Some(point) = meeting(&surfaces[..count], start, self.reach) {
                 return (point, count);
@@ -127,11 +132,14 @@ pub(super) fn surfaces<'a>(state: &'a Labelling, pieces: &[u32]) -> Vec<&'a Surf
     pieces.iter().filter_map(|&k| state.pieces[k as usize].surface.as_ref()).collect()
 }
 
-/// The pieces with surfaces at a vertex, by falling area.
+/// The pieces with surfaces at a vertex, by falling area. Beside faces that were on a surface and are not,
+/// only the nearest: others need not go on until they meet it.
 fn surfaces_at(domain: &Domain<'_>, state: &Labelling, v: u32) -> Vec<u32> {
     let mut areas: Vec<(u32, f64)> = Vec::new();
+    let mut is_beside_doubt = false;
     for &f in domain.faces_at(v) {
         let label = state.labels[f as usize];
+        is_beside_doubt |= state.pieces.get(label as usize).is_some_and(|piece| piece.is_doubted);
         if label == NONE || state.pieces[label as usize].surface.is_none() {
             continue;
         }
@@ -142,5 +150,14 @@ fn surfaces_at(domain: &Domain<'_>, state: &Labelling, v: u32) -> Vec<u32> {
         }
     }
     areas.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-    areas.into_iter().map(|(label, _)| label).collect()
+    let mut on: Vec<u32> = areas.into_iter().map(|(label, _)| label).collect();
+    if is_beside_doubt && on.len() > 1 {
+        let distance = |label: u32| {
+            let surface = state.pieces[label as usize].surface;
+            surface.map_or(f64::INFINITY, |surface| surface.distance(domain.positions[v as usize]).0.abs())
+        };
+        on.sort_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+        on.truncate(1);
+    }
+    on
 }
