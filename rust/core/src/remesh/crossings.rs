@@ -1,5 +1,7 @@
 //! Triangles of a surface that pass through each other.
 
+use std::ops::Range;
+
 use robust::{orient3d, Coord3D};
 
 use super::closest::ClosestPoint;
@@ -10,6 +12,79 @@ use crate::Result;
 /// The pairs of triangles, given by corners and places, that cross: an edge of one passes through the inside
 /// of the other. What only touches does not. Places follow from corners.
 pub(crate) fn crossings(triangles: &[[u32; 3]], places: &[[Point; 3]]) -> Result<Vec<[u32; 2]>> {
+    crossings_between(triangles, places, &[])
+}
+
+/// The same, where it is known of ranges of triangles, in ascending order, that none of one range cross, as
+/// those of one polygon: thousands of thin ones side by side lie in each other's boxes.
+pub(crate) fn crossings_between(
+    triangles: &[[u32; 3]],
+    places: &[[Point; 3]],
+    apart: &[Range<u32>],
+) -> Result<Vec<[u32; 2]>> {
+    let mut found = Vec::new();
+    let of = |i: u32| (&triangles[i as usize], &places[i as usize]);
+    candidates(triangles, places, apart, &mut |group, others| {
+        if cross(of(group[0].1), of(others[0].1)) {
+            for (i, j) in group.iter().flat_map(|i| others.iter().map(move |j| (i.1, j.1))) {
+                memory::push(&mut found, [i.min(j), i.max(j)])?;
+            }
+        }
+        Ok(())
+    })?;
+    found.sort_unstable();
+    Ok(found)
+}
+
+/// Corners in ascending order, and the triangle.
+type Named = ([u32; 3], u32);
+
+/// Trees of triangles: of each range one for itself, and of all others.
+struct Forest {
+    /// The range, none for all others; the tree, and what its triangles stand for.
+    trees: Vec<(Option<u32>, ClosestPoint, Vec<u32>)>,
+    /// The boxes of the trees.
+    tops: ClosestPoint,
+}
+
+impl Forest {
+    /// `range_of` and `place` are given for each of `n` triangles.
+    fn new(
+        n: usize,
+        range_of: impl Fn(usize) -> Option<u32>,
+        place: impl Fn(usize) -> [Point; 3],
+    ) -> Result<Self> {
+        let mut members: Vec<(Option<u32>, u32)> = memory::gathered((0..n).map(|i| (range_of(i), i as u32)))?;
+        members.sort_unstable();
+        let (mut trees, mut tops) = (Vec::new(), Vec::new());
+        for group in members.chunk_by(|a, b| a.0 == b.0) {
+            let own = memory::gathered(group.iter().map(|&(_, i)| place(i as usize)))?;
+            let [low, high] = box_of(own.as_flattened());
+            memory::push(&mut tops, [low, high, low])?;
+            let stands_for = memory::gathered(group.iter().map(|&(_, i)| i))?;
+            memory::push(&mut trees, (group[0].0, ClosestPoint::new(own)?, stands_for))?;
+        }
+        Ok(Self { trees, tops: ClosestPoint::new(tops)? })
+    }
+
+    /// Visits what may cross a triangle that is of a range, if it is of one.
+    fn visit(&self, triangle: [Point; 3], range: Option<u32>, visit: &mut impl FnMut(u32)) {
+        self.tops.visit_crossing(triangle, &mut |t| {
+            let (of, tree, stands_for) = &self.trees[t as usize];
+            if range.is_none() || range != *of {
+                tree.visit_crossing(triangle, &mut |m| visit(stands_for[m as usize]));
+            }
+        });
+    }
+}
+
+/// Visits the pairs that may cross, each time all triangles of the same corners together.
+fn candidates(
+    triangles: &[[u32; 3]],
+    places: &[[Point; 3]],
+    apart: &[Range<u32>],
+    visit: &mut impl FnMut(&[Named], &[Named]) -> Result<()>,
+) -> Result<()> {
     // Points pass through nothing, and triangles of the same corners not through each other: thousands of
     // them in one place are not looked at in pairs.
     let is_point = |[a, b, c]: [Point; 3]| a == b && b == c;
@@ -19,32 +94,29 @@ pub(crate) fn crossings(triangles: &[[u32; 3]], places: &[[Point; 3]]) -> Result
         (corners, i)
     };
     let extended = (0..).zip(places).filter(|(_, &place)| !is_point(place)).map(|(i, _)| sorted(i));
-    let mut by_corners: Vec<([u32; 3], u32)> = memory::sifted(extended)?;
+    let mut by_corners: Vec<Named> = memory::sifted(extended)?;
     by_corners.sort_unstable();
     // The triangles that each stands for, by the first of them.
-    let mut alike: Vec<&[([u32; 3], u32)]> = memory::sifted(by_corners.chunk_by(|a, b| a.0 == b.0))?;
+    let mut alike: Vec<&[Named]> = memory::sifted(by_corners.chunk_by(|a, b| a.0 == b.0))?;
     alike.sort_unstable_by_key(|group| group[0].1);
-    let place = |group: &[([u32; 3], u32)]| places[group[0].1 as usize];
-    let tree = ClosestPoint::new(memory::gathered(alike.iter().map(|group| place(group)))?)?;
-    let mut found = Vec::new();
+    let place = |n: usize| places[alike[n][0].1 as usize];
+    // Of those that stand for others as well nothing is known.
+    let range_of = |n: usize| {
+        let (t, is_one) = (alike[n][0].1, alike[n].len() == 1);
+        let r = apart.partition_point(|range| range.end <= t);
+        apart.get(r).filter(|range| is_one && range.contains(&t)).map(|_| r as u32)
+    };
+    let forest = Forest::new(alike.len(), range_of, place)?;
     for (n, group) in alike.iter().enumerate() {
-        let mut pushed = Ok(());
-        tree.visit_crossing(place(group), &mut |m| {
-            let of =
-                |group: &[([u32; 3], u32)]| (&triangles[group[0].1 as usize], &places[group[0].1 as usize]);
-            let others = alike[m as usize];
-            if m as usize > n && cross(of(group), of(others)) {
-                for (i, j) in group.iter().flat_map(|i| others.iter().map(move |j| (i.1, j.1))) {
-                    if let Err(error) = memory::push(&mut found, [i.min(j), i.max(j)]) {
-                        pushed = Err(error);
-                    }
-                }
+        let mut done = Ok(());
+        forest.visit(place(n), range_of(n), &mut |m| {
+            if m as usize > n && done.is_ok() {
+                done = visit(group, alike[m as usize]);
             }
         });
-        pushed?;
+        done?;
     }
-    found.sort_unstable();
-    Ok(found)
+    Ok(())
 }
 
 /// The least and the largest coordinates of points.
@@ -141,6 +213,53 @@ mod tests {
             assert!(expected.len() > 10, "{}", expected.len());
             assert_eq!(crossings(&triangles, &places).unwrap(), expected);
         }
+    }
+
+    /// The zigzag between two sides of a round polygon, whose triangles lie in each other's boxes, and one
+    /// triangle that passes through some of them.
+    fn striped(n: usize) -> (Vec<[u32; 3]>, Vec<[Point; 3]>) {
+        let corner = |i: usize| {
+            let angle = std::f64::consts::TAU * (i as f64 / n as f64 + 0.1);
+            [angle.cos(), angle.sin(), 0.1 * angle.cos()]
+        };
+        let mut points: Vec<Point> = (0..n).map(corner).collect();
+        points.extend([[0.3, 0.1, -1.0], [-0.3, 0.1, 1.0], [0.1, -0.4, 1.0]]);
+        // From both ends of a chain of corners inward.
+        let zigzag = |i: usize| if i.is_multiple_of(2) { i / 2 } else { n - 1 - i / 2 } as u32;
+        let mut triangles: Vec<[u32; 3]> = (0..n - 2).map(|i| [i, i + 1, i + 2].map(zigzag)).collect();
+        triangles.push([0, 1, 2].map(|i| (n + i) as u32));
+        let places = triangles.iter().map(|t| t.map(|v| points[v as usize])).collect();
+        (triangles, places)
+    }
+
+    #[test]
+    fn of_a_polygon_of_twice_as_many_corners_about_twice_as_many_pairs_are_looked_at() {
+        let n_pairs = |n: usize| {
+            let (triangles, places) = striped(n);
+            let whole = 0..triangles.len() as u32 - 1;
+            let apart = std::slice::from_ref(&whole);
+            let found = crossings_between(&triangles, &places, apart).unwrap();
+            assert_eq!(found, crossings(&triangles, &places).unwrap());
+            assert!(found.len() > 2, "{found:?}");
+            let mut n_pairs = 0;
+            candidates(&triangles, &places, apart, &mut |_, _| {
+                n_pairs += 1;
+                Ok(())
+            })
+            .unwrap();
+            n_pairs
+        };
+        let [few, many] = [1000, 2000].map(n_pairs);
+        assert!(4 * many <= 9 * few, "{few}, {many}");
+    }
+
+    #[test]
+    fn triangles_of_one_range_that_are_there_twice_cross_what_they_cross() {
+        let (mut triangles, mut places) = striped(50);
+        triangles.push(triangles[20]);
+        places.push(places[20]);
+        let all = crossings(&triangles, &places).unwrap();
+        assert_eq!(crossings_between(&triangles, &places, &[0..10, 10..48]).unwrap(), all);
     }
 
     #[test]

@@ -8,7 +8,8 @@ use super::shape::{self, Shape};
 use super::triangulation::{forced, triangles};
 use crate::memory;
 use crate::mesh::vector::{distance, Point};
-use crate::remesh::crossings::crossings;
+use crate::remesh::crossings::crossings_between;
+use crate::remesh::editable::HUB;
 use crate::Result;
 
 /// The facets of a shape as triangles, and which of them are unsound.
@@ -28,6 +29,8 @@ impl Inspection {
     /// Looks at every facet, and at all together where `is_thorough` or all of them are sound.
     pub(super) fn new(shape: &Shape, faces: &Faces<'_>, is_thorough: bool) -> Result<Self> {
         let mut found = Self::default();
+        // The triangles of facets of very many corners: they are side by side, whatever boxes they have.
+        let mut apart = Vec::new();
         for (k, facet) in (0..).zip(&shape.facets) {
             let is_upright = facet.is_held || facet.moments.faces(facet.plane.normal);
             let is_near = |c: u32| distance(shape.point(c), shape.home(c)) <= FARTHEST_CORNER;
@@ -36,10 +39,15 @@ impl Inspection {
             if !is_upright || !is_near || simple.is_none() {
                 memory::push(&mut found.crossed, k)?;
             }
+            let is_simple = simple.is_some();
             let own = match simple {
                 Some(own) => own,
                 None => forced(facet)?,
             };
+            if is_simple && own.len() > HUB {
+                let start = found.triangles.len() as u32;
+                memory::push(&mut apart, start..start + own.len() as u32)?;
+            }
             memory::extend(&mut found.owners, own.len())?;
             found.owners.extend(own.iter().map(|_| k));
             memory::extend(&mut found.triangles, own.len())?;
@@ -51,7 +59,7 @@ impl Inspection {
                 let (p, q) = (found.owners[i as usize], found.owners[j as usize]);
                 [p.min(q), p.max(q)]
             };
-            let all = crossings(&found.triangles, &found.places(shape)?)?;
+            let all = crossings_between(&found.triangles, &found.places(shape)?, &apart)?;
             let standing = faces.standing(shape)?;
             let of = |k: u32| shape.facets[k as usize].part;
             let is_old = |[p, q]: [u32; 2]| {
