@@ -32,3 +32,26 @@ def test_thousands_in_one_place_take_a_time_in_proportion(crowd):
     planes = found.planes[found.face_facets]
     heights = (planes[:, None, :3] * found.vertices[found.faces]).sum(2) - planes[:, None, 3]
     assert np.abs(heights).max() <= 1e-6 * np.ptp(vertices, axis=0).max()
+
+
+def test_planes_nearer_than_promised_are_not_fitted_any_nearer():
+    # Each of some sixty rounds came nearer by a thousandth of two ten-millionths of the diagonal.
+    sides = 1000
+    angles = 2 * np.pi * np.arange(sides) / sides
+    ring = np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
+    vertices = np.vstack([ring, ring + np.array([0, 0, 1]), [[0, 0, 0], [0, 0, 1]]])
+    here, after = np.arange(sides), (np.arange(sides) + 1) % sides
+    bottom, top = np.full(sides, 2 * sides), np.full(sides, 2 * sides + 1)
+    parts = [
+        [here, after, sides + after],
+        [here, sides + after, sides + here],
+        [bottom, after, here],
+        [top, sides + here, sides + after],
+    ]
+    faces = np.concatenate([np.column_stack(part) for part in parts])
+    progress = ridgeform.Progress()
+    found = ridgeform.facet(ridgeform.Mesh(vertices, faces), facets=sides, progress=progress)
+    assert progress.stage == "fitting planes"
+    assert progress.iteration <= 100
+    assert found.rms <= 1e-6 * np.linalg.norm([2, 2, 1])
+    assert found.n_crossings == 0

@@ -1,6 +1,6 @@
 //! Facets that are sound, then facets that fit.
 
-use super::constants::{FITTING, FLAT, IDLE, NOISE, PULL, REPAIRS, STAY, TRIES};
+use super::constants::{FITTING, FLAT, IDLE, NOISE, PROMISED, PULL, REPAIRS, STAY, TRIES};
 use super::faces::Faces;
 use super::faults::Inspection;
 use super::moments::{Moments, Plane};
@@ -59,7 +59,7 @@ pub(super) fn refine(shape: &mut Shape, faces: &mut Faces<'_>, stage: &Stage<'_>
         inspection = Inspection::new(shape, faces, true)?;
         let distance;
         (labels, distance) = measured(shape, faces, &inspection)?;
-        n_idle = if distance < IDLE.factor * best.0 { 0 } else { n_idle + 1 };
+        n_idle = if distance < IDLE.factor * best.0 && best.0 > PROMISED { 0 } else { n_idle + 1 };
         if distance < best.0 {
             best = (distance, shape.twin()?, memory::twin(&faces.labels)?);
         }
