@@ -151,7 +151,7 @@ def test_a_character_is_not_sure_and_stays_bit_by_bit():
 
 
 @pytest.mark.parametrize(("n", "noise"), [(25, 0.1), (37, 0.2)])
-def test_fillets_that_are_not_found_are_not_pulled_into_sharp_edges(n, noise):
+def test_narrow_fillets_are_not_pulled_into_sharp_edges(n, noise):
     radius = 0.1
     truth, faces = shapes.rounded_box(n, radius)
     edge = shapes.mean_edge_length(truth, faces)
@@ -160,8 +160,8 @@ def test_fillets_that_are_not_found_are_not_pulled_into_sharp_edges(n, noise):
     result = ridgeform.restore(ridgeform.Mesh(vertices, faces))
     away = np.abs(result.vertices) - core
     off = np.linalg.norm(np.maximum(away, 0.0), axis=1) + np.minimum(away.max(axis=1), 0.0) - radius
-    # With every vertex on the surface of its label, it was 1.35 and 0.67 times the noise.
-    assert shapes.root_mean_square(off) < 0.6 * noise * edge
+    # With every vertex on the surface of its label, it was 1.35 and 0.67 times the noise; now 0.4 and 0.25.
+    assert shapes.root_mean_square(off) < 0.5 * noise * edge
     assert {"free", "plane"} <= set(kinds(result))
 
 

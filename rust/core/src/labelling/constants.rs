@@ -42,3 +42,18 @@ pub(super) const MOST_RISE: f64 = 4.0;
 /// within one row of a vertex of an even mesh, two, and three. Along borders that is 18 rows to either side:
 /// the row in the middle of a fillet three edges wide is off the planes by two deviations of the noise.
 pub(super) const CIRCLES: [usize; 3] = [7, 19, 37];
+
+/// Turns of moving borders and fitting surfaces after pieces are divided: what strays is some two faces wide,
+/// and most of a fillet of six edges after the first.
+pub(super) const TURNS: usize = 2;
+
+/// Rows of faces on either side of a border that may change sides in one turn.
+pub(super) const BAND: usize = 24;
+
+/// A border of a divided piece costs its length, and more by the square of how many edges it is from where
+/// its surfaces meet or touch. Beyond so many it costs no more, and no contact is looked for.
+pub(super) const FARTHEST: f64 = 3.0;
+
+/// Along a contact the normals of two surfaces agree; the square of how much their difference changes is less
+/// than this part of that across.
+pub(super) const ALONG: f64 = 0.1;

@@ -12,31 +12,40 @@ use crate::progress::Progress;
 use crate::surfaces::{Kind, MOST_MISFIT};
 use crate::{memory, Result};
 
-/// Parts faces from their surface whose vertices stray together, and fits what is left, as long as there are
-/// such.
+/// Makes faces free whose vertices stray from their surface together, and fits what is left, as long as there
+/// are such. `has_left` says which have left a surface before.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`].
-pub(super) fn doubt(domain: &Domain<'_>, state: &mut Labelling, progress: &Progress) -> Result<()> {
-    let mut has_left = memory::repeated(false, state.labels.len())?;
+pub(super) fn doubt(
+    domain: &Domain<'_>,
+    state: &mut Labelling,
+    has_left: &[bool],
+    progress: &Progress,
+) -> Result<()> {
+    let mut is_free = memory::repeated(false, state.labels.len())?;
     for _ in 0..MOST_ROUNDS {
         progress.check()?;
         let strays = Strays::new(domain, state)?.found()?;
         if !strays.contains(&true) || progress.is_finishing() {
             break;
         }
-        state.leave(domain, &strays, &mut has_left)?;
+        state.leave(domain, &strays, &mut is_free)?;
         state.fit_all(domain, progress)?;
-        for piece in state.pieces.iter_mut().filter(|piece| has_left[piece.faces[0] as usize]) {
+        for piece in state.pieces.iter_mut().filter(|piece| is_free[piece.faces[0] as usize]) {
             let faces = std::mem::take(&mut piece.faces);
-            *piece = Piece { faces, side: 1.0, is_doubted: true, ..Piece::default() };
+            *piece = Piece { faces, side: 1.0, ..Piece::default() };
         }
+    }
+    let has = |f: &u32| has_left[*f as usize] || is_free[*f as usize];
+    for piece in state.pieces.iter_mut().filter(|piece| piece.surface.is_none()) {
+        piece.is_doubted = piece.faces.iter().any(has);
     }
     Ok(())
 }
 
 /// What vertices are off by, and which of them are on the same surfaces.
-struct Strays {
+pub(super) struct Strays {
     /// How far each vertex is from the nearest of its surfaces, outside of it positive, in deviations of the
     /// noise, and no farther than counts.
     off: Vec<f64>,
@@ -49,7 +58,7 @@ struct Strays {
 }
 
 impl Strays {
-    fn new(domain: &Domain<'_>, state: &Labelling) -> Result<Self> {
+    pub(super) fn new(domain: &Domain<'_>, state: &Labelling) -> Result<Self> {
         let n = domain.positions.len();
         let on: Vec<Vec<u32>> =
             memory::all(memory::gathered((0..n).map(|v| surfaces_at(domain, state, v as u32)))?)?;
@@ -85,7 +94,7 @@ impl Strays {
 
     /// The vertices about which vertices stray together by more than chance makes them, the nearest first:
     /// what strays is left out of wider circles.
-    fn found(mut self) -> Result<Vec<bool>> {
+    pub(super) fn found(mut self) -> Result<Vec<bool>> {
         let n = self.off.len();
         let mut found = memory::repeated(false, n)?;
         for most in CIRCLES {
@@ -137,7 +146,12 @@ fn surfaces_at(domain: &Domain<'_>, state: &Labelling, v: u32) -> Result<Vec<u32
 impl Labelling {
     /// Gives the faces about `strays` labels of their own, one to those that are connected. Pieces that lose
     /// half of their area go with them.
-    fn leave(&mut self, domain: &Domain<'_>, strays: &[bool], has_left: &mut [bool]) -> Result<()> {
+    pub(super) fn leave(
+        &mut self,
+        domain: &Domain<'_>,
+        strays: &[bool],
+        has_left: &mut [bool],
+    ) -> Result<()> {
         let has_surface = |label: u32| self.pieces.get(label as usize).is_some_and(|p| p.surface.is_some());
         let faces = self.labels.iter().zip(domain.connectivity.faces());
         let mut leaves: Vec<bool> = memory::gathered(

@@ -12,15 +12,20 @@
 //! free, and one that lies across it counts as far off.
 //!
 //! Moves: fit and exchange the kind ([`pieces`]), [`relabel`] faces at borders, [`merge`] neighbors; each is
-//! taken only if `E` falls. In the end faces are free that their surface does not explain ([`mod@doubt`]).
+//! taken only if `E` falls. Then pieces are divided whose surface does not explain them ([`mod@divide`]):
+//! borders move by minimum cuts ([`mod@swap`]) toward where surfaces meet or touch ([`contact`]), and that is
+//! taken if `E` falls. In the end faces are free that their surface does not explain ([`mod@doubt`]).
 
 mod constants;
+mod contact;
+mod divide;
 mod domain;
 mod doubt;
 mod labels;
 mod merge;
 mod pieces;
 mod relabel;
+mod swap;
 
 pub use constants::FREE_MISFIT;
 pub use domain::Domain;
@@ -40,25 +45,33 @@ pub fn labelling(domain: &Domain<'_>, start: &[i32], progress: &Progress) -> Res
     let labels = memory::gathered(start.iter().map(|&l| u32::try_from(l).unwrap_or(NONE)))?;
     let mut state = Labelling { labels, pieces: Vec::new() };
     state.fit_all(domain, progress)?;
+    descend(domain, &mut state, progress)?;
+    let mut has_left = memory::repeated(false, state.labels.len())?;
+    divide::divide(domain, &mut state, &mut has_left, progress)?;
+    doubt::doubt(domain, &mut state, &has_left, progress)?;
+    Ok(state)
+}
+
+/// Follows the energy downhill from labels with surfaces.
+fn descend(domain: &Domain<'_>, state: &mut Labelling, progress: &Progress) -> Result<()> {
     let mut energy = state.energy(domain);
     for _ in 0..MOST_ROUNDS {
         if progress.is_finishing() {
             break;
         }
         let before = state.copied()?;
-        merge::merge(domain, &mut state, progress)?;
-        relabel::relabel(domain, &mut state, progress)?;
+        merge::merge(domain, state, progress)?;
+        relabel::relabel(domain, state, progress)?;
         state.fit_all(domain, progress)?;
         let after = state.energy(domain);
         if after.is_nan() || after >= energy {
             // Fits are local: what they lose is not taken.
             if after > energy {
-                state = before;
+                *state = before;
             }
             break;
         }
         energy = after;
     }
-    doubt::doubt(domain, &mut state, progress)?;
-    Ok(state)
+    Ok(())
 }

@@ -45,7 +45,7 @@ pub(super) const UNDETERMINED: f64 = 1e-13;
 
 /// Surfaces whose normals differ by less than about four degrees count as tangent: they do not say where
 /// along the normals' bisecting plane a point lies. That is the ratio of the eigenvalues, `tan²(θ / 2)`.
-pub(super) const TANGENT: f64 = 1e-3;
+pub const TANGENT: f64 = 1e-3;
 
 /// Newton's steps toward a meeting; five do for a part's surfaces. They rest where one is as short as
 /// rounding has it, as a part of how far the point is.

@@ -10,7 +10,7 @@ mod samples;
 mod starts;
 mod through;
 
-pub use constants::MOST_MISFIT;
+pub use constants::{MOST_MISFIT, TANGENT};
 pub use fit::{fit, FittedSurface};
 pub use meeting::meeting;
 pub use samples::{misfit, Samples};

@@ -9,7 +9,7 @@ const UNSEEN: u32 = u32::MAX;
 const FLOW_ROUNDING: f64 = 1e-9;
 
 /// An undirected graph with capacities.
-pub(super) struct Graph {
+pub(crate) struct Graph {
     /// For each node its arcs.
     arcs_of: Vec<Vec<u32>>,
     /// Where each arc leads; arc `i ^ 1` leads back.
@@ -20,7 +20,7 @@ pub(super) struct Graph {
 
 impl Graph {
     /// `n` nodes, and the edges with their capacities.
-    pub(super) fn new(n: usize, edges: &[([u32; 2], f64)]) -> Self {
+    pub(crate) fn new(n: usize, edges: &[([u32; 2], f64)]) -> Self {
         let mut arcs_of = vec![Vec::new(); n];
         let (mut heads, mut residual) =
             (Vec::with_capacity(2 * edges.len()), Vec::with_capacity(2 * edges.len()));
@@ -34,7 +34,7 @@ impl Graph {
     }
 
     /// Whether each node is on the side of node `source` of the least cut that parts it from node `sink`.
-    pub(super) fn cut(mut self, source: u32, sink: u32) -> Vec<bool> {
+    pub(crate) fn cut(mut self, source: u32, sink: u32) -> Vec<bool> {
         let least = FLOW_ROUNDING * self.residual.iter().fold(0.0_f64, |most, x| most.max(*x));
         loop {
             let levels = self.levels(source, least);

@@ -9,7 +9,7 @@ mod facet;
 mod fill_holes;
 mod heights;
 mod interpolate;
-mod minimum_cut;
+pub(crate) mod minimum_cut;
 mod modes;
 mod options;
 mod parts;
