@@ -33,6 +33,9 @@ const PLAIN_ROUNDS: usize = 40;
 /// What is left of a vector of length 1 beside others that counts as a direction of its own.
 const INDEPENDENT: f64 = 1e-6;
 
+/// Passes of Gram and Schmidt at most; a vector that two leave alone has taken them, and rounding takes three.
+const MOST_PASSES: usize = 16;
+
 /// The shift as a part of the scale of eigenvalues: small against them, large against rounding.
 const SHIFT: f64 = 0.1;
 
@@ -223,23 +226,28 @@ impl Pencil<'_> {
         Ok(())
     }
 
-    /// Gram and Schmidt, twice, against the mass.
+    /// Gram and Schmidt against the mass, twice, and again while a vector loses half of its length: what is left
+    /// of one that nearly lies in the span of those before is rounding, and not orthogonal to them (Daniel et
+    /// al. 1976, *Reorthogonalization and stable algorithms for updating the Gram-Schmidt QR factorization*).
     fn orthonormalize(&self, block: &mut [Vec<f64>]) -> Result<()> {
         for j in 0..block.len() {
             let (before, rest) = block.split_at_mut(j);
             let Some(x) = rest.first_mut() else { continue };
             x.iter_mut().zip(self.mass).filter(|(_, m)| **m == 0.0).for_each(|(x, _)| *x = 0.0);
-            for _ in 0..2 {
+            for round in 0.. {
                 for y in before.iter() {
                     let along = mass_dot(self.mass, x, y);
                     x.iter_mut().zip(y).for_each(|(x, y)| *x -= along * y);
                 }
                 let length = mass_dot(self.mass, x, x).sqrt();
-                if !(length > 0.0 && length.is_finite()) {
+                if !(length > 0.0 && length.is_finite()) || round == MOST_PASSES {
                     let reason = "the modes are not independent; ask for fewer".into();
                     return Err(Error::Solve(SolveError::Factorization { reason }));
                 }
                 x.iter_mut().for_each(|x| *x /= length);
+                if round > 0 && length > 0.5 {
+                    break;
+                }
             }
         }
         Ok(())
