@@ -11,7 +11,7 @@ import ridgeform
 
 from ..blender import kept_normals, mesh_io, modifiers, rebuilding
 from ..blender.refusals import RefusedError
-from ..framework import faceting
+from ..framework import faceting, keeping
 from ..framework.faceting import Facetable, FacetMesh
 from ..framework.job import Task
 from ..framework.run import Part, Run, counted, meshes_phrase, most, panel_lines, percent, total
@@ -23,10 +23,6 @@ KEY_NAME = "Facets"
 
 SAME_VOLUME = 1e-4
 """A volume that changes by a smaller part is kept: nobody could tell."""
-
-DIAGONAL = 1e6
-"""How much dearer than along an edge a border is through a face of more than three corners, which it would
-bend: so much that faces are whole before anything else merges."""
 
 
 @dataclass
@@ -89,7 +85,11 @@ class Faceting(Run):
         part = FacetPart(obj, task, len(mesh.vertices), source=source, size=size, coordinates=coordinates)
         part.as_key = keeps_faces(self.settings) and (self.settings.shape_key or mesh.shape_keys is not None)
         if keeps_faces(self.settings):
-            weights = _along_faces(source, weights)
+            old, polygons, rows = source.before.old, source.before.polygons, surface.weld.rows
+            faces = old.faces[rows]
+            weights = keeping.along_faces(
+                old.corners[rows], polygons.starts[faces], polygons.sizes[faces], weights
+            )
         task.call = partial(_made, part, surface.mesh, weights, self.settings)
         part.warnings += surface.weld.notes
         part.warnings += modifiers.mirror_notes(obj, coordinates)
@@ -175,21 +175,6 @@ def _refuse_parts(obj: bpy.types.Object, settings: object, taking: np.ndarray) -
         )
     if settings.keep_volume:
         raise RefusedError("Symmetric facets cannot keep the volume: choose one of both")
-
-
-def _along_faces(source: Facetable, weights: np.ndarray | None) -> np.ndarray | None:
-    """Edge weights (l, 3), or `None`, with which facets do not run through faces that stay whole."""
-    old, weld = source.before.old, source.weld
-    corners = old.corners[weld.rows]
-    polygons = source.before.polygons
-    starts, sizes = polygons.starts[old.faces[weld.rows]], polygons.sizes[old.faces[weld.rows]]
-    # Column i is the edge opposite corner i.
-    one, other = (corners[:, [1, 2, 0]] - starts[:, None], corners[:, [2, 0, 1]] - starts[:, None])
-    apart = (one - other) % sizes[:, None]
-    is_diagonal = (apart != 1) & (apart != sizes[:, None] - 1)
-    if not is_diagonal.any():
-        return weights
-    return np.where(is_diagonal, DIAGONAL, 1.0) * (1.0 if weights is None else weights)
 
 
 def _made(

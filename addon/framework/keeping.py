@@ -17,6 +17,10 @@ from ..blender.welding import Weld
 from . import facet_places
 from .ridges import face_normals
 
+DIAGONAL = 1e6
+"""How much dearer than along an edge a border is through a face of more than three corners, which it would
+bend: so much that faces are whole before anything else merges."""
+
 
 def kept(
     before: Before,
@@ -34,10 +38,7 @@ def kept(
     that such an edge parts become triangles. The facet is -1 for faces that stay where they are. `planes` are
     those of mirrors that borders lie on, `flags` what is selected and hidden.
     """
-    places = weld.places(coordinates)
-    there = facet_places.kept_on_planes(found, places, weld.triangles, planes)
-    still = (there == places).all(axis=1)[weld.vertex]
-    points = np.where(still[:, None], coordinates, weld.moved(there, coordinates)).astype(np.float32)
+    points = on_facets(weld, found, coordinates, planes)
     corners = before.old.corners.copy()
     if flips:
         corners[weld.rows] = before.old.corners[weld.rows].ravel()[np.asarray(found.kept_corners)]
@@ -52,6 +53,33 @@ def kept(
     normals = before.kept_normals(points, faces, coordinates)
     note = _note(found, faces, facets, points, len(faces) - len(before.polygons))
     return Rebuilt(points, faces, values, note, normals), facets, stays
+
+
+def along_faces(
+    corners: np.ndarray, starts: np.ndarray, sizes: np.ndarray, weights: np.ndarray | None = None
+) -> np.ndarray | None:
+    """Edge weights (l, 3), or `None`, with which facets do not run through faces that stay whole.
+
+    `corners` (l, 3) are those of triangles, `starts` and `sizes` (l,) say where the corners of their faces
+    begin, and how many these have.
+    """
+    if (sizes == 3).all():
+        return weights
+    # Column i is the edge opposite corner i.
+    one, other = (corners[:, [1, 2, 0]] - starts[:, None], corners[:, [2, 0, 1]] - starts[:, None])
+    apart = (one - other) % sizes[:, None]
+    is_diagonal = (apart != 1) & (apart != sizes[:, None] - 1)
+    return np.where(is_diagonal, DIAGONAL, 1.0) * (1.0 if weights is None else weights)
+
+
+def on_facets(
+    weld: Weld, found: ridgeform.Faceted, coordinates: np.ndarray, planes: Sequence[Plane]
+) -> np.ndarray:
+    """The coordinates (n, 3) float32 of the mesh's own vertices on the facets that were found for it."""
+    places = weld.places(coordinates)
+    there = facet_places.kept_on_planes(found, places, weld.triangles, planes)
+    still = (there == places).all(axis=1)[weld.vertex]
+    return np.where(still[:, None], coordinates, weld.moved(there, coordinates)).astype(np.float32)
 
 
 def _faces(

@@ -19,7 +19,8 @@ from ..framework.faceting import Facetable
 from ..framework.ridges import Edges
 from ..framework.settings import chosen
 from ..framework.volume import keep_volume
-from . import reduction
+from . import own_faces, reduction
+from .own_faces import OnFacets, OwnFaces
 from .settings import movement_of
 
 KEY_NAME = "Stylized"
@@ -28,17 +29,12 @@ HARDLY_FLAT = (
     "hardly anything became flat, because its faces are as large as facets or very regular: choose the "
     "finish Facets, or subdivide it first"
 )
-AS_IT_WAS = (
-    "its faces are as large as facets or very regular, so that facets were made of the shape as it was"
-)
-FEW_FLAT = 0.2
-"""With less than this part of its area in flat faces a shape is as round as it was: spheres end at 0.05, a
-head of 500 vertices at 0.07, a hand of 800 at 0.16; a torus, which gets bands, at 0.24, and all else that was
-tried at 0.39 and above."""
-
+AS_IT_WAS = "its faces are as large as facets or very regular, so that {} as it was"
 MANY_FLAT = 0.3
-"""From this part of its area on, what a flow has made flat are facets of many faces each, 26 to 57 on all
-that was tried. Below it they are single faces or two, hardly to be seen: a torus has 0.24 and 900 quads."""
+"""From this part of what was round on, what a flow has made flat are facets of many faces each, 26 to 57 on
+all that was tried. Below it they are single faces or two, hardly to be seen: letters of one face a side, a
+cylinder, and a cone end below nothing, spheres at 0.05, a head of 500 vertices at 0.07, a hand of 800 at
+0.16, a cow of 800 at 0.22, a torus, which gets bands, at 0.24, and all else at 0.37 and above."""
 
 NEAR = 0.3
 """How far facets whose number neither flow nor modeler says may be from the mesh, root mean square: in
@@ -66,6 +62,8 @@ class Source:
     """Why it keeps its faces, although they are to be replaced."""
     edges: Edges | None = None
     """Its edges, if ridges are to be marked."""
+    own: OwnFaces | None = None
+    """Its faces, if they are to stay."""
 
     @property
     def before(self) -> rebuilding.Before | None:
@@ -96,7 +94,9 @@ class Finished:
     rebuilt: rebuilding.Rebuilt | None = None
     """The mesh with other faces, if it gets any."""
     n_facets: int | None = None
-    """How many facets those have."""
+    """How many facets there are, where the flow does not know."""
+    on_facets: OnFacets | None = None
+    """What has come of it if its faces lie on facets of the shape as it was."""
     moved: float = 0.0
     """How far the farthest point has gone, at most, in parts of the bounding box's diagonal."""
     ridges: np.ndarray | None = None
@@ -111,9 +111,17 @@ def finished(
     check: Callable[[], None] = lambda: None,
 ) -> Finished:
     """What is to be written of a flow's result; `check` may raise to stop."""
-    note = _note(flow, settings, source)
-    made = Finished(flow, source.merged(flow.vertices), [] if note is None else [note])
-    made.moved = source.moved(flow.vertices)
+    if _stays_round(source, flow, settings):
+        # All that the flow does then is to round the mesh off.
+        what = "facets were made of the shape" if source.reducible is None else "the shape was reduced"
+        made = Finished(flow, source.coordinates.original, [AS_IT_WAS.format(what)])
+        if source.own is not None:
+            _put_onto_facets(source, made, settings, progress)
+            check()
+    else:
+        note = _note(flow, settings, source)
+        made = Finished(flow, source.merged(flow.vertices), [] if note is None else [note])
+        made.moved = source.moved(flow.vertices)
     if settings.keep_volume:
         reason = _keep_volume(source, made)
         if reason is not None:
@@ -146,16 +154,8 @@ def _make_facets(
     check: Callable[[], None],
 ) -> None:
     weld, wanted = source.facetable.weld, chosen(settings, "facets") or None
-    if _stays_round(made.flow, settings):
-        # All that the flow does then is to round the mesh off.
-        made.coordinates, made.moved = source.coordinates.original, 0.0
-        made.notes.append(AS_IT_WAS)
     places = weld.places(made.coordinates)
-    near = (
-        {}
-        if settings.use_fidelity
-        else {"error": NEAR * movement_of(settings.strength) * _width(places, weld)}
-    )
+    near = {} if settings.use_fidelity else {"error": _near(places, weld, settings)}
     count = wanted or (int(made.flow.n_facets) if made.flow.flat_share[-1] >= MANY_FLAT else None)
     make = partial(
         faceting.facets_of,
@@ -186,16 +186,51 @@ def _make_facets(
             made.ridges &= edges.ridges(points, least)
 
 
-def _stays_round(flow: ridgeform.Stylized, settings: object) -> bool:
-    """Whether a flow has ended by itself and left hardly any facets to be seen."""
-    is_done = not settings.use_fidelity and flow.status not in ("finished", "stopped")
-    return is_done and bool(flow.flat_share[-1] < FEW_FLAT)
+def _stays_round(source: Source, flow: ridgeform.Stylized, settings: object) -> bool:
+    """Whether a flow has come to its own end, and hardly any of what was round has become flat."""
+    is_done = flow.iterations > 0 and flow.status in ("reached", "settled", "converged")
+    return is_done and not settings.use_fidelity and _became_flat(source, flow) < MANY_FLAT
 
 
-def _width(places: np.ndarray, weld: Weld) -> float:
-    """The root of the area of a mesh at `places` (k, 3), in which movement is measured."""
+def _became_flat(source: Source, flow: ridgeform.Stylized) -> float:
+    """The part of what was round, where vertices may move, that a flow has made flat."""
+    before, after = flow.flat_share[0], flow.flat_share[-1]
+    if not source.free.all():
+        weld = source.weld
+        triangles = weld.triangles[weld.all_of(source.free)[weld.triangles].any(axis=1)]
+        shapes = (weld.places(source.coordinates.original), flow.vertices)
+        # A flow without a step says how flat a shape is.
+        before, after = (
+            ridgeform.stylize(ridgeform.Mesh(places, triangles), iterations=0).flat_share[0]
+            for places in shapes
+        )
+    return float((after - before) / (1.0 - before)) if before < 1.0 else 1.0
+
+
+def _put_onto_facets(
+    source: Source, made: Finished, settings: object, progress: ridgeform.Progress | None
+) -> None:
+    weld = source.own.weld
+    taking = weld.all_of(source.free)[weld.triangles].all(axis=1)
+    if taking.any():
+        made.on_facets = found = own_faces.put_onto_facets(
+            source.own,
+            made.coordinates,
+            taking,
+            _near(weld.places(made.coordinates), weld, settings),
+            coarse_to_fine=settings.coarse_to_fine,
+            progress=progress,
+        )
+        made.coordinates, made.n_facets = found.coordinates, found.n_facets
+        made.moved = source.moved(source.weld.places(found.coordinates))
+
+
+def _near(places: np.ndarray, weld: Weld, settings: object) -> float:
+    """How far facets may be from a mesh at `places` (k, 3), root mean square, where no number is given."""
     a, b, c = (places[weld.triangles[:, corner]] for corner in range(3))
-    return float(np.sqrt(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()))
+    # Movement is measured in the root of the area.
+    width = float(np.sqrt(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()))
+    return NEAR * movement_of(settings.strength) * width
 
 
 def _edges(rebuilt: rebuilding.Rebuilt, source: Source) -> Edges:
@@ -205,7 +240,13 @@ def _edges(rebuilt: rebuilding.Rebuilt, source: Source) -> Edges:
 
 def _ridges(source: Source, made: Finished, least: float | None) -> np.ndarray:
     if made.rebuilt is None:
-        return source.edges.ridges(made.coordinates, least) & source.free[source.edges.ends].all(axis=1)
+        found = made.on_facets
+        ridges = (
+            source.edges.ridges(made.coordinates, least)
+            if found is None
+            else found.ridges(source.edges, least)
+        )
+        return ridges & source.free[source.edges.ends].all(axis=1)
     faces, points = made.rebuilt.faces, made.rebuilt.points.astype(np.float32)
     # What is left of a facet is a few triangles, and nothing between facets is round.
     ridges = _edges(made.rebuilt, source).ridges(points, ONE_FACET if least is None else least)
@@ -263,6 +304,7 @@ def _note(result: ridgeform.Stylized, settings: object, source: Source) -> str |
     if not settings.use_fidelity:
         done = "the one step was" if steps == 1 else f"all {steps} steps were"
         notes["finished"] = f"{done} done before its facets had settled: raise Steps"
-    # Other finishes make facets of anything.
-    few = result.flat_share[-1] < MANY_FLAT and source.before is None
-    return notes.get(result.status, HARDLY_FLAT if few else None)
+    elif result.flat_share[-1] < MANY_FLAT and source.before is None:
+        # Other finishes make facets of anything.
+        notes["finished"] = HARDLY_FLAT
+    return notes.get(result.status)

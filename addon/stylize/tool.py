@@ -12,7 +12,8 @@ import ridgeform
 
 from ..blender import mesh_io, modifiers, rebuilding
 from ..blender.refusals import RefusedError
-from ..framework import faceting
+from ..blender.welding import Weld
+from ..framework import faceting, keeping
 from ..framework.job import Task
 from ..framework.preflight import uneven_scale
 from ..framework.ridges import Edges
@@ -20,6 +21,7 @@ from ..framework.run import Part, Run, counted, meshes_phrase, most, panel_lines
 from ..framework.surface import group_weights, painted_ridges, welded
 from . import finish, recorded, reduction
 from .finish import Source
+from .own_faces import OwnFaces
 from .settings import StylizeSettings, stylize_options
 
 
@@ -211,8 +213,24 @@ def _prepare_finish(obj: bpy.types.Object, settings: object, source: Source) -> 
             return
         starts, corners, _ = mesh_io.face_corners(obj.data)
         taking = np.logical_and.reduceat(source.free[corners], starts)
-        half = source.weld if source.weld.images is None else welded(obj, source.coordinates.original)[0]
-        source.facetable = faceting.read(obj, half, taking)
+        source.facetable = faceting.read(obj, _own_weld(obj, source), taking)
+    else:
+        source.own = _own_faces(obj, source)
+
+
+def _own_weld(obj: bpy.types.Object, source: Source) -> Weld:
+    """The surface of a mesh without the images of mirrors."""
+    return source.weld if source.weld.images is None else welded(obj, source.coordinates.original)[0]
+
+
+def _own_faces(obj: bpy.types.Object, source: Source) -> OwnFaces:
+    weld, images = _own_weld(obj, source), source.weld.images
+    faces = mesh_io.triangle_faces(obj.data)[weld.rows]
+    starts, corners, _ = mesh_io.face_corners(obj.data)
+    sizes = np.diff(starts, append=len(corners))
+    triangle_corners = mesh_io.triangle_corners(obj.data)[weld.rows]
+    weights = keeping.along_faces(triangle_corners, starts[faces], sizes[faces])
+    return OwnFaces(weld, faces, weights, () if images is None else images.planes)
 
 
 def _stylized(part: FlowPart, settings: object, progress: ridgeform.Progress) -> finish.Finished:

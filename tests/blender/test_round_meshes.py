@@ -2,6 +2,7 @@
 
 import addon_kit as kit
 import bpy
+import mirror_kit
 import numpy as np
 import pytest
 from bl_ext.user_default.ridgeform.framework import job
@@ -68,11 +69,107 @@ def test_a_number_of_facets_is_kept_to():
     assert job.last_summary()[0]["facets"] == 60
 
 
-@pytest.mark.parametrize("name", ROUND)
-def test_without_them_what_helps_is_said(name):
-    made(name)
+def facets_by_ridges(mesh):
+    """How many parts sharp edges enclose, and how far the farthest corner is from the plane of its part."""
+    sharp = np.array([edge.use_edge_sharp for edge in mesh.edges])
+    faces_at = [[] for _ in mesh.edges]
+    for face in mesh.polygons:
+        for loop in face.loop_indices:
+            faces_at[mesh.loops[loop].edge_index].append(face.index)
+    part = np.arange(len(mesh.polygons))
+    for faces, is_sharp in zip(faces_at, sharp, strict=True):
+        if len(faces) == 2 and not is_sharp:
+            one, other = part[faces]
+            part[part == other] = one
+    worst = 0.0
+    for label in np.unique(part):
+        vertices = {v for face in np.flatnonzero(part == label) for v in mesh.polygons[face].vertices}
+        places = np.array([mesh.vertices[v].co for v in vertices], np.float64)
+        places -= places.mean(axis=0)
+        worst = max(worst, np.abs(places @ np.linalg.svd(places)[2][2]).max())
+    return len(np.unique(part)), worst
+
+
+@pytest.mark.parametrize("name", [*ROUND, "cylinder", "head", "letters"])
+def test_with_its_own_faces_a_mesh_lies_on_facets_of_the_shape(name):
+    if name == "cylinder":
+        bpy.ops.mesh.primitive_cylinder_add()
+    elif name == "head":
+        bpy.ops.mesh.primitive_monkey_add()
+    elif name == "letters":
+        bpy.ops.object.text_add()
+        bpy.context.object.data.body, bpy.context.object.data.extrude = "Rg&", 0.1
+        bpy.ops.object.convert(target="MESH")
+    else:
+        made(name)
+    mesh = bpy.context.object.data
+    before, faces = kit.coordinates(bpy.context.object), [tuple(face.vertices) for face in mesh.polygons]
+    assert bpy.ops.ridgeform.stylize() == {"FINISHED"}
+    (entry,) = job.last_summary()
+    assert "facets were made of the shape as it was" in said() and "hardly" not in said()
+    assert [tuple(face.vertices) for face in mesh.polygons] == faces
+    assert 0.0 < entry["moved"] < 0.1 and entry["facets"] < len(faces)
+    count, off = facets_by_ridges(mesh)
+    size = np.ptp(before, axis=0)
+    # Two quads of the head lie across a ridge.
+    assert off < (0.03 if name == "head" else 1e-5) * size.max()
+    # A facet may be in two pieces, as where letters are on both sides of a hole.
+    assert count == pytest.approx(entry["facets"], rel=0.15)
+    assert np.allclose(np.ptp(kit.coordinates(bpy.context.object), axis=0), size, atol=0.1 * size.max())
+
+
+def test_that_is_done_in_edit_mode_where_it_is_selected():
+    obj = made("uv sphere")
+    before = kit.coordinates(obj)
+    top = before[:, 2] > 0.1
+    kit.select_only(obj, top)
     bpy.ops.ridgeform.stylize()
-    assert "choose the finish Facets" in said()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert "as it was" in said()
+    after = kit.coordinates(obj)
+    assert (after[~top] == before[~top]).all() and (after[top] != before[top]).any()
+
+
+def test_what_became_flat_is_measured_where_the_mesh_may_move():
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=6)
+    obj = bpy.context.object
+    group = obj.vertex_groups.new(name="Cap")
+    group.add(np.flatnonzero(kit.coordinates(obj)[:, 2] > 0.7).tolist(), 1.0, "REPLACE")
+    bpy.ops.ridgeform.stylize(strength_group="Cap")
+    assert "as it was" not in said()
+
+
+def test_half_a_ball_under_a_mirror_stays_closed():
+    obj = made("torus")
+    half = mirror_kit.cut(obj, "X")
+    mirror_kit.mirror(obj, "X")
+    bpy.ops.ridgeform.stylize()
+    assert "as it was" in said()
+    after = kit.coordinates(obj)
+    on = half[:, 0] == 0.0
+    assert on.sum() > 20 and (after[on, 0] == 0.0).all() and (after[~on, 0] > 0.0).all()
+
+
+@pytest.mark.parametrize("output", ["SHAPE_KEY", "ATTRIBUTE"])
+def test_the_mesh_may_stay_as_it_is(output):
+    obj = made("icosphere")
+    before = kit.coordinates(obj)
+    bpy.ops.ridgeform.stylize(output=output)
+    assert "facets were made of the shape as it was" in said()
+    assert kit.same_bits(kit.coordinates(obj), before)
+    if output == "SHAPE_KEY":
+        key = obj.data.shape_keys.key_blocks["Stylized"]
+        there = np.array([point.co for point in key.data])
+        assert np.abs(there - before).max() > 0.01
+
+
+def test_low_poly_reduces_the_shape_as_it_was():
+    obj = made("uv sphere")
+    before = {tuple(place) for place in kit.coordinates(obj).round(4)}
+    bpy.ops.ridgeform.stylize(finish="LOW_POLY", reduce_ratio=0.3)
+    assert "the shape was reduced as it was" in said()
+    reach = np.linalg.norm(kit.coordinates(obj), axis=1)
+    assert len(before) > 2 * len(reach) and reach.min() > 0.95
 
 
 def test_few_steps_are_no_reason_to_say_so():
