@@ -24,6 +24,9 @@ pub(super) const ENOUGH: usize = 1000;
 /// Points that a merge is judged by before it is fitted to all.
 pub(super) const JUDGED_BY: usize = 300;
 
+/// A piece that has so many times as many faces as when it was compared with a neighbor is another one.
+pub(super) const GROWN: f64 = 1.25;
+
 /// A surface turns by no more than this (radians; 46 degrees) under one face of it, and a face is tilted
 /// against it by no more: cylinders have eight sides and more. The corners of any box lie on a sphere, and so
 /// do those of two caps and nothing between.

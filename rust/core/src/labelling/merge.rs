@@ -4,36 +4,61 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::constants::{BORDER, JUDGED_BY};
+use super::constants::{BORDER, GROWN, JUDGED_BY};
 use super::labels::{Labelling, Piece, NONE};
 use super::pieces::best;
 use super::Domain;
 use crate::progress::Progress;
+use crate::surfaces::Surface;
 use crate::{memory, Result};
 
+/// What is known of two neighbors.
+#[derive(Debug, Clone, Copy)]
+struct Judged {
+    /// By how much the energy would fall, about.
+    gain: f64,
+    /// How many faces both had.
+    n_faces: usize,
+    /// Whether neither has changed since.
+    is_current: bool,
+}
+
 /// Merges as long as the energy falls.
+///
+/// A piece that has taken a small one in is hardly another, so what was known of it and its other neighbors
+/// is asked again only once it matters: when they would be the next to merge, or the piece has another kind
+/// of surface or [`GROWN`] times as many faces. Otherwise a side with a thousand small neighbors would be
+/// compared with all of them a thousand times.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`].
 pub(super) fn merge(domain: &Domain<'_>, state: &mut Labelling, progress: &Progress) -> Result<()> {
     let mut borders = borders(domain, &state.labels);
-    let mut gains: BTreeMap<(u32, u32), f64> = BTreeMap::new();
+    let mut known: BTreeMap<(u32, u32), Judged> = BTreeMap::new();
     let mut asked: Vec<(u32, u32)> = memory::gathered(borders.keys().copied())?;
     while !progress.is_finishing() {
         let found = asked.par_iter().map(|&pair| {
             progress.check()?;
             Ok((pair, judged(domain, state, pair, borders[&pair])?))
         });
-        gains.extend(memory::all(memory::joined(found)?)?);
-        let best = gains.iter().filter(|(_, gain)| **gain > 0.0).max_by(|a, b| a.1.total_cmp(b.1));
-        let Some((&(a, b), _)) = best else { break };
-        gains.remove(&(a, b));
+        known.extend(memory::all(memory::joined(found)?)?);
+        asked = Vec::new();
+        let best = known.iter().filter(|(_, known)| known.gain > 0.0);
+        let Some((&(a, b), judged)) = best.max_by(|a, b| a.1.gain.total_cmp(&b.1.gain)) else { break };
+        if !judged.is_current {
+            asked.push((a, b));
+            continue;
+        }
+        known.remove(&(a, b));
         let joined = union(state, (a, b))?;
         let piece = Piece::of(domain, joined)?;
         let parts = state.pieces[a as usize].energy + state.pieces[b as usize].energy;
         let border = borders.get(&(a, b)).copied().unwrap_or(0.0);
-        asked = Vec::new();
         if piece.energy < parts + border && piece.surface.is_some() {
+            let kind = |piece: &Piece| piece.surface.as_ref().map(Surface::kind);
+            let is_like = |label: u32| kind(&state.pieces[label as usize]) == kind(&piece);
+            let are_like = [a, b].map(is_like);
+            let n_faces = piece.faces.len();
             piece.faces.iter().for_each(|&f| state.labels[f as usize] = a);
             state.pieces[a as usize] = piece;
             state.pieces[b as usize] = Piece::default();
@@ -42,16 +67,28 @@ pub(super) fn merge(domain: &Domain<'_>, state: &mut Labelling, progress: &Progr
                 .filter(|((x, y), _)| [*x, *y].iter().any(|l| *l == a || *l == b))
                 .map(|(&pair, &length)| (pair, length))
                 .collect();
+            let mut before: BTreeMap<(u32, u32), Option<Judged>> = BTreeMap::new();
             for ((x, y), length) in touched {
                 borders.remove(&(x, y));
-                gains.remove(&(x, y));
+                let old = known.remove(&(x, y));
+                let is_like = are_like[usize::from(x == b || y == b)];
                 let renamed = |l: u32| if l == b { a } else { l };
-                let (x, y) = (renamed(x).min(renamed(y)), renamed(x).max(renamed(y)));
-                if x != y {
-                    *borders.entry((x, y)).or_insert(0.0) += length;
+                let pair = (renamed(x).min(renamed(y)), renamed(x).max(renamed(y)));
+                if pair.0 != pair.1 {
+                    *borders.entry(pair).or_insert(0.0) += length;
+                    // A neighbor of both has a longer border than what is known of it says.
+                    let is_first = !before.contains_key(&pair);
+                    before.insert(pair, old.filter(|_| is_first && is_like));
                 }
             }
-            asked.extend(borders.keys().filter(|(x, y)| *x == a || *y == a).copied());
+            for (pair, old) in before {
+                let other = if pair.0 == a { pair.1 } else { pair.0 };
+                let n_now = n_faces + state.pieces[other as usize].faces.len();
+                match old.filter(|old| (n_now as f64) < GROWN * old.n_faces as f64) {
+                    Some(old) => drop(known.insert(pair, Judged { is_current: false, ..old })),
+                    None => asked.push(pair),
+                }
+            }
         }
     }
     Ok(())
@@ -81,10 +118,11 @@ fn union(state: &Labelling, (a, b): (u32, u32)) -> Result<Vec<u32>> {
 }
 
 /// By how much the energy would fall, about: surfaces are fitted to some of the points.
-fn judged(domain: &Domain<'_>, state: &Labelling, pair: (u32, u32), border: f64) -> Result<f64> {
+fn judged(domain: &Domain<'_>, state: &Labelling, pair: (u32, u32), border: f64) -> Result<Judged> {
     let faces = union(state, pair)?;
     let samples = domain.samples(&faces)?;
     let limit = state.pieces[pair.0 as usize].energy + state.pieces[pair.1 as usize].energy + border;
     let thin = samples.thinned(JUDGED_BY)?;
-    Ok(best(domain, &faces, &thin, limit)?.map_or(0.0, |(_, energy)| limit - energy))
+    let gain = best(domain, &faces, &thin, limit)?.map_or(0.0, |(_, energy)| limit - energy);
+    Ok(Judged { gain, n_faces: faces.len(), is_current: true })
 }
