@@ -33,7 +33,7 @@ const PLAIN_ROUNDS: usize = 40;
 /// What is left of a vector of length 1 beside others that counts as a direction of its own.
 const INDEPENDENT: f64 = 1e-6;
 
-/// Passes of Gram and Schmidt at most; a vector that two leave alone has taken them, and rounding takes three.
+/// Passes of Gram and Schmidt at most; two are usual, and what is left of rounding takes three.
 const MOST_PASSES: usize = 16;
 
 /// The shift as a part of the scale of eigenvalues: small against them, large against rounding.
@@ -226,9 +226,10 @@ impl Pencil<'_> {
         Ok(())
     }
 
-    /// Gram and Schmidt against the mass, twice, and again while a vector loses half of its length: what is left
-    /// of one that nearly lies in the span of those before is rounding, and not orthogonal to them (Daniel et
-    /// al. 1976, *Reorthogonalization and stable algorithms for updating the Gram-Schmidt QR factorization*).
+    /// Gram and Schmidt against the mass, twice, and again while a vector loses half of its length: what is
+    /// left of one that nearly lies in the span of those before is rounding, and not orthogonal to them
+    /// (Daniel et al. 1976, *Reorthogonalization and stable algorithms for updating the Gram-Schmidt QR
+    /// factorization*).
     fn orthonormalize(&self, block: &mut [Vec<f64>]) -> Result<()> {
         for j in 0..block.len() {
             let (before, rest) = block.split_at_mut(j);
