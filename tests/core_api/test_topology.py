@@ -66,6 +66,21 @@ def test_weld_makes_one_mesh_of_a_soup(rounding, dtype):
     assert ridgeform.Mesh(welded, joined).report.n_boundary_loops == 1
 
 
+def band_with_a_seam():
+    """A strip of triangles, one of whose vertices is 0.00001 of its size from a border vertex."""
+    vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [1 + 3e-6, 0, 0], [2, 0, 0], [2, 1, 0]]
+    return np.array(vertices, float), np.array([[0, 1, 2], [1, 3, 2], [4, 5, 6], [4, 6, 3]])
+
+
+@pytest.mark.parametrize("exponent", [-1000, -536, 0, 536, 1000])
+def test_weld_and_the_report_have_no_unit(exponent):
+    vertices, faces = band_with_a_seam()
+    vertices = np.ldexp(vertices, exponent)
+    assert len(ridgeform.weld(vertices, faces)[0]) == 6
+    assert len(ridgeform.weld(vertices, faces, tolerance=np.ldexp(1e-7, exponent))[0]) == 7
+    assert len(ridgeform.Mesh(vertices, faces).report.t_junctions) == 0
+
+
 def test_weld_takes_a_tolerance_and_joins_borders_only():
     vertices, faces = shapes.cube(4)
     apart, own = soup(vertices, faces, 1e-3)

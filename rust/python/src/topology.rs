@@ -3,6 +3,7 @@
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
 use ridgeform_core::mesh::{orient as orient_faces, Connectivity, Weld};
+use ridgeform_core::unit::Unit;
 
 use crate::arrays::{finite_floats, float_rows, index_array, index_rows};
 use crate::doorway;
@@ -50,7 +51,10 @@ pub(crate) fn weld<'py>(
     let faces = read_faces(faces, Some(vertices.len()))?;
     let (vertices, faces, index) = doorway::call_briefly(py, || {
         let connectivity = Connectivity::new(faces, vertices.len())?;
-        Ok(match Weld::of_seams(&connectivity, &vertices, tolerance)? {
+        let unit = Unit::of(vertices.iter().flatten().copied());
+        let measured: Vec<_> = vertices.iter().map(|point| point.map(|x| unit.measure(x))).collect();
+        let tolerance = tolerance.map(|tolerance| unit.measure(tolerance));
+        Ok(match Weld::of_seams(&connectivity, &measured, tolerance)? {
             Some(weld) => (weld.firsts(&vertices)?, weld.faces(connectivity.faces())?, weld.vertex),
             None => {
                 let index = (0..vertices.len() as u32).collect();

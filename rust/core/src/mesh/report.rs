@@ -41,6 +41,8 @@ pub struct MeshReport {
 /// # Errors
 /// [`crate::Error::Solve`] where memory is missing.
 pub fn report(mesh: &Mesh) -> Result<MeshReport> {
+    let measured = mesh.measured(mesh.unit())?;
+    let mesh = measured.as_ref();
     let connectivity = mesh.connectivity();
     let mut referenced = memory::repeated(false, connectivity.n_vertices())?;
     connectivity.faces().iter().flatten().for_each(|&v| referenced[v as usize] = true);
