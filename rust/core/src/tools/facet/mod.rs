@@ -55,7 +55,7 @@ pub use options::{FacetOptions, Symmetric};
 use crate::error::MeshError;
 use crate::memory::{self, Tool};
 use crate::mesh::vector::{add, scale};
-use crate::mesh::{Mesh, Working};
+use crate::mesh::{CutMesh, Mesh, Working};
 use crate::progress::Progress;
 use crate::solve::Status;
 use crate::tools::answer::{self, Surroundings};
@@ -79,7 +79,24 @@ pub fn facet(
     progress: &Progress,
 ) -> Result<Faceted> {
     options.check(mesh)?;
-    mesh.positions().ok_or(MeshError::NoPositions)?;
+    let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
+    // Where faces stay, so does what they share.
+    let may_part = !options.keep_triangles && options.faces.is_none();
+    let touching = if may_part { CutMesh::of_touching(mesh.connectivity(), positions)? } else { None };
+    let Some(CutMesh { faces, vertices }) = touching else { return of(mesh, merges, options, progress) };
+    let points = memory::gathered(vertices.iter().map(|&v| positions[v as usize]))?;
+    let mut found = of(&Mesh::new(points, faces)?, merges, options, progress)?;
+    found.origins.iter_mut().for_each(|origin| *origin = vertices[*origin as usize]);
+    Ok(found)
+}
+
+/// The same of a mesh whose surfaces touch along no edge, or stay together there.
+fn of(
+    mesh: &Mesh,
+    merges: Option<&FacetMerges>,
+    options: &FacetOptions,
+    progress: &Progress,
+) -> Result<Faceted> {
     match options.symmetric {
         Some(symmetric) => {
             let half = symmetry::Half::new(mesh, symmetric)?;

@@ -16,7 +16,7 @@ use crate::error::SolveError;
 use crate::linear::cholesky::Cholesky;
 use crate::linear::pattern::LowerPattern;
 use crate::memory;
-use crate::mesh::vector::{add, area_vector, dot, norm, scale, sub, unit, Point};
+use crate::mesh::vector::{add, area_vector, distance, dot, norm, scale, sub, unit, Point};
 use crate::Result;
 
 /// A facet at a corner.
@@ -157,6 +157,12 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point], stage: &S
         }
         if only_flattens && shape.off_planes() < FLATTEST * FLAT {
             break;
+        }
+    }
+    // What is where it was, as exactly as facets are flat, keeps its bits: what touches there still does.
+    for corner in shape.corners.iter_mut().filter(|corner| !corner.is_fixed) {
+        if distance(corner.point, corner.home) <= FLATTEST * FLAT {
+            corner.point = corner.home;
         }
     }
     set_triangles(shape);

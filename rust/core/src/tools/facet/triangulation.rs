@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use spade::handles::FixedVertexHandle;
-use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
+use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation, MIN_ALLOWED_VALUE};
 
 use super::constants::COVERED;
 use super::shape::{sides, Facet, Shape};
@@ -24,7 +24,9 @@ pub(super) fn axes(normal: Point) -> [Point; 2] {
 /// the wrong way around, or enclose nothing.
 pub(super) fn triangles(shape: &Shape, facet: &Facet) -> Result<Option<Vec<[u32; 3]>>> {
     let [x, y] = axes(facet.plane.normal);
-    let flat = |c: u32| [dot(x, shape.point(c)), dot(y, shape.point(c))];
+    // The triangulation takes no smaller number but zero, and rounding leaves any beside an axis.
+    let clear = |t: f64| if t.abs() < MIN_ALLOWED_VALUE { 0.0 } else { t };
+    let flat = |c: u32| [clear(dot(x, shape.point(c))), clear(dot(y, shape.point(c)))];
     let twice = |[p, q, r]: [[f64; 2]; 3]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
     let Some(first) = facet.corners().next().map(flat) else { return Ok(None) };
     let area: f64 = facet.sides().map(|[a, b]| twice([first, flat(a), flat(b)])).sum();
