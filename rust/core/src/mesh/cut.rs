@@ -171,13 +171,13 @@ mod tests {
             [-1.0, -0.5, 0.5],
             [-1.0, 0.5, 0.5],
         ];
-        let faces = vec![[0, 1, 3], [0, 2, 1], [0, 3, 2], [1, 2, 3]];
+        let faces = vec![[0, 3, 1], [0, 1, 2], [0, 2, 3], [1, 3, 2]];
         (Connectivity::new([faces, second.to_vec()].concat(), 6).unwrap(), points)
     }
 
     #[test]
     fn surfaces_that_touch_are_parted_where_each_is_closed() {
-        let (connectivity, points) = touching([[0, 1, 5], [0, 4, 1], [0, 5, 4], [1, 4, 5]]);
+        let (connectivity, points) = touching([[0, 5, 1], [0, 1, 4], [0, 4, 5], [1, 5, 4]]);
         let cut = CutMesh::of_touching(&connectivity, &points).unwrap().unwrap();
         assert_eq!(cut.n_copies(), 8);
         let apart = Connectivity::new(cut.faces.clone(), 8).unwrap();
@@ -187,7 +187,7 @@ mod tests {
 
     #[test]
     fn faces_that_disagree_on_the_outside_stay_together() {
-        let (connectivity, points) = touching([[0, 5, 1], [0, 1, 4], [0, 4, 5], [1, 5, 4]]);
+        let (connectivity, points) = touching([[0, 1, 5], [0, 4, 1], [0, 5, 4], [1, 4, 5]]);
         assert_eq!(CutMesh::of_touching(&connectivity, &points).unwrap(), None);
     }
 }
