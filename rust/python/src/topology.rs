@@ -52,9 +52,9 @@ pub(crate) fn weld<'py>(
     let (vertices, faces, index) = doorway::call_briefly(py, || {
         let connectivity = Connectivity::new(faces, vertices.len())?;
         let unit = Unit::of(vertices.iter().flatten().copied());
-        let measured: Vec<_> = vertices.iter().map(|point| point.map(|x| unit.measure(x))).collect();
+        let measured = unit.measure_all(vertices.as_flattened());
         let tolerance = tolerance.map(|tolerance| unit.measure(tolerance));
-        Ok(match Weld::of_seams(&connectivity, &measured, tolerance)? {
+        Ok(match Weld::of_seams(&connectivity, measured.as_chunks().0, tolerance)? {
             Some(weld) => (weld.firsts(&vertices)?, weld.faces(connectivity.faces())?, weld.vertex),
             None => {
                 let index = (0..vertices.len() as u32).collect();
