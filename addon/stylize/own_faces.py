@@ -8,6 +8,7 @@ import numpy as np
 import ridgeform
 
 from ..blender.mirroring import Plane
+from ..blender.polygons import Polygons
 from ..blender.welding import Weld
 from ..framework import keeping
 from ..framework.ridges import Edges, face_normals
@@ -21,8 +22,10 @@ class OwnFaces:
     """Its surface, without images of mirrors."""
     faces: np.ndarray
     """The face (l,) of each welded triangle."""
-    edge_weights: np.ndarray | None
-    """With these (l, 3) facets do not run through faces."""
+    corners: np.ndarray
+    """Its corners (l, 3) among those of all faces."""
+    polygons: Polygons
+    """All faces."""
     planes: Sequence[Plane]
     """The planes of mirrors that borders lie on."""
 
@@ -64,6 +67,7 @@ def put_onto_facets(
     Only the welded triangles `taking` (l,) bool take part; all that others have stays in every bit.
     """
     weld = own.weld
+    starts, sizes = own.polygons.starts[own.faces], own.polygons.sizes[own.faces]
     mesh = ridgeform.Mesh(weld.places(coordinates), weld.triangles)
     options = {} if taking.all() else {"faces": taking}
     if not coarse_to_fine:
@@ -74,7 +78,7 @@ def put_onto_facets(
         mesh,
         facets=count,
         keep_triangles=True,
-        edge_weights=own.edge_weights,
+        edge_weights=keeping.along_faces(own.corners, starts, sizes),
         progress=progress,
         **options,
     )

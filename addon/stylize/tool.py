@@ -11,9 +11,10 @@ import numpy as np
 import ridgeform
 
 from ..blender import mesh_io, modifiers, rebuilding
+from ..blender.polygons import Polygons
 from ..blender.refusals import RefusedError
 from ..blender.welding import Weld
-from ..framework import faceting, keeping
+from ..framework import faceting
 from ..framework.job import Task
 from ..framework.preflight import uneven_scale
 from ..framework.ridges import Edges
@@ -225,12 +226,14 @@ def _own_weld(obj: bpy.types.Object, source: Source) -> Weld:
 
 def _own_faces(obj: bpy.types.Object, source: Source) -> OwnFaces:
     weld, images = _own_weld(obj, source), source.weld.images
-    faces = mesh_io.triangle_faces(obj.data)[weld.rows]
     starts, corners, _ = mesh_io.face_corners(obj.data)
-    sizes = np.diff(starts, append=len(corners))
-    triangle_corners = mesh_io.triangle_corners(obj.data)[weld.rows]
-    weights = keeping.along_faces(triangle_corners, starts[faces], sizes[faces])
-    return OwnFaces(weld, faces, weights, () if images is None else images.planes)
+    return OwnFaces(
+        weld,
+        mesh_io.triangle_faces(obj.data)[weld.rows],
+        mesh_io.triangle_corners(obj.data)[weld.rows],
+        Polygons(corners, starts),
+        () if images is None else images.planes,
+    )
 
 
 def _stylized(part: FlowPart, settings: object, progress: ridgeform.Progress) -> finish.Finished:
