@@ -1,6 +1,6 @@
 //! Facets that are sound, then facets that fit.
 
-use super::constants::{FITTING, FLAT, IDLE, NOISE, PROMISED, PULL, REPAIRS, STAY, TRIES};
+use super::constants::{FITTING, FLAT, IDLE, NOISE, PROMISED, PULL, REPAIRS, SPREAD, STAY, TRIES};
 use super::faces::Faces;
 use super::faults::Inspection;
 use super::moments::{Moments, Plane};
@@ -13,14 +13,23 @@ use crate::memory;
 use crate::mesh::vector::{area_vector, between, distance, norm, unit};
 use crate::Result;
 
-/// Flattens the facets near where they were on the mesh, and repairs those that cross themselves or others.
-pub(super) fn settle(shape: &mut Shape, faces: &mut Faces<'_>, stage: &Stage<'_>) -> Result<()> {
+/// Flattens the facets near where they were on the mesh, and repairs those that cross themselves or others
+/// if they `are_repaired`; where faults spread by that, what had the fewest is left. Says whether they did.
+pub(super) fn settle(
+    shape: &mut Shape,
+    faces: &mut Faces<'_>,
+    are_repaired: bool,
+    stage: &Stage<'_>,
+) -> Result<bool> {
+    let mut n_first = 0;
+    let mut fewest: Option<((bool, usize), Shape, Vec<u32>)> = None;
     for round in 0..=REPAIRS {
         *shape = shape.at_home()?;
         shape.facets.iter_mut().for_each(|facet| facet.plane = facet.moments.fit().plane);
         let homes = memory::gathered(shape.corners.iter().map(|corner| corner.home))?;
         flatten(shape, STAY, &homes, stage)?;
-        let faulty = Inspection::new(shape, faces, false)?.faults()?;
+        let inspection = Inspection::new(shape, faces, false)?;
+        let faulty = inspection.faults()?;
         let is_last = faulty.is_empty() || round == REPAIRS || stage.is_finishing();
         if is_last {
             break;
@@ -30,11 +39,30 @@ pub(super) fn settle(shape: &mut Shape, faces: &mut Faces<'_>, stage: &Stage<'_>
                 break;
             }
             faulty.iter().for_each(|&k| hold(shape, k));
-        } else if !repair(shape, faces, &faulty)? {
+            continue;
+        }
+        if !are_repaired {
+            break;
+        }
+        if round == 0 {
+            n_first = faulty.len();
+        }
+        if faulty.len() > SPREAD * n_first {
+            if let Some((_, least, labels)) = fewest {
+                (*shape, faces.labels) = (least, labels);
+            }
+            return Ok(true);
+        }
+        // Pairs are only looked for where no facet is crossed.
+        let rank = (!inspection.crossed.is_empty(), faulty.len());
+        if fewest.as_ref().is_none_or(|(least, ..)| rank < *least) {
+            fewest = Some((rank, shape.twin()?, memory::twin(&faces.labels)?));
+        }
+        if !repair(shape, faces, &faulty)? {
             break;
         }
     }
-    Ok(())
+    Ok(false)
 }
 
 /// Gives every face to the nearest facet and fits the planes anew, in turns,

@@ -14,6 +14,9 @@ use crate::{memory, Result};
 pub(super) struct Refusals {
     /// Faces that stay as they are, or whose neighbors do.
     pub is_held: Vec<bool>,
+    /// Whether facets that cross are repaired before what made them is refused: not once faults spread by
+    /// that.
+    pub are_repaired: bool,
     /// How often each face was in a facet that could not stay.
     strikes: Vec<u32>,
     /// The same of vertices that were its corners.
@@ -25,6 +28,7 @@ impl Refusals {
     pub(super) fn new(is_held: &[bool]) -> Result<Self> {
         Ok(Self {
             is_held: memory::twin(is_held)?,
+            are_repaired: true,
             strikes: memory::repeated(0, is_held.len())?,
             at_corners: HashMap::new(),
         })

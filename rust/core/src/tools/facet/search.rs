@@ -132,6 +132,7 @@ impl Job<'_> {
         let limit = (is_found && is_near).then_some(constants::ERROR);
         // With fewer facets than are wanted, and with as many or more.
         let mut best: [Option<(Rank, Divided<'_>)>; 2] = [None, None];
+        let mut begun = [0; 2];
         let stage = Stage::new(progress, "finding facets", shares::FINDING[0], USUAL[0]);
         for _ in 0..COUNTS {
             let start = self.start(merges, count, limit, scan)?;
@@ -139,7 +140,7 @@ impl Job<'_> {
                 // However many there are to begin with, more are joined again.
                 aim = start.1.len();
             }
-            let mut divided = self.sound(merges, count, start, false, scan, &stage)?;
+            let mut divided = self.sound(merges, count, start, scan, &stage)?;
             let Settled { shape, faces } = &mut divided.settled;
             let n_made = shape.facets.len();
             let off = aim as f64 - n_made as f64;
@@ -164,6 +165,7 @@ impl Job<'_> {
             let (rank, best) = ((divided.n_unsound, miss), &mut best[usize::from(is_enough)]);
             if best.as_ref().is_none_or(|(least, _)| rank < *least) {
                 *best = Some((rank, divided));
+                begun[usize::from(is_enough)] = count;
             }
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
             let next = (next as usize).clamp(fewest, most);
@@ -182,11 +184,16 @@ impl Job<'_> {
                 // Smaller regions everywhere leave more ways to join them.
                 if is_asked && rank.1 > 0.0 && divided.is_local && !progress.is_finishing() {
                     let stage = Stage::new(progress, "finding facets", shares::FINDING[1], USUAL[0]);
-                    let start = self.start(merges, aim, None, scan)?;
-                    let mut other = self.sound(merges, aim, start, true, scan, &stage)?;
-                    let miss = other.join(goal, shares::JOINING[1], progress)?;
-                    if (other.n_unsound, miss) < *rank {
-                        (*rank, *divided) = ((other.n_unsound, miss), other);
+                    let (tree, cut) = self.start(merges, aim, None, scan)?;
+                    // What is sound by parts began with more that was not.
+                    let divide = || self.divided((&tree, cut), aim == most, scan, &stage);
+                    let coarsest = (begun[1] != aim).then(divide).transpose()?;
+                    if let Some(other) = self.finer((merges, &tree), aim, coarsest, scan, &stage)? {
+                        let mut other = self.released(other)?;
+                        let miss = other.join(goal, shares::JOINING[1], progress)?;
+                        if (other.n_unsound, miss) < *rank {
+                            (*rank, *divided) = ((other.n_unsound, miss), other);
+                        }
                     }
                 }
             }
@@ -226,23 +233,22 @@ impl Job<'_> {
     }
 
     /// The shape of the regions of a cut, `count` of them or a few more; where that is not sound of smaller
-    /// ones, and of smaller ones everywhere if that is not enough, or is wanted at once.
+    /// ones, and of smaller ones everywhere if that is not enough.
     fn sound<'s>(
         &self,
         merges: &Merges,
-        mut count: usize,
+        count: usize,
         (tree, cut): (Hierarchy, Cut),
-        everywhere: bool,
         scan: &'s Scan,
         stage: &Stage<'_>,
     ) -> Result<Divided<'s>> {
-        let (n, [_, most]) = (self.parts.len(), merges.range(self.parts.len()));
+        let [_, most] = merges.range(self.parts.len());
         let mut best = self.divided((&tree, cut), count == most, scan, stage)?;
         let is_done = |best: &Divided<'_>| best.n_unsound == 0 || stage.is_finishing();
-        let (first, mut above) = (count, count);
+        let mut above = count;
         // Where most of it is in doubt, nothing is gained by keeping the rest.
         let is_sparse = |best: &Divided<'_>| 2 * best.in_doubt.len() < best.cut.len();
-        while !(everywhere || is_done(&best) || above >= most.min(first << DOUBLINGS)) && is_sparse(&best) {
+        while !(is_done(&best) || above >= most.min(count << DOUBLINGS)) && is_sparse(&best) {
             above *= 2;
             let mut cut = best.cut.clone();
             let lowest = tree.above(merges, above.min(most));
@@ -253,18 +259,37 @@ impl Job<'_> {
                 best = Divided { is_local: true, is_divided: true, ..divided };
             }
         }
-        while !is_done(&best) && count < most.min(first << DOUBLINGS) {
+        let best = self.finer((merges, &tree), count, Some(best), scan, stage)?;
+        self.released(best.ok_or(MeshError::NoFaces)?)
+    }
+
+    /// The best of a shape, and those of regions that are twice as many as `count`, four times, … everywhere,
+    /// until one is sound.
+    fn finer<'s>(
+        &self,
+        (merges, tree): (&Merges, &Hierarchy),
+        mut count: usize,
+        mut best: Option<Divided<'s>>,
+        scan: &'s Scan,
+        stage: &Stage<'_>,
+    ) -> Result<Option<Divided<'s>>> {
+        let (n, [_, most]) = (self.parts.len(), merges.range(self.parts.len()));
+        let last = most.min(count << DOUBLINGS);
+        let is_sound = |best: &Divided<'_>| best.n_unsound == 0;
+        while !(best.as_ref().is_some_and(is_sound) || stage.is_finishing()) && count < last {
             count = (2 * count).min(most);
             let cut = Hierarchy::new(merges, n, n - count)?.1;
-            let is_last = count == most.min(first << DOUBLINGS);
-            let divided = self.divided((&tree, cut), is_last, scan, stage)?;
-            if divided.n_unsound < best.n_unsound {
-                best = Divided { is_divided: true, ..divided };
+            let divided = self.divided((tree, cut), count == last, scan, stage)?;
+            if best.as_ref().is_none_or(|best| divided.n_unsound < best.n_unsound) {
+                best = Some(Divided { is_divided: true, ..divided });
             }
         }
-        let mut divided = best;
+        Ok(best)
+    }
+
+    /// What stayed so that the rest is sound may change again.
+    fn released<'s>(&self, mut divided: Divided<'s>) -> Result<Divided<'s>> {
         let settled = &mut divided.settled;
-        // What stayed so that the rest is sound may change again.
         for facet in &mut settled.shape.facets {
             facet.is_held &= self.is_held[facet.part as usize];
         }
@@ -286,7 +311,8 @@ impl Job<'_> {
         let mut is_fixed = memory::twin(&self.is_fixed)?;
         let mut best: Option<Divided<'_>> = None;
         for round in 0..=if is_last { 2 * REFUSALS } else { REFUSALS } {
-            let (settled, tolerance) = self.settled(scan, tree, &cut, &refusals, &is_fixed, stage)?;
+            let (settled, tolerance, spread) = self.settled(scan, tree, &cut, &refusals, &is_fixed, stage)?;
+            refusals.are_repaired &= !spread;
             let mut unsound = Unsound::new(&settled.shape, &settled.faces)?;
             let n_unsound = unsound.facets.len();
             if round + 1 == 2 * REFUSALS {
@@ -335,7 +361,7 @@ impl Job<'_> {
         }
     }
 
-    /// The shape made of the regions of a cut, sound where that can be had; twice how far it is off.
+    /// The shape made of a cut, sound where that can be had; twice how far it is off; whether faults spread.
     fn settled<'s>(
         &self,
         scan: &'s Scan,
@@ -344,7 +370,7 @@ impl Job<'_> {
         refusals: &Refusals,
         is_fixed: &[bool],
         stage: &Stage<'_>,
-    ) -> Result<(Settled<'s>, f64)> {
+    ) -> Result<(Settled<'s>, f64, bool)> {
         let (labels, tops) = tree.labels(cut)?;
         let n_regions = tops.len();
         let (mut parts, mut is_held) =
@@ -367,8 +393,8 @@ impl Job<'_> {
             }
         }
         let mut faces = Faces { scan, labels, is_held: memory::twin(&refusals.is_held)? };
-        fitting::settle(&mut shape, &mut faces, stage)?;
+        let spread = fitting::settle(&mut shape, &mut faces, refusals.are_repaired, stage)?;
         fitting::fold(&mut shape, &mut faces, stage)?;
-        Ok((Settled { shape, faces }, tolerance))
+        Ok((Settled { shape, faces }, tolerance, spread))
     }
 }
