@@ -38,7 +38,7 @@ const ROUNDING: f64 = 1e-18;
 pub fn minimize(problem: &Problem<'_>, settings: &Settings, progress: &Progress) -> Result<Solution> {
     problem.check_shapes()?;
     let free = FreeOperator::new(problem.operator, &problem.fixed)?;
-    let mut newton = Newton::new(problem, &free, settings.memory_limit)?;
+    let mut newton = Newton::new(problem, &free, settings)?;
     let mut values = problem.target.copied()?;
     let (mut total, mut is_stopped) = (Totals::default(), false);
     for c in 0..values.n_columns {
@@ -51,7 +51,7 @@ pub fn minimize(problem: &Problem<'_>, settings: &Settings, progress: &Progress)
         }
     }
     let gap = total.decrease / Problem::gap_scale(total.objective, total.floor);
-    let reached = gap <= settings.tolerance.unwrap_or(ENOUGH.sqrt());
+    let reached = gap <= newton.goal;
     Ok(Solution {
         values,
         objective: total.objective,
@@ -83,12 +83,40 @@ struct Newton<'a> {
     problem: &'a Problem<'a>,
     free: &'a FreeOperator,
     cholesky: Cholesky,
+    shift: Shift,
     /// Whether the target is an answer, and costs 0 at least.
     may_stay: bool,
+    /// The gap at which the problem counts as solved.
+    goal: f64,
+}
+
+/// What the shift is a part of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Shift {
+    /// The mean of the diagonal.
+    Mean,
+    /// Each entry of the diagonal: where these are many orders apart, as around slivers, a part of their mean
+    /// outweighs the small ones, and the factor is that of another matrix.
+    Each,
 }
 
 impl<'a> Newton<'a> {
-    fn new(problem: &'a Problem<'a>, free: &'a FreeOperator, memory_limit: Option<usize>) -> Result<Self> {
+    fn new(problem: &'a Problem<'a>, free: &'a FreeOperator, settings: &Settings) -> Result<Self> {
+        let negative = problem.weights.iter().any(|w| *w < 0.0);
+        let normal = normal_matrix(problem, free)?;
+        let mut newton = Self {
+            problem,
+            free,
+            cholesky: Cholesky::analyze(normal.pattern().copied()?, settings.memory_limit)?,
+            shift: Shift::Mean,
+            may_stay: !negative && problem.linear_constraints.is_none(),
+            goal: settings.tolerance.unwrap_or(ENOUGH.sqrt()),
+        };
+        newton.factorize(&normal, Shift::Mean)?;
+        Ok(newton)
+    }
+
+    fn factorize(&mut self, normal: &NormalMatrix, kind: Shift) -> Result<()> {
         /// The shift as a part of the diagonal: above rounding in the factorization, below the smallest
         /// eigenvalue of well posed problems up to some 100k vertices.
         const SHIFT: f64 = 1e-13;
@@ -98,19 +126,13 @@ impl<'a> Newton<'a> {
         /// How much larger a shift is tried when the factorization fails, and how large it gets.
         const SHIFT_GROWTH: f64 = 100.0;
         const LARGEST_SHIFT: f64 = 1e-6;
-        // Negative weights tell of a matrix that may not be definite,
-        // and a cut block with one makes any that is not.
-        let negative = problem.weights.iter().any(|w| *w < 0.0);
-        let normal = if negative {
-            NormalMatrix::new(&free.operator)?
-        } else {
-            NormalMatrix::stretched(&free.operator)?
-        };
-        let may_stay = !negative && problem.linear_constraints.is_none();
-        let mut cholesky = Cholesky::analyze(normal.pattern().copied()?, memory_limit)?;
+        self.shift = kind;
+        let (problem, free) = (self.problem, self.free);
         if free.free.is_empty() {
-            return Ok(Self { problem, free, cholesky, may_stay });
+            return Ok(());
         }
+        // Negative weights tell of a matrix that may not be definite.
+        let negative = problem.weights.iter().any(|w| *w < 0.0);
         let twice: Vec<f64> =
             memory::gathered(free.free.iter().map(|&i| 2.0 * problem.fidelity[i as usize]))?;
         let mut values = memory::room(normal.pattern().rows.len())?;
@@ -132,12 +154,13 @@ impl<'a> Newton<'a> {
         };
         loop {
             for (&s, d) in normal.pattern().starts.iter().zip(&diagonal) {
+                let whole = if kind == Shift::Mean { scale } else { d.abs() };
                 // A row without an entry would make the matrix singular; nothing pulls at it,
                 // so it stays where it is.
-                values[s] = if *d == 0.0 { scale } else { d + shift * scale };
+                values[s] = if *d == 0.0 { scale } else { d + shift * whole };
             }
-            match cholesky.factorize(&values) {
-                Ok(()) => return Ok(Self { problem, free, cholesky, may_stay }),
+            match self.cholesky.factorize(&values) {
+                Ok(()) => return Ok(()),
                 Err(error @ SolveError::Memory { .. }) => return Err(error.into()),
                 Err(_) if shift < largest => shift = (SHIFT_GROWTH * shift).max(SHIFT),
                 Err(_) if negative => return Err(not_convex()),
@@ -160,6 +183,10 @@ impl<'a> Newton<'a> {
         /// Steps at most after the first; well posed problems take one or two, those with a large shift some
         /// ten.
         const MOST_STEPS: usize = 299;
+        /// Steps that go for all digits with a shift that is the same everywhere, where another may help.
+        const FIRST_STEPS: usize = 20;
+        /// After these, the part of the gap that counts as solved which is left.
+        const CLEARLY: f64 = 0.1;
         let target = self.problem.target.column(c);
         let at_target = self.objective(u, target);
         let rounding = ROUNDING * self.without_cancelling(target);
@@ -181,8 +208,21 @@ impl<'a> Newton<'a> {
         total.steps += 1;
 
         let residual = self.descent(u, target)?;
+        let (enough, most) = (2.0 * ENOUGH * ENOUGH.sqrt() * scale, [MOST_STEPS, FIRST_STEPS]);
+        let most = most[usize::from(self.may_stay)];
         let mut descending = Descending { newton: self, u, target, constraints, progress };
-        let run = descend(&mut descending, residual, |_| 2.0 * ENOUGH * ENOUGH.sqrt() * scale, MOST_STEPS)?;
+        let mut run = descend(&mut descending, residual, |_| enough, most)?;
+        if run.iterations == FIRST_STEPS && most == FIRST_STEPS && run.length > enough {
+            total.steps += run.iterations;
+            if self.shift == Shift::Mean {
+                let normal = normal_matrix(self.problem, self.free)?;
+                self.factorize(&normal, Shift::Each)?;
+            }
+            let scale = Problem::gap_scale(self.objective(u, target), rounding);
+            let (residual, enough) = (self.descent(u, target)?, 2.0 * CLEARLY * self.goal * scale);
+            let mut descending = Descending { newton: self, u, target, constraints: None, progress };
+            run = descend(&mut descending, residual, |_| enough, MOST_STEPS - FIRST_STEPS)?;
+        }
         // In the kernel up to rounding there is nothing to gain; clearly below it, everything.
         if run.flat.is_some_and(|cosine| cosine < -1e-6) {
             return Err(not_convex());
@@ -287,16 +327,57 @@ impl Quadratic<1> for Descending<'_, '_> {
     }
 }
 
+/// The matrix of the free rows. A cut block with a negative weight makes any that is not definite.
+fn normal_matrix(problem: &Problem<'_>, free: &FreeOperator) -> Result<NormalMatrix> {
+    let negative = problem.weights.iter().any(|w| *w < 0.0);
+    let of = if negative { NormalMatrix::new } else { NormalMatrix::stretched };
+    Ok(of(&free.operator)?)
+}
+
 fn squared(x: [f64; 3]) -> f64 {
     x[0] * x[0] + x[1] * x[1] + x[2] * x[2]
 }
 
 fn not_convex() -> Error {
     Error::Solve(SolveError::Infeasible {
-        reason:
-            "this energy is not convex on this mesh with these fixed values; fix more vertices, raise the \
-            fidelity, or \
-                 use another energy"
-                .into(),
+        reason: concat!(
+            "this energy is not convex on this mesh with these fixed values; fix more vertices, raise the ",
+            "fidelity, or use another energy"
+        )
+        .into(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::linear::Columns;
+    use crate::solve::Coupling;
+
+    /// A soft chain, beside ends of stiff springs: the mean of the diagonal is theirs.
+    #[test]
+    fn what_is_twenty_orders_apart_takes_few_steps() {
+        let (n_soft, n) = (2000, 2010);
+        let spring = |a, b| [(a, [-1.0, 0.0, 0.0]), (b, [1.0, 0.0, 0.0])];
+        let mut operator = BlockRows::with_room(n, n, 2 * n).unwrap();
+        (1..n_soft as u32).for_each(|i| operator.push_block(spring(i - 1, i)));
+        (n_soft as u32..n as u32).for_each(|i| operator.push_block(spring(0, i)));
+        let last = n_soft - 1;
+        let problem = Problem {
+            operator: &operator,
+            weights: (1..n).map(|i| if i < n_soft { 1.0 } else { 1e20 }).collect(),
+            fidelity: vec![0.0; n],
+            target: Columns::from_column((0..n).map(|i| if i == last { 1.0 } else { 0.0 }).collect()),
+            fixed: (0..n).map(|i| i == 0 || i == last).collect(),
+            linear_constraints: None,
+            coupling: Coupling::Joint,
+        };
+        let solution = minimize(&problem, &Settings::default(), &Progress::new()).unwrap();
+        assert!(solution.iterations < 40, "{}", solution.iterations);
+        let expected = |i: usize| if i < n_soft { i as f64 / last as f64 } else { 0.0 };
+        let off = |(i, x): (usize, &f64)| (x - expected(i)).abs();
+        let worst = solution.values.data.iter().enumerate().map(off).fold(0.0, f64::max);
+        assert!(worst < 1e-6, "{worst}");
+    }
 }
