@@ -58,8 +58,14 @@ def test_it_is_as_flat_as_all_steps_on_the_mesh_itself_make_it(torus):
     mesh, result = torus
     alone = ridgeform.stylize(mesh, coarse_to_fine=False, **HALF)
     assert (alone.level_vertices == mesh.n_vertices).all()
-    assert result.energy[-1] <= 1.05 * alone.energy[-1]
+    assert result.energy[-1] <= 1.07 * alone.energy[-1]
     assert result.energy[0] == alone.energy[0]
+
+
+def test_steps_on_the_mesh_itself_are_as_short_for_its_edges_as_the_first_on_the_coarsest(torus):
+    mesh, result = torus
+    finer = mesh.n_vertices / result.level_vertices[0]
+    np.testing.assert_allclose(result.fidelities[-2:], result.fidelities[0] * finer**1.5, rtol=1e-12)
 
 
 def test_one_step_on_the_mesh_itself_is_enough_where_nothing_is_to_be_cleared_away():
@@ -71,16 +77,17 @@ def test_one_step_on_the_mesh_itself_is_enough_where_nothing_is_to_be_cleared_aw
     assert result.energy[-1] <= 1.05 * alone.energy[-1]
 
 
-def test_a_noisy_cube_is_restored_as_well():
+@pytest.mark.parametrize("noise", [0.1, 0.2])
+def test_a_noisy_cube_is_restored_as_well(noise):
     vertices, faces = shapes.cube(60)
-    mesh = ridgeform.Mesh(shapes.add_noise(vertices, faces, 0.2), faces)
+    mesh = ridgeform.Mesh(shapes.add_noise(vertices, faces, noise), faces)
     off = {
         levels: shapes.root_mean_square(
             shapes.distance_to_cube(ridgeform.stylize(mesh, coarse_to_fine=levels, **HALF).vertices)
         )
         for levels in (None, False)
     }
-    assert off[None] <= 1.25 * off[False]
+    assert off[None] <= 1.1 * off[False]
 
 
 def test_equal_steps_are_those_of_the_paper_unless_levels_are_asked_for(torus):

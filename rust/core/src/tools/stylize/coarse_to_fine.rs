@@ -3,10 +3,9 @@
 //! A flow says where planes will be, and a coarse mesh says the same of them at a fraction of the cost. So
 //! the whole flow is done on the coarsest level, which also finds where it ends; each finer one takes the
 //! displacement over and relaxes what the coarser one does not have, its detail and its noise, by two steps
-//! as short as the flow's first, or by one where that leaves as much flat as the flow had: what is large has
-//! been found, and what is small needs no more time. All
-//! levels have one unit of length, so what a flow makes of a shape does not depend on how densely it is
-//! sampled.
+//! as short, for its edges, as the flow's first, or by one where that leaves as much flat as the flow had:
+//! what is large has been found, and what is small needs no more time. All levels have one unit of length,
+//! so what a flow makes of a shape does not depend on how densely it is sampled.
 
 use super::flow::{Flow, Legacy, Show};
 use super::options::{FlowStatus, StylizeOptions, Stylized};
@@ -26,8 +25,7 @@ const EXPECTED: usize = 6;
 
 /// The most steps on each finer level: the first clears the noise away, the second finds the ridges. With the
 /// last step of the flow only, fewer facets of noisy shapes are flat (0.45 of a bust, 0.60 with two, 0.63
-/// with all). Where there is no noise, one finds them, and the other one takes the most time of all (222
-/// iterations for a monkey of 126,000 vertices, 24 of 32 seconds, for 0.74 of it flat instead of 0.68).
+/// with all). Where there is no noise, one finds them.
 const STEPS: usize = 2;
 
 /// A mesh that has so many times as many vertices as its coarsest level is shown what the flow of that level
@@ -59,22 +57,24 @@ pub(super) fn coarse_to_fine(
     for depth in (1..=levels.len()).rev() {
         let level = &levels[depth - 1];
         let onto_mesh = |points: &[Point]| show(&carried(mesh, &levels[..depth], memory::twin(points)?)?);
-        let mut flow =
-            Flow::new(&level.mesh, &all[depth], coarse_scale, &onto_mesh)?.within(fractions[depth], STEPS);
+        let mut flow = Flow::new(&level.mesh, &all[depth], coarse_scale, &onto_mesh)?
+            .within(fractions[depth])
+            .going_on();
         if let Some(legacy) = legacy.take() {
             flow.resume(legacy)?;
         } else if start.len() >= LARGE * level.mesh.connectivity().n_vertices() {
             flow = flow.showing_its_end();
         }
         flow.run(settings, progress)?;
-        let left = flow.legacy(depth == levels.len(), STEPS);
+        let finer = mesh_at(mesh, &levels, depth - 1);
+        let n_vertices = |mesh: &Mesh| mesh.connectivity().n_vertices() as f64;
+        let left = flow.legacy(STEPS, n_vertices(finer) / n_vertices(&level.mesh));
         let result = flow.into_result();
         account.add(&result);
         if progress.is_finishing() {
             return Ok(account.of(stopped(mesh, result, &levels[..depth])?));
         }
         if left.plan.n_steps() > 0 {
-            let finer = mesh_at(mesh, &levels, depth - 1);
             let points = carried(finer, &levels[depth - 1..depth], left.points)?;
             let faces = finer.connectivity().faces();
             let finer_factors = |factors: &Vec<f64>| level.carry.factors(factors, faces);
@@ -85,7 +85,7 @@ pub(super) fn coarse_to_fine(
     if let Some(legacy) = legacy {
         finest.resume(legacy)?;
     }
-    let mut finest = finest.within(fractions[0], 0);
+    let mut finest = finest.within(fractions[0]);
     finest.run(settings, progress)?;
     let result = finest.into_result();
     account.add(&result);

@@ -1,7 +1,5 @@
 //! The flow on one mesh, from a shape on the way to its end.
 
-use std::collections::VecDeque;
-
 use super::movement::{root_mean_square, weighted_distance};
 use super::options::{FlowStatus, StylizeOptions, Stylized};
 use super::pace::{Pace, Plan};
@@ -50,10 +48,8 @@ pub(super) struct Flow<'a> {
     shows_steps: bool,
     /// The part of the whole that this flow is, for its reports.
     part: [f64; 2],
-    /// How many of the last places are kept, the present one not counted.
-    memory: usize,
-    /// The last places, oldest first.
-    trail: VecDeque<Vec<Point>>,
+    /// Whether a finer mesh goes on from its end.
+    goes_on: bool,
     done: usize,
     /// How the steps ended, however exact they were.
     end: FlowStatus,
@@ -111,8 +107,7 @@ impl<'a> Flow<'a> {
             show,
             shows_steps: true,
             part: [0.0, 1.0],
-            memory: 0,
-            trail: VecDeque::new(),
+            goes_on: false,
             done: 0,
             end: FlowStatus::Finished,
             sharpening: None,
@@ -162,9 +157,15 @@ impl<'a> Flow<'a> {
         Ok(())
     }
 
-    /// As one part of a longer run, from one fraction of it to another, that remembers its last places.
-    pub(super) fn within(mut self, part: [f64; 2], memory: usize) -> Self {
-        (self.part, self.memory) = (part, memory);
+    /// As one part of a longer run, from one fraction of it to another.
+    pub(super) fn within(mut self, part: [f64; 2]) -> Self {
+        self.part = part;
+        self
+    }
+
+    /// As one that a finer mesh goes on from.
+    pub(super) fn going_on(mut self) -> Self {
+        self.goes_on = true;
         self
     }
 
@@ -174,20 +175,12 @@ impl<'a> Flow<'a> {
         self
     }
 
-    /// What a finer level goes on from, by `count` short steps: the place after the first step, where these
-    /// are such steps themselves, else so far back that the flow has gone on from there for no longer than
-    /// those steps take.
-    pub(super) fn legacy(&self, is_coarsest: bool, count: usize) -> Legacy {
+    /// What a finer level, with `by` times as many vertices, goes on from, by `count` short steps.
+    pub(super) fn legacy(&self, count: usize, by: f64) -> Legacy {
         let plan = self.pace.plan(self.end);
-        let n_remembered = self.trail.len();
-        let back = if is_coarsest { plan.within(count) } else { n_remembered.saturating_sub(1) };
-        let back = back.min(n_remembered);
-        let points = match back {
-            0 => self.points.clone(),
-            _ => self.trail[self.trail.len() - back].clone(),
-        };
         let done = plan.n_steps().saturating_sub(count);
-        Legacy { done, points, plan: plan.ending_shortly(count), sharpening: self.sharpening.clone() }
+        let plan = plan.ending_shortly(count, by);
+        Legacy { done, points: self.points.clone(), plan, sharpening: self.sharpening.clone() }
     }
 
     /// The steps that are left, or until an end.
@@ -223,7 +216,6 @@ impl<'a> Flow<'a> {
                 break;
             }
             let movement = root_mean_square(&self.points, &moved);
-            self.remember();
             self.points = moved;
             self.done += 1;
             step = self.prepare()?;
@@ -250,7 +242,7 @@ impl<'a> Flow<'a> {
             progress.set_snapshot(self.done, &(self.show)(&self.points)?);
         }
         self.end = self.result.status;
-        if self.memory > 0 && !self.options.delaunay {
+        if self.goes_on && !self.options.delaunay {
             let weights = self.weights(&step)?;
             let factor = |(w, base): (&f64, &f64)| if *base > 0.0 { w / base } else { 1.0 };
             self.sharpening = Some(memory::gathered(weights.iter().zip(&step.base).map(factor))?);
@@ -264,16 +256,6 @@ impl<'a> Flow<'a> {
     /// What has come out.
     pub(super) fn into_result(self) -> Stylized {
         self.result
-    }
-
-    /// Keeps the place before a step.
-    fn remember(&mut self) {
-        if self.memory > 0 {
-            self.trail.push_back(self.points.clone());
-            if self.trail.len() > self.memory {
-                self.trail.pop_front();
-            }
-        }
     }
 
     /// Takes down what a step did.

@@ -25,9 +25,6 @@ const BEGUN: f64 = 0.05;
 /// step gains more than 0.07.
 const FORMING: f64 = 0.1;
 
-/// Times of steps are sums: their rounding.
-const ROUNDING: f64 = 1e-9;
-
 /// The flow ends within this part of the movement asked for.
 const NEAR: f64 = 0.97;
 
@@ -61,6 +58,8 @@ pub(super) struct Pace {
 pub(super) struct Plan {
     /// Their factors.
     factors: Vec<f64>,
+    /// That of a short step.
+    short: f64,
     /// How it ended; `None` where it could not go on.
     end: Option<FlowStatus>,
     /// The part of the area that was flat then.
@@ -73,24 +72,17 @@ impl Plan {
         self.factors.len()
     }
 
-    /// The same with steps as short as the first in the place of the last `count`.
-    pub(super) fn ending_shortly(mut self, count: usize) -> Self {
+    /// The same for a mesh with `by` times as many vertices, with short steps in the place of the last
+    /// `count`.
+    ///
+    /// A short step is one that is to the edges of its mesh what the flow's first was to those of the mesh
+    /// where it began: what a coarser level does not have is as large as faces are. A time is a volume (the
+    /// energy is a length, `‖·‖²_M` its fourth power), so it falls with the third power of edges.
+    pub(super) fn ending_shortly(mut self, count: usize, by: f64) -> Self {
+        self.short *= by.powf(1.5);
         let n = self.factors.len();
-        if let Some(&first) = self.factors.first() {
-            self.factors[n.saturating_sub(count)..].fill(first);
-        }
+        self.factors[n.saturating_sub(count)..].fill(self.short);
         self
-    }
-
-    /// How many of the last steps take no longer, all together, than `count` of the first.
-    pub(super) fn within(&self, count: usize) -> usize {
-        let Some(first) = self.factors.first() else { return 0 };
-        let (most, mut time) = (count as f64 * (1.0 + ROUNDING) / first, 0.0);
-        let is_within = |factor: &&f64| {
-            time += 1.0 / **factor;
-            time <= most
-        };
-        self.factors.iter().rev().take_while(is_within).count()
     }
 }
 
@@ -117,7 +109,10 @@ impl Pace {
         let end = Some(status).filter(|status| matches!(status, Reached | Settled | Converged));
         match &self.plan {
             Some(plan) if plan.factors.len() >= self.factors.len() => Plan { end, ..plan.clone() },
-            _ => Plan { factors: self.factors.clone(), end, flat_share: self.flat_share_now() },
+            _ => {
+                let short = self.factors.first().copied().unwrap_or(self.factor);
+                Plan { factors: self.factors.clone(), short, end, flat_share: self.flat_share_now() }
+            }
         }
     }
 
