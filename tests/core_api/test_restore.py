@@ -165,6 +165,22 @@ def test_narrow_fillets_are_not_pulled_into_sharp_edges(n, noise):
     assert {"free", "plane"} <= set(kinds(result))
 
 
+@pytest.mark.parametrize("noise", [0.1, 0.2])
+def test_surfaces_that_no_crease_parts_are_sought_in_a_free_piece(noise):
+    radius = 0.4
+    truth, faces = shapes.rounded_box(37, radius)
+    scale = noise * shapes.mean_edge_length(truth, faces)
+    result = ridgeform.restore(ridgeform.Mesh(shapes.add_noise(truth, faces, noise, 3), faces))
+    # Sides, edges, corners. The whole box is one segment, and was left as it is.
+    counts = [kinds(result).count(kind) for kind in ("plane", "cylinder", "sphere")]
+    assert counts == [6, 12, 8]
+    away = np.maximum(np.abs(result.vertices) - (np.abs(truth).max(axis=0) - radius), 0.0)
+    # It is 0.11 and 0.14.
+    assert shapes.root_mean_square(np.linalg.norm(away, axis=1) - radius) < 0.2 * scale
+    edges = [surface for surface in result.surfaces if surface["kind"] in ("cylinder", "sphere")]
+    assert [surface["radius"] for surface in edges] == pytest.approx([radius] * 20, rel=0.05)
+
+
 def test_surfaces_are_json_and_count_the_faces(noisy_cube, found):
     again = json.loads(json.dumps(found.surfaces))
     assert again == found.surfaces

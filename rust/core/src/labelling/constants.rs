@@ -60,3 +60,46 @@ pub(super) const FARTHEST: f64 = 3.0;
 /// Along a contact the normals of two surfaces agree; the square of how much their difference changes is less
 /// than this part of that across.
 pub(super) const ALONG: f64 = 0.1;
+
+// Surfaces that are sought where none explains the faces.
+
+/// What a vertex beside its surface costs on average: noise alone, of one standard deviation.
+pub(super) const NOISE_MISFIT: f64 = 0.5;
+
+/// The least part of what surfaces could gain in free pieces that they do: of capsule, elbow, handle, and a
+/// box with wide fillets 0.59 to 1.2 under noise of 0.1 and 0.2, of six characters 0.3 at most.
+pub(super) const SOUGHT_SHARE: f64 = 0.5;
+
+/// Faces that a surface begins with: the fewest lie within a fillet of six edges, the most tell a flat
+/// cylinder from a plane under noise of 0.2 of an edge.
+pub(super) const STARTS: [usize; 3] = [24, 72, 216];
+
+/// A corner of a face is off by no more than so many standard deviations where a surface grows: once in two
+/// thousand times. Six of them are so on average: three standard deviations of their mean.
+pub(super) const REACH: f64 = 3.5;
+pub(super) const ON_AVERAGE: f64 = 1.2;
+
+/// Points that a surface is fitted to while it grows.
+pub(super) const GROWN_BY: usize = 200;
+
+/// A surface that has grown by more than the first goes on growing, and one by more than the second is of the
+/// same kind still.
+pub(super) const MUCH_MORE: [f64; 2] = [1.1, 1.5];
+pub(super) const MOST_GROWTHS: usize = 12;
+
+/// No limit to what a surface costs.
+pub(super) const UNLIMITED: f64 = f64::MAX;
+
+/// Nothing is sought where fewer than this part of so many surfaces go on to twice the faces that they were
+/// fitted to. Of seven free shapes it was 0.19 at most without noise, of parts of the table 0.5 and more.
+pub(super) const TRIES: usize = 16;
+pub(super) const GOING_ON: f64 = 0.25;
+
+/// So many tries in a row find this part of the area, the first ones and later ones, or the search ends.
+pub(super) const LEAST_FOUND: [f64; 2] = [0.3, 0.01];
+
+/// A surface begins in faces that are so many edges from what is known.
+pub(super) const LEAST_DEPTH: u32 = 3;
+
+/// Searches at most, each in what the ones before have left.
+pub(super) const MOST_PASSES: usize = 3;

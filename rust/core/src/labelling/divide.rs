@@ -1,10 +1,11 @@
-//! Pieces that their surface does not explain are divided: what strays from it becomes a piece with a surface
-//! of its own, and borders move to where the energy is least.
+//! Pieces that their surface does not explain are divided, and surfaces are sought in those that have none:
+//! what strays becomes a piece with a surface of its own, and borders move to where the energy is least.
 
-use super::constants::{MOST_ROUNDS, TURNS};
+use super::constants::{FREE_MISFIT, MOST_ROUNDS, NOISE_MISFIT, SOUGHT_SHARE, TURNS};
 use super::doubt::Strays;
-use super::labels::Labelling;
+use super::labels::{Labelling, NONE};
 use super::merge::merge;
+use super::seek::{goes_on, seek};
 use super::swap::swap;
 use super::Domain;
 use crate::progress::Progress;
@@ -16,6 +17,63 @@ use crate::{memory, Result};
 /// # Errors
 /// [`crate::Error::Cancelled`].
 pub(super) fn divide(
+    domain: &Domain<'_>,
+    state: &mut Labelling,
+    has_left: &mut [bool],
+    progress: &Progress,
+) -> Result<()> {
+    sought(domain, state, has_left, progress)?;
+    part(domain, state, has_left, progress)
+}
+
+/// Seeks surfaces in pieces that have none and in what strays. What is found is taken if the energy falls by
+/// [`SOUGHT_SHARE`] of what it could by surfaces in free pieces, where noise alone would be left: patches
+/// lower it on any smooth shape.
+fn sought(
+    domain: &Domain<'_>,
+    state: &mut Labelling,
+    has_left: &mut [bool],
+    progress: &Progress,
+) -> Result<()> {
+    let is_free = |label: u32| state.pieces.get(label as usize).is_some_and(|piece| piece.surface.is_none());
+    let free: Vec<bool> = memory::gathered(state.labels.iter().map(|&label| is_free(label)))?;
+    if progress.is_finishing() || !goes_on(domain, &free)? {
+        return Ok(());
+    }
+    let out: Vec<bool> = memory::gathered(state.labels.iter().map(|label| *label == NONE))?;
+    let (before, left_before, energy) = (state.copied()?, memory::twin(has_left)?, state.energy(domain));
+    let strays = Strays::new(domain, state)?.found()?;
+    state.leave(domain, &strays, has_left)?;
+    let n_before = state.pieces.len() as u32;
+    for (label, is_free) in state.labels.iter_mut().zip(&free) {
+        if *is_free || *label >= n_before {
+            *label = NONE;
+        }
+    }
+    if !seek(domain, state, &out, progress)? {
+        *state = before;
+        has_left.copy_from_slice(&left_before);
+        return Ok(());
+    }
+    for turn in 0..TURNS {
+        swap(domain, state, progress)?;
+        state.fit_again(domain, turn == 0)?;
+    }
+    swap(domain, state, progress)?;
+    state.fit_all(domain, progress)?;
+    settle(domain, state, progress)?;
+    let faces = (0..free.len()).filter(|&f| free[f]);
+    let most: f64 = faces.map(|f| (FREE_MISFIT - NOISE_MISFIT) * domain.shares(f)).sum();
+    let gain = energy - state.energy(domain);
+    if gain.is_nan() || gain < SOUGHT_SHARE * most || gain <= 0.0 {
+        *state = before;
+        has_left.copy_from_slice(&left_before);
+    }
+    Ok(())
+}
+
+/// Gives what strays together a surface of its own, as long as the energy falls.
+fn part(
     domain: &Domain<'_>,
     state: &mut Labelling,
     has_left: &mut [bool],
@@ -35,9 +93,7 @@ pub(super) fn divide(
             swap(domain, state, progress)?;
             state.fit_all(domain, progress)?;
         }
-        merge(domain, state, progress)?;
-        swap(domain, state, progress)?;
-        state.fit_all(domain, progress)?;
+        settle(domain, state, progress)?;
         let after = state.energy(domain);
         if after.is_nan() || after >= energy {
             *state = before;
@@ -47,4 +103,11 @@ pub(super) fn divide(
         energy = after;
     }
     Ok(())
+}
+
+/// Neighbors that one surface explains become one piece, and borders and surfaces follow.
+fn settle(domain: &Domain<'_>, state: &mut Labelling, progress: &Progress) -> Result<()> {
+    merge(domain, state, progress)?;
+    swap(domain, state, progress)?;
+    state.fit_all(domain, progress)
 }

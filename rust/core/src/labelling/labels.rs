@@ -80,8 +80,13 @@ impl Domain<'_> {
         }
     }
 
-    fn shares(&self, f: usize) -> f64 {
+    pub(super) fn shares(&self, f: usize) -> f64 {
         self.connectivity.faces()[f].iter().map(|&v| self.share(f, v)).sum()
+    }
+
+    /// By how much face `f` costs less on `surface` than free.
+    pub(super) fn gain_of(&self, f: usize, surface: &Surface) -> f64 {
+        FREE_MISFIT * self.shares(f) - self.cost_on(f, surface)
     }
 
     /// What face `f` costs on `surface`: its corners' misfits. One that has a corner off the surface is no
@@ -100,7 +105,7 @@ impl Domain<'_> {
     }
 
     /// How far the corners of face `f` are from `surface`.
-    fn off(&self, f: usize, surface: &Surface) -> [f64; 3] {
+    pub(super) fn off(&self, f: usize, surface: &Surface) -> [f64; 3] {
         self.connectivity.faces()[f].map(|v| surface.distance(self.positions[v as usize]).0)
     }
 
@@ -112,7 +117,7 @@ impl Domain<'_> {
 
     /// Whether face `f` lies across `surface`, although its corners may be on it: it is tilted by more than
     /// noise explains, or the surface turns by more than [`MOST_TURN`] under it.
-    fn is_across(&self, f: usize, surface: &Surface) -> bool {
+    pub(super) fn is_across(&self, f: usize, surface: &Surface) -> bool {
         let corners = self.connectivity.faces()[f].map(|v| self.positions[v as usize]);
         let (center, area) = (centroid(corners), self.areas[f]);
         let normal = surface.distance(center).1;

@@ -12,19 +12,24 @@
 //! free, and one that lies across it counts as far off.
 //!
 //! Moves: fit and exchange the kind ([`pieces`]), [`relabel`] faces at borders, [`merge`] neighbors; each is
-//! taken only if `E` falls. Then pieces are divided whose surface does not explain them ([`mod@divide`]):
-//! borders move by minimum cuts ([`mod@swap`]) toward where surfaces meet or touch ([`contact`]), and that is
-//! taken if `E` falls. In the end faces are free that their surface does not explain ([`mod@doubt`]).
+//! taken only if `E` falls. Then surfaces are sought in pieces that have none ([`mod@seek`]): they [`grow`]
+//! from a few faces as far as faces lie on them. Pieces are divided whose surface does not explain them
+//! ([`mod@divide`]). In both, borders move by minimum cuts ([`mod@swap`]) toward where surfaces meet or touch
+//! ([`contact`]), and that is taken if `E` falls. In the end faces are free that their surface does not
+//! explain ([`mod@doubt`]).
 
 mod constants;
 mod contact;
 mod divide;
 mod domain;
 mod doubt;
+mod grow;
 mod labels;
+mod marks;
 mod merge;
 mod pieces;
 mod relabel;
+mod seek;
 mod swap;
 
 pub use constants::FREE_MISFIT;

@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::constants::{ENOUGH, FREE_MISFIT};
+use super::constants::{ENOUGH, FREE_MISFIT, UNLIMITED};
 use super::labels::{Labelling, Piece, NONE};
+use super::marks::Marks;
 use super::Domain;
 use crate::progress::Progress;
 use crate::surfaces::{fit, FittedSurface, Kind, Samples, Surface};
@@ -82,6 +83,30 @@ pub(super) fn best(
 }
 
 impl Labelling {
+    /// Fits the pieces with surfaces to some points of their faces, or of the faces inside.
+    pub(super) fn fit_again(&mut self, domain: &Domain<'_>, inside: bool) -> Result<()> {
+        self.regroup()?;
+        let mut marks = Marks::new(domain.areas.len())?;
+        for piece in self.pieces.iter_mut().filter(|p| !p.faces.is_empty() && p.surface.is_some()) {
+            let faces =
+                if inside { domain.inner(&mut marks, &piece.faces)? } else { memory::twin(&piece.faces)? };
+            let samples = domain.samples(&faces)?.thinned(ENOUGH)?;
+            if let Some((surface, _)) = best(domain, &faces, &samples, UNLIMITED)? {
+                piece.surface = Some(surface);
+            }
+        }
+        Ok(())
+    }
+
+    /// Lists the faces of all pieces anew; those without have none.
+    fn regroup(&mut self) -> Result<()> {
+        self.pieces.iter_mut().for_each(|piece| piece.faces.clear());
+        for (f, &label) in (0_u32..).zip(&self.labels).filter(|(_, label)| **label != NONE) {
+            memory::push(&mut self.pieces[label as usize].faces, f)?;
+        }
+        Ok(())
+    }
+
     /// Fits all pieces to their faces, and numbers them without gaps in the order of their first faces.
     ///
     /// # Errors

@@ -8,7 +8,7 @@ use super::starts::starts;
 use super::{Kind, Surface};
 use crate::error::SolveError;
 use crate::linear::small::solved;
-use crate::mesh::vector::norm;
+use crate::mesh::vector::{norm, scale};
 
 /// A fitted surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,6 +42,16 @@ pub fn fit(kind: Kind, samples: &Samples, sigma: f64) -> Result<Option<FittedSur
     let ends = begun.into_iter().map(|(_, start)| refined(start, &here, sigma)).filter(|(s, _)| is_sound(s));
     let best = ends.min_by(|a, b| a.1.total_cmp(&b.1));
     Ok(best.map(|(surface, cost)| FittedSurface { surface: surface.placed(size, center), cost }))
+}
+
+/// The same from one start: a surface of the same kind.
+///
+/// # Errors
+/// [`SolveError::Memory`].
+pub fn refit(start: &Surface, samples: &Samples, sigma: f64) -> Result<Option<FittedSurface>, SolveError> {
+    let Some((here, center, size)) = samples.normalized()? else { return Ok(None) };
+    let (surface, cost) = refined(start.placed(1.0 / size, scale(center, -1.0 / size)), &here, sigma / size);
+    Ok(is_sound(&surface).then(|| FittedSurface { surface: surface.placed(size, center), cost }))
 }
 
 fn is_sound(surface: &Surface) -> bool {

@@ -11,7 +11,7 @@ mod starts;
 mod through;
 
 pub use constants::{MOST_MISFIT, TANGENT};
-pub use fit::{fit, FittedSurface};
+pub use fit::{fit, refit, FittedSurface};
 pub use meeting::meeting;
 pub use samples::{misfit, Samples};
 pub use through::through;
