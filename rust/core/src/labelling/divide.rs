@@ -26,9 +26,9 @@ pub(super) fn divide(
     part(domain, state, has_left, progress)
 }
 
-/// Seeks surfaces in pieces that have none and in what strays. What is found is taken if the energy falls by
-/// [`SOUGHT_SHARE`] of what it could by surfaces in free pieces, where noise alone would be left: patches
-/// lower it on any smooth shape.
+/// Seeks surfaces in pieces that have none and in what strays. What is found is taken if, before neighbors
+/// become one, the energy falls by [`SOUGHT_SHARE`] of what it could by surfaces in free pieces, where noise
+/// alone would be left: patches lower it on any smooth shape, and to merge hundreds takes longest.
 fn sought(
     domain: &Domain<'_>,
     state: &mut Labelling,
@@ -61,15 +61,15 @@ fn sought(
     }
     swap(domain, state, progress)?;
     state.fit_all(domain, progress)?;
-    settle(domain, state, progress)?;
     let faces = (0..free.len()).filter(|&f| free[f]);
     let most: f64 = faces.map(|f| (FREE_MISFIT - NOISE_MISFIT) * domain.shares(f)).sum();
     let gain = energy - state.energy(domain);
     if gain.is_nan() || gain < SOUGHT_SHARE * most || gain <= 0.0 {
         *state = before;
         has_left.copy_from_slice(&left_before);
+        return Ok(());
     }
-    Ok(())
+    settle(domain, state, progress)
 }
 
 /// Gives what strays together a surface of its own, as long as the energy falls.

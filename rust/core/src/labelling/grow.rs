@@ -1,6 +1,6 @@
 //! A surface grows from a few faces as far as faces lie on it.
 
-use super::constants::{GROWN_BY, MOST_GROWTHS, MUCH_MORE, ON_AVERAGE, REACH, STARTS, UNLIMITED};
+use super::constants::{GROWN_BY, MORE, MOST_GROWTHS, ON_AVERAGE, REACH, STARTS, UNLIMITED};
 use super::marks::Marks;
 use super::pieces::best;
 use super::Domain;
@@ -116,16 +116,15 @@ impl Domain<'_> {
             if 2 * next.len() < STARTS[0] {
                 return Ok(None);
             }
-            let growth = next.len() as f64 / faces.len() as f64;
-            let has_grown = faces.is_empty() || growth > MUCH_MORE[0];
-            let is_same = !faces.is_empty() && growth > MUCH_MORE[1];
+            let is_first = faces.is_empty();
+            let has_grown = is_first || next.len() as f64 > MORE * faces.len() as f64;
             faces = next;
             if !has_grown {
                 break;
             }
             let inner = self.inner(marks, &faces)?;
             let samples = self.samples(&inner)?.thinned(GROWN_BY)?;
-            let again = if is_same { refit(&surface, &samples, self.sigma)? } else { None };
+            let again = if is_first { None } else { refit(&surface, &samples, self.sigma)? };
             surface = match again {
                 Some(again) => again.surface,
                 None => match best(self, &inner, &samples, UNLIMITED)? {
