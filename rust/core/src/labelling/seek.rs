@@ -1,7 +1,7 @@
 //! Surfaces are sought where no surface explains the faces: they grow from the middle of what is not known,
 //! and are taken where they lower the energy, those first that lower it most.
 
-use super::constants::{GOING_ON, LEAST_DEPTH, LEAST_FOUND, MOST_PASSES, STARTS, TRIES, UNLIMITED};
+use super::constants::{GOING_ON, LEAST_DEPTH, LEAST_FOUND, STARTS, TRIES, UNLIMITED};
 use super::grow::Grown;
 use super::labels::{Labelling, Piece, NONE};
 use super::marks::Marks;
@@ -23,14 +23,8 @@ pub(super) fn seek(
     progress: &Progress,
 ) -> Result<bool> {
     let mut marks = Marks::new(domain.areas.len())?;
-    for pass in 0..MOST_PASSES {
-        let Some(found) = found(domain, &state.labels, out, &mut marks, pass == 0, progress)? else {
-            return Ok(false);
-        };
-        if !take(domain, state, out, found)? {
-            break;
-        }
-    }
+    let Some(found) = found(domain, &state.labels, out, &mut marks, progress)? else { return Ok(false) };
+    take(domain, state, out, found)?;
     let n = domain.areas.len();
     let mut stack: Vec<u32> = Vec::new();
     for start in 0..n as u32 {
@@ -80,7 +74,6 @@ fn found(
     labels: &[u32],
     out: &[bool],
     marks: &mut Marks,
-    is_first: bool,
     progress: &Progress,
 ) -> Result<Option<Vec<Grown>>> {
     let mut known: Vec<bool> = memory::gathered(labels.iter().zip(out).map(|(l, out)| *l != NONE || *out))?;
@@ -97,7 +90,7 @@ fn found(
         }
         if tries == TRIES {
             let now = open_area(&known);
-            if is_first && before == total && before - now < LEAST_FOUND[0] * total {
+            if before == total && before - now < LEAST_FOUND[0] * total {
                 return Ok(None);
             }
             if before - now < LEAST_FOUND[1] * total {
@@ -125,9 +118,8 @@ fn found(
     Ok(Some(found))
 }
 
-/// Gives faces to the surfaces that gain most by them, and says whether any did.
-fn take(domain: &Domain<'_>, state: &mut Labelling, out: &[bool], mut found: Vec<Grown>) -> Result<bool> {
-    let before = state.pieces.len();
+/// Gives faces to the surfaces that gain most by them.
+fn take(domain: &Domain<'_>, state: &mut Labelling, out: &[bool], mut found: Vec<Grown>) -> Result<()> {
     found.sort_by(|a, b| a.gain.total_cmp(&b.gain));
     while let Some(mut top) = found.pop() {
         let all = top.faces.len();
@@ -145,7 +137,7 @@ fn take(domain: &Domain<'_>, state: &mut Labelling, out: &[bool], mut found: Vec
         let piece = Piece { faces: top.faces, surface: Some(top.surface), side: 1.0, ..Piece::default() };
         memory::push(&mut state.pieces, piece)?;
     }
-    Ok(state.pieces.len() > before)
+    Ok(())
 }
 
 impl Domain<'_> {
