@@ -41,35 +41,35 @@ fn sought(
         return Ok(());
     }
     let out: Vec<bool> = memory::gathered(state.labels.iter().map(|label| *label == NONE))?;
-    let (before, left_before, energy) = (state.copied()?, memory::twin(has_left)?, state.energy(domain));
-    let strays = Strays::new(domain, state)?.found()?;
-    state.leave(domain, &strays, has_left)?;
-    let n_before = state.pieces.len() as u32;
-    for (label, is_free) in state.labels.iter_mut().zip(&free) {
-        if *is_free || *label >= n_before {
-            *label = NONE;
+    let energy = state.energy(domain);
+    tried(state, has_left, |state, has_left| {
+        let strays = Strays::new(domain, state)?.found()?;
+        state.leave(domain, &strays, has_left)?;
+        let n_before = state.pieces.len() as u32;
+        for (label, is_free) in state.labels.iter_mut().zip(&free) {
+            if *is_free || *label >= n_before {
+                *label = NONE;
+            }
         }
-    }
-    if !seek(domain, state, &out, progress)? {
-        *state = before;
-        has_left.copy_from_slice(&left_before);
-        return Ok(());
-    }
-    for turn in 0..TURNS {
+        if !seek(domain, state, &out, progress)? {
+            return Ok(false);
+        }
+        for turn in 0..TURNS {
+            swap(domain, state, progress)?;
+            state.fit_again(domain, turn == 0)?;
+        }
         swap(domain, state, progress)?;
-        state.fit_again(domain, turn == 0)?;
-    }
-    swap(domain, state, progress)?;
-    state.fit_all(domain, progress)?;
-    let faces = (0..free.len()).filter(|&f| free[f]);
-    let most: f64 = faces.map(|f| (FREE_MISFIT - NOISE_MISFIT) * domain.shares(f)).sum();
-    let gain = energy - state.energy(domain);
-    if gain.is_nan() || gain < SOUGHT_SHARE * most || gain <= 0.0 {
-        *state = before;
-        has_left.copy_from_slice(&left_before);
-        return Ok(());
-    }
-    settle(domain, state, progress)
+        state.fit_all(domain, progress)?;
+        let faces = (0..free.len()).filter(|&f| free[f]);
+        let most: f64 = faces.map(|f| (FREE_MISFIT - NOISE_MISFIT) * domain.shares(f)).sum();
+        let gain = energy - state.energy(domain);
+        let is_taken = gain >= SOUGHT_SHARE * most && gain > 0.0;
+        if is_taken {
+            settle(domain, state, progress)?;
+        }
+        Ok(is_taken)
+    })?;
+    Ok(())
 }
 
 /// Gives what strays together a surface of its own, as long as the energy falls.
@@ -86,23 +86,39 @@ fn part(
         if !strays.contains(&true) || progress.is_finishing() {
             break;
         }
-        let (before, left_before) = (state.copied()?, memory::twin(has_left)?);
-        state.leave(domain, &strays, has_left)?;
-        state.fit_all(domain, progress)?;
-        for _ in 0..TURNS {
-            swap(domain, state, progress)?;
+        let is_better = tried(state, has_left, |state, has_left| {
+            state.leave(domain, &strays, has_left)?;
             state.fit_all(domain, progress)?;
-        }
-        settle(domain, state, progress)?;
-        let after = state.energy(domain);
-        if after.is_nan() || after >= energy {
-            *state = before;
-            has_left.copy_from_slice(&left_before);
+            for _ in 0..TURNS {
+                swap(domain, state, progress)?;
+                state.fit_all(domain, progress)?;
+            }
+            settle(domain, state, progress)?;
+            let after = state.energy(domain);
+            let is_better = after < energy;
+            energy = after;
+            Ok(is_better)
+        })?;
+        if !is_better {
             break;
         }
-        energy = after;
     }
     Ok(())
+}
+
+/// Makes a change, and takes it back where it says that it is not for the better; says whether it is.
+fn tried(
+    state: &mut Labelling,
+    has_left: &mut [bool],
+    change: impl FnOnce(&mut Labelling, &mut [bool]) -> Result<bool>,
+) -> Result<bool> {
+    let (before, left_before) = (state.copied()?, memory::twin(has_left)?);
+    let is_better = change(state, has_left)?;
+    if !is_better {
+        *state = before;
+        has_left.copy_from_slice(&left_before);
+    }
+    Ok(is_better)
 }
 
 /// Neighbors that one surface explains become one piece, and borders and surfaces follow.

@@ -166,24 +166,32 @@ impl Labelling {
             }
         }
         has_left.iter_mut().zip(&leaves).for_each(|(has_left, leaves)| *has_left |= leaves);
-        let mut next = self.pieces.len() as u32;
+        self.name_apart(domain, &mut leaves)?;
+        Ok(())
+    }
+
+    /// Gives `faces` labels beyond those of the pieces, one to those that are connected, in the order of
+    /// their first faces, and says how many. None is left in `faces`.
+    pub(super) fn name_apart(&mut self, domain: &Domain<'_>, faces: &mut [bool]) -> Result<usize> {
+        let (first, mut count) = (self.pieces.len(), 0);
         let mut stack: Vec<u32> = Vec::new();
-        for f in 0..leaves.len() {
-            if !std::mem::take(&mut leaves[f]) {
+        for f in 0..faces.len() {
+            if !std::mem::take(&mut faces[f]) {
                 continue;
             }
-            self.labels[f] = next;
+            let name = (first + count) as u32;
+            self.labels[f] = name;
             memory::push(&mut stack, f as u32)?;
             while let Some(f) = stack.pop() {
                 for (_, g) in domain.around(f as usize) {
-                    if std::mem::take(&mut leaves[g]) {
-                        self.labels[g] = next;
+                    if std::mem::take(&mut faces[g]) {
+                        self.labels[g] = name;
                         memory::push(&mut stack, g as u32)?;
                     }
                 }
             }
-            next += 1;
+            count += 1;
         }
-        Ok(())
+        Ok(count)
     }
 }

@@ -25,23 +25,9 @@ pub(super) fn seek(
     let mut marks = Marks::new(domain.areas.len())?;
     let Some(found) = found(domain, &state.labels, out, &mut marks, progress)? else { return Ok(false) };
     take(domain, state, out, found)?;
-    let n = domain.areas.len();
-    let mut stack: Vec<u32> = Vec::new();
-    for start in 0..n as u32 {
-        if state.labels[start as usize] != NONE || out[start as usize] {
-            continue;
-        }
-        let name = state.pieces.len() as u32;
-        memory::push(&mut stack, start)?;
-        state.labels[start as usize] = name;
-        while let Some(f) = stack.pop() {
-            for (_, g) in domain.around(f as usize) {
-                if state.labels[g] == NONE && !out[g] {
-                    state.labels[g] = name;
-                    memory::push(&mut stack, g as u32)?;
-                }
-            }
-        }
+    let is_open = |(label, out): (&u32, &bool)| *label == NONE && !*out;
+    let mut open: Vec<bool> = memory::gathered(state.labels.iter().zip(out).map(is_open))?;
+    for _ in 0..state.name_apart(domain, &mut open)? {
         memory::push(&mut state.pieces, Piece { side: 1.0, ..Piece::default() })?;
     }
     Ok(true)
