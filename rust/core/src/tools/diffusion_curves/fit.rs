@@ -1,7 +1,7 @@
 //! The colors of a surface along its curves: the screened Poisson fit of the paper, then least squares.
 
 use super::constants::{FIT, MOST_FITS};
-use super::membrane::{Harmonic, Membrane};
+use super::membrane::{Harmonic, Membrane, Screened};
 use crate::linear::bounded;
 use crate::linear::Columns;
 use crate::mesh::partition::Partition;
@@ -41,7 +41,8 @@ impl Task<'_> {
         let single = |copy: usize| copies[self.cut.vertices[copy] as usize].len() == 1;
         let target = self.target()?;
         let mut weights = self.weights(&mut roots, single)?;
-        let mut values = self.solve(&weights, &target, progress)?;
+        let mut system = Screened::new(self.membrane);
+        let mut values = self.solve(&mut system, &weights, &target, progress)?;
         let mut owners = Vec::new();
         for _ in 0..MOST_FITS {
             owners = memory::gathered(copies.iter().map(|copies| owner(copies, &values, &target)))?;
@@ -51,14 +52,20 @@ impl Task<'_> {
                 break;
             }
             weights = next;
-            values = self.solve(&weights, &target, progress)?;
+            values = self.solve(&mut system, &weights, &target, progress)?;
         }
         Ok(CopyColors { values, owners, weights })
     }
 
-    fn solve(&self, weights: &[f64], target: &Columns, progress: &Progress) -> Result<Columns> {
+    fn solve(
+        &self,
+        system: &mut Screened<'_>,
+        weights: &[f64],
+        target: &Columns,
+        progress: &Progress,
+    ) -> Result<Columns> {
         let scaled: Vec<f64> = memory::gathered(weights.iter().map(|w| self.fidelity * w))?;
-        let mut values = self.membrane.screened(&scaled, target, progress)?;
+        let mut values = system.screened(&scaled, target, progress)?;
         // The maximum principle, to the last bit.
         for c in 0..values.n_columns {
             let [least, most] = range(target.column(c));

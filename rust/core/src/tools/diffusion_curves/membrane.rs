@@ -54,8 +54,13 @@ impl Membrane {
         Ok(Self { laplacian, mass })
     }
 
-    /// `L` plus a diagonal on the rows for which `free` holds, factored.
-    fn factorize(&self, free: &[u32], index: &[u32], diagonal: impl Fn(usize) -> f64) -> Result<Cholesky> {
+    /// `L` plus a diagonal on the rows for which `free` holds: pattern and values.
+    fn matrix(
+        &self,
+        free: &[u32],
+        index: &[u32],
+        diagonal: impl Fn(usize) -> f64,
+    ) -> Result<(LowerPattern, Vec<f64>)> {
         let mut starts = memory::room(free.len() + 1)?;
         starts.push(0);
         let most = free.len() + self.laplacian.nnz() / 2;
@@ -79,21 +84,41 @@ impl Membrane {
             }
             starts.push(rows.len());
         }
-        let mut cholesky = Cholesky::analyze(LowerPattern { n: free.len(), starts, rows }, None)?;
-        cholesky.factorize(&values)?;
-        Ok(cholesky)
+        Ok((LowerPattern { n: free.len(), starts, rows }, values))
+    }
+}
+
+/// Screened functions for one set of weights after the other: the pattern is analyzed once.
+pub(super) struct Screened<'a> {
+    membrane: &'a Membrane,
+    cholesky: Option<Cholesky>,
+}
+
+impl<'a> Screened<'a> {
+    pub(super) fn new(membrane: &'a Membrane) -> Self {
+        Self { membrane, cholesky: None }
     }
 
     /// `argmin uᵀ L u + Σ_i a_i (u_i − t_i)²`, column by column (Rowe et al. 2024, eq. (27)); every piece of
     /// the surface needs a positive weight `a`.
-    pub(super) fn screened(&self, weights: &[f64], target: &Columns, progress: &Progress) -> Result<Columns> {
-        let all = memory::sifted(0..weights.len() as u32)?;
-        let mut cholesky = self.factorize(&all, &all, |v| weights[v])?;
+    pub(super) fn screened(
+        &mut self,
+        weights: &[f64],
+        target: &Columns,
+        progress: &Progress,
+    ) -> Result<Columns> {
+        let all = memory::numbers(weights.len())?;
+        let (pattern, entries) = self.membrane.matrix(&all, &all, |v| weights[v])?;
+        let cholesky = match &mut self.cholesky {
+            Some(cholesky) => cholesky,
+            none => none.insert(Cholesky::analyze(pattern, None)?),
+        };
+        cholesky.factorize(&entries)?;
         let mut values = target.copied()?;
         for c in 0..values.n_columns {
             values.column_mut(c).iter_mut().zip(weights).for_each(|(x, a)| *x *= a);
         }
-        solve(&mut cholesky, &mut values, progress)?;
+        solve(cholesky, &mut values, progress)?;
         Ok(values)
     }
 }
@@ -114,8 +139,14 @@ impl<'a> Harmonic<'a> {
         let free = memory::sifted((0..fixed.len()).filter(|&v| !fixed[v]).map(|v| v as u32))?;
         let mut index = memory::repeated(FIXED, fixed.len())?;
         (0..).zip(&free).for_each(|(i, &v)| index[v as usize] = i);
-        let cholesky =
-            if free.is_empty() { None } else { Some(membrane.factorize(&free, &index, |_| 0.0)?) };
+        let cholesky = if free.is_empty() {
+            None
+        } else {
+            let (pattern, values) = membrane.matrix(&free, &index, |_| 0.0)?;
+            let mut cholesky = Cholesky::analyze(pattern, None)?;
+            cholesky.factorize(&values)?;
+            Some(cholesky)
+        };
         Ok(Self { membrane, free, cholesky })
     }
 
