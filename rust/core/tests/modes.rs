@@ -1,9 +1,10 @@
 //! Vibration modes: known spectra of the sphere and the square, the constraints of (38), determinism.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use ridgeform_core::mesh::Mesh;
-use ridgeform_core::operators::{voronoi_mass, Dual, Energy, EnergyForm};
+use ridgeform_core::mesh::{triangle, Mesh};
+use ridgeform_core::operators::{voronoi_mass, Dual, Energy, EnergyForm, HessianPattern};
 use ridgeform_core::shapes;
+use ridgeform_core::solve::eigen::Pencil;
 use ridgeform_core::solve::{Solver, Status};
 use ridgeform_core::tools::{vibration_modes, EnergyOptions, ModeOptions, Modes, SolveOptions};
 use ridgeform_core::{Error, Progress};
@@ -164,4 +165,33 @@ fn slivers_do_not_keep_modes_from_settling() {
     for (a, b) in found.energies.iter().zip(&plain.energies) {
         assert!((a - b).abs() < 0.15 * b + 1e-6, "{:?} {:?}", found.energies, plain.energies);
     }
+}
+
+/// The energies of a band of slim faces fall with the square of its edges, far below what its area tells.
+#[test]
+fn rounds_hardly_grow_with_the_edges_of_a_band() {
+    let rounds = |n: usize| {
+        let mesh = shapes::cylinder(n, 2, 1.0, 0.2).mesh().unwrap();
+        let (connectivity, lengths) = (mesh.connectivity(), mesh.edge_lengths());
+        let operator =
+            HessianPattern::new(connectivity).unwrap().assemble(connectivity, lengths, Dual::Barycentric);
+        let mass = voronoi_mass(connectivity, lengths).unwrap();
+        let area: f64 = mass.iter().sum();
+        let weights: Vec<f64> = lengths.iter().map(|&l| 1.0 / triangle::area(l)).collect();
+        let pencil = Pencil {
+            operator: &operator.unwrap(),
+            weights: &weights,
+            mass: &mass,
+            scale: (4.0 * std::f64::consts::PI / area).powi(2),
+            accuracy: 1e-8,
+            memory_limit: None,
+        };
+        let progress = Progress::new();
+        let found = pencil.smallest(3, &progress).unwrap();
+        assert!(found.values.windows(2).all(|pair| pair[0] <= pair[1]));
+        progress.n_asked()
+    };
+    let [short, long] = [500, 4000].map(rounds);
+    // The shift falls step by step to where the energies are.
+    assert!(long <= 3 * short, "{long} rounds, and {short} for an eighth of the edges");
 }
