@@ -15,9 +15,10 @@ pub struct Solution {
     /// The certified relative duality gap: no feasible point has an objective lower by more than this share.
     /// With a quadratic energy, what another step of the linear solver would lower it by.
     gap: f64,
-    /// Inner iterations, all rounds and columns together.
+    /// Inner iterations, all rounds and columns together; of several connected pieces of the mesh those of
+    /// the piece that took most.
     iterations: usize,
-    /// Numeric factorizations, all rounds and columns together.
+    /// Numeric factorizations, likewise.
     factorisations: usize,
     /// "solved" (the tolerance was reached), "inaccurate" (it was not: the best point is returned) or
     /// "stopped".

@@ -4,6 +4,7 @@
 //! factorization, [`solve`] with any solver by name. Every [`Solution`] carries a relative duality gap that
 //! was computed from the point that is returned.
 
+mod apart;
 pub mod certificate;
 pub mod clarabel;
 pub mod cones;
@@ -14,20 +15,23 @@ mod free_operator;
 pub mod normal_matrix;
 mod normal_pattern;
 mod outcome;
+pub(crate) mod pieces;
 mod primal_dual;
 mod problem;
 pub mod quadratic;
 mod reduced;
 mod session;
+mod single;
 mod stretching;
 
 pub use free_operator::FreeOperator;
 pub use problem::{Coupling, Problem, Settings, Solution, Solver, Status};
 pub use reduced::Reduced;
-pub use session::{Session, MAX_JOINT_COLUMNS};
+pub use session::Session;
+pub use single::MAX_JOINT_COLUMNS;
 
 use crate::{Error, Progress, Result};
-use session::Method;
+use single::Method;
 
 /// Solves `problem` with the solver named, from a cold start.
 ///

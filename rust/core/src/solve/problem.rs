@@ -133,9 +133,9 @@ pub struct Solution {
     /// not divide by zero. Not below 0: where rounding lifts the bound above the objective, the two are equal
     /// as far as can be told.
     pub gap: f64,
-    /// Iterations, summed over separate columns.
+    /// Iterations, summed over separate columns; of several connected pieces those of the one with most.
     pub iterations: usize,
-    /// Numeric factorizations, summed over separate columns.
+    /// Numeric factorizations, likewise.
     pub factorisations: usize,
     /// How the solver stopped.
     pub status: Status,

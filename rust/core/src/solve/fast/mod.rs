@@ -30,7 +30,7 @@ use crate::{memory, Result};
 const CHECK_EVERY: usize = 3;
 
 /// Default bound on the iterations; a problem that needs more is better served by an interior-point method.
-const MAX_ITERATIONS: usize = 3000;
+pub(super) const MAX_ITERATIONS: usize = 3000;
 
 /// Without a tolerance the iteration stops when the objective falls by less than this part between two checks
 /// and `H u + c` and `z` differ by less than [`SPLIT_RESIDUAL`]: the true error is then about

@@ -59,6 +59,12 @@ impl System {
         self.normal.fits(operator)
     }
 
+    /// Bytes of the factor.
+    #[must_use]
+    pub fn factor_bytes(&self) -> usize {
+        size_of::<f64>() * self.cholesky.factor_len()
+    }
+
     /// Numeric factorizations made so far.
     #[must_use]
     pub fn n_factorizations(&self) -> usize {

@@ -1,14 +1,20 @@
 //! The alternating minimization of the Ambrosio-Tortorelli functional with the L1 Hessian (Rowe et al. 2024,
 //! eq. (41)).
 
-use super::constants::{LEAST_WEIGHT, MOST_ALTERNATIONS, NOISE_POWER, NOISE_SEARCH};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use super::constants::{NOISE_POWER, NOISE_SEARCH};
 use super::indicator_step::IndicatorStep;
+use super::piece::{Piece, Solving};
 use super::surface::Surface;
 use crate::block_rows::BlockRows;
 use crate::linear::Columns;
-use crate::operators::{voronoi_mass, Dual, HessianPattern};
+use crate::operators::{face_laplacian_weights, voronoi_mass, Dual, HessianPattern};
 use crate::progress::{Progress, Report};
-use crate::solve::{solve, Coupling, Problem, Session, Settings, Solution, Solver, Status};
+use crate::solve::pieces::{at, Pieces};
+use crate::solve::{Coupling, Settings, Solver, Status};
 use crate::tools::sharpness::block_norms;
 use crate::{memory, Result};
 
@@ -27,7 +33,7 @@ pub(super) struct Functional<'a> {
     pub noise: Option<f64>,
     /// The values of `ε`, one after the other.
     pub epsilons: Vec<f64>,
-    /// The mean squared change of `v` under which an alternation was the last for its `ε`.
+    /// The mean squared change of `v` under which an alternation of a piece was the last for its `ε`.
     pub inner_tolerance: f64,
     pub solver: Solver,
     pub settings: Settings,
@@ -41,7 +47,7 @@ pub(super) struct Minimizer {
     pub indicator: Vec<f64>,
     /// `α` at the end.
     pub fidelity: f64,
-    /// Alternations, all `ε` together.
+    /// Alternations of the piece that takes most of them, all `ε` together.
     pub alternations: usize,
     /// `Stopped` if the caller asked to finish early.
     pub status: Status,
@@ -54,21 +60,13 @@ impl Functional<'_> {
     /// # Errors
     /// A failed factorization, or [`crate::Error::Cancelled`].
     pub(super) fn minimize(&self, progress: &Progress) -> Result<Minimizer> {
-        let surface = self.surface;
-        let operator = self.operator()?;
-        let mass = voronoi_mass(surface.connectivity, &surface.lengths)?;
         let mut run = Run {
             functional: self,
-            operator: &operator,
-            total: mass.iter().sum(),
-            fixed: memory::gathered(mass.iter().map(|m| *m <= 0.0))?,
-            mass,
-            solver: Session::new(),
-            step: IndicatorStep::new(surface, self.length_weight, self.face_costs)?,
+            pieces: self.pieces()?,
             progress,
             reached: Minimizer {
                 values: self.values.copied()?,
-                indicator: memory::repeated(1.0, surface.n_faces())?,
+                indicator: memory::repeated(1.0, self.surface.n_faces())?,
                 fidelity: self.fidelity,
                 alternations: 0,
                 status: Status::Solved,
@@ -83,7 +81,37 @@ impl Functional<'_> {
                 break;
             }
         }
-        Ok(run.reached)
+        Ok(run.finished())
+    }
+
+    /// The connected pieces of the surface: minimizers of their own. What the Hessian sees nothing of, single
+    /// triangles, has no borders and stays as it is.
+    fn pieces(&self) -> Result<Vec<Piece>> {
+        let surface = self.surface;
+        let faces = surface.connectivity.faces();
+        let operator = self.operator()?;
+        let mass = voronoi_mass(surface.connectivity, &surface.lengths)?;
+        let weights = face_laplacian_weights(surface.connectivity, &surface.lengths, &surface.centroids)?;
+        let step = |faces| IndicatorStep::new(surface, faces, &weights, self.length_weight, self.face_costs);
+        let Some(pieces) = Pieces::of(&operator, Some(faces))? else {
+            let (rows, faces) = (memory::numbers(mass.len())?, memory::numbers(faces.len())?);
+            let step = step([&faces, &faces])?;
+            let areas = memory::twin(&surface.areas)?;
+            let piece = Piece::new([rows, faces], operator, mass, areas, self.values.copied()?, step)?;
+            return Ok(vec![piece]);
+        };
+        let piece = |p: usize| {
+            let (rows, faces) = (pieces.rows(p), pieces.blocks(p));
+            Piece::new(
+                [memory::twin(rows)?, memory::twin(faces)?],
+                pieces.operator(&operator, p)?,
+                at(&mass, rows)?,
+                at(&surface.areas, faces)?,
+                pieces.columns(self.values, p)?,
+                step([faces, pieces.places_of_blocks()])?,
+            )
+        };
+        memory::all((0..pieces.count()).map(piece).collect())
     }
 
     /// The Hessian of the surface.
@@ -101,7 +129,10 @@ impl Functional<'_> {
         progress.check()?;
         let surface = self.surface;
         let operator = self.operator()?;
-        let mut step = IndicatorStep::new(surface, self.length_weight, self.face_costs)?;
+        let weights = face_laplacian_weights(surface.connectivity, &surface.lengths, &surface.centroids)?;
+        let faces = memory::numbers(surface.n_faces())?;
+        let (costs, faces) = (self.face_costs, [&faces[..], &faces]);
+        let mut step = IndicatorStep::new(surface, faces, &weights, self.length_weight, costs)?;
         if let Some(epsilon) = self.epsilons.last() {
             step.prepare(*epsilon);
         }
@@ -117,12 +148,7 @@ impl Functional<'_> {
 
 struct Run<'a> {
     functional: &'a Functional<'a>,
-    operator: &'a BlockRows,
-    mass: Vec<f64>,
-    total: f64,
-    fixed: Vec<bool>,
-    solver: Session,
-    step: IndicatorStep,
+    pieces: Vec<Piece>,
     progress: &'a Progress,
     reached: Minimizer,
 }
@@ -134,7 +160,7 @@ impl Run<'_> {
         let Some(noise) = self.functional.noise else { return Ok(()) };
         for attempt in 0..NOISE_SEARCH.steps {
             self.report(0.1 * attempt as f64 / NOISE_SEARCH.steps as f64, "noise", attempt, None);
-            self.update_values()?;
+            self.on_each(|piece, solving| piece.update_values(solving).map(drop))?;
             let left = self.residual();
             if left >= noise * (1.0 - NOISE_SEARCH.rest) || self.reached.status == Status::Stopped {
                 break;
@@ -147,75 +173,67 @@ impl Run<'_> {
 
     /// Root mean square of `u − u₀` over the surface, all columns together.
     fn residual(&self) -> f64 {
-        let (u, start) = (&self.reached.values, self.functional.values);
-        let sum: f64 = (0..u.n_columns)
-            .map(|c| {
-                let pairs = u.column(c).iter().zip(start.column(c)).zip(&self.mass);
-                pairs.map(|((x, y), m)| m * (x - y) * (x - y)).sum::<f64>()
-            })
-            .sum();
-        (sum / self.total.max(f64::MIN_POSITIVE)).sqrt()
+        let sum: f64 = self.pieces.iter().map(Piece::squared_residual).sum();
+        let total: f64 = self.pieces.iter().map(|piece| piece.total).sum();
+        (sum / total.max(f64::MIN_POSITIVE)).sqrt()
     }
 
-    /// Both minimizations in turns for one `ε`.
+    /// Both minimizations in turns for one `ε`, on each piece until its own end.
     fn alternate(&mut self, level: usize, epsilon: f64) -> Result<()> {
-        self.step.prepare(epsilon);
-        let levels = self.functional.epsilons.len();
-        for alternation in 0..MOST_ALTERNATIONS {
-            self.progress.check()?;
-            if self.progress.is_finishing() && self.reached.alternations > 0 {
-                self.reached.status = Status::Stopped;
-                return Ok(());
+        let levels = self.functional.epsilons.len() as f64;
+        let (n_pieces, ended) = (self.pieces.len(), AtomicUsize::new(0));
+        let progress = self.progress;
+        let inner_tolerance = self.functional.inner_tolerance;
+        let report = |inner: f64, iteration: usize, energy: Option<f64>| {
+            let fraction = 0.1 + 0.8 * (level as f64 + inner) / levels;
+            progress.report(Report { fraction, stage: "borders".into(), iteration, energy, gap: None });
+        };
+        self.on_each(|piece, solving| {
+            let each = |inner: f64, alternations: usize, energy: f64| {
+                if n_pieces == 1 {
+                    report(inner, alternations, Some(energy));
+                }
+            };
+            piece.alternate(epsilon, inner_tolerance, solving, each)?;
+            if n_pieces > 1 {
+                let ended = ended.fetch_add(1, Ordering::Relaxed) + 1;
+                report(ended as f64 / n_pieces as f64, piece.alternations, None);
             }
-            let norms = block_norms(self.operator, &self.reached.values, Coupling::Joint)?;
-            let v = self.step.minimize(&norms)?;
-            let change = self.mean_squared_change(&v);
-            self.reached.indicator = v;
-            let energy = self.update_values()?;
-            self.reached.alternations += 1;
-            let inner = 1.0 - 0.5_f64.powi(alternation as i32 + 1);
-            let fraction = 0.1 + 0.8 * (level as f64 + inner) / levels as f64;
-            self.report(fraction, "borders", self.reached.alternations, Some(energy));
-            if change <= self.functional.inner_tolerance {
-                break;
-            }
+            Ok(())
+        })
+    }
+
+    /// Does this with every piece.
+    fn on_each(&mut self, act: impl Fn(&mut Piece, &Solving<'_>) -> Result<()> + Sync) -> Result<()> {
+        let solving = Solving {
+            fidelity: self.reached.fidelity,
+            solver: self.functional.solver,
+            settings: &self.functional.settings,
+            progress: self.progress,
+        };
+        let ends: Vec<Result<()>> =
+            memory::joined(self.pieces.par_iter_mut().map(|piece| act(piece, &solving)))?;
+        ends.into_iter().collect::<Result<()>>()?;
+        if self.pieces.iter().any(|piece| piece.is_stopped) {
+            self.reached.status = Status::Stopped;
         }
         Ok(())
     }
 
-    fn mean_squared_change(&self, v: &[f64]) -> f64 {
-        let areas = &self.functional.surface.areas;
-        let sum: f64 = v
-            .iter()
-            .zip(&self.reached.indicator)
-            .zip(areas)
-            .map(|((a, b), area)| area * (a - b) * (a - b))
-            .sum();
-        sum / self.total.max(f64::MIN_POSITIVE)
-    }
-
-    /// `u ← argmin α (u − u₀)ᵀ M (u − u₀) + Σ v_f² ‖(H u)_f‖`; returns the energy there.
-    fn update_values(&mut self) -> Result<f64> {
-        let alpha = self.reached.fidelity;
-        let problem = Problem {
-            operator: self.operator,
-            weights: memory::gathered(self.reached.indicator.iter().map(|v| (v * v).max(LEAST_WEIGHT)))?,
-            fidelity: memory::gathered(self.mass.iter().map(|m| alpha * m))?,
-            target: self.functional.values.copied()?,
-            fixed: memory::twin(&self.fixed)?,
-            linear_constraints: None,
-            coupling: Coupling::Joint,
-        };
-        let settings = &self.functional.settings;
-        let solution: Solution = match self.functional.solver {
-            Solver::Auto | Solver::Fast => self.solver.solve(&problem, settings, self.progress)?,
-            solver => solve(&problem, solver, settings, self.progress)?,
-        };
-        if solution.status == Status::Stopped {
-            self.reached.status = Status::Stopped;
+    /// What all pieces have reached.
+    fn finished(self) -> Minimizer {
+        let mut reached = self.reached;
+        for piece in self.pieces {
+            for c in 0..reached.values.n_columns {
+                let column = reached.values.column_mut(c);
+                let own = piece.rows.iter().zip(piece.values.column(c));
+                own.for_each(|(&row, x)| column[row as usize] = *x);
+            }
+            let own = piece.faces.iter().zip(&piece.indicator);
+            own.for_each(|(&face, v)| reached.indicator[face as usize] = *v);
+            reached.alternations = reached.alternations.max(piece.alternations);
         }
-        self.reached.values = solution.values;
-        Ok(solution.objective)
+        reached
     }
 
     fn report(&self, fraction: f64, stage: &str, iteration: usize, energy: Option<f64>) {

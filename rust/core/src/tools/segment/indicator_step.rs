@@ -3,7 +3,6 @@
 use super::surface::Surface;
 use crate::linear::cholesky::Cholesky;
 use crate::linear::pattern::LowerPattern;
-use crate::operators::face_laplacian_weights;
 use crate::{memory, Result};
 
 /// `v ← argmin vᵀ (diag ‖(H u)_f‖ + λ ε L + λ/(4ε) M_F) v − λ/(2ε) 1ᵀ M_F v` (Rowe et al. 2024, supplement
@@ -19,29 +18,36 @@ pub(super) struct IndicatorStep {
 }
 
 impl IndicatorStep {
-    /// Analyzes the pattern.
+    /// Analyzes the pattern of these faces, all of the surface or a piece of it, each at its place there.
+    /// `weights` are those of the halfedges ([`crate::operators::face_laplacian_weights`]).
     ///
     /// # Errors
     /// Too little memory for the factor.
-    pub(super) fn new(surface: &Surface<'_>, length_weight: f64, face_costs: &[f64]) -> Result<Self> {
-        let m = surface.n_faces();
-        let weights = face_laplacian_weights(surface.connectivity, &surface.lengths, &surface.centroids)?;
-        let most = m + surface.connectivity.edges().count();
-        let (mut starts, mut rows) = (memory::room(m + 1)?, memory::room(most)?);
-        let mut laplacian = memory::room(most)?;
+    pub(super) fn new(
+        surface: &Surface<'_>,
+        [faces, places]: [&[u32]; 2],
+        weights: &[[f64; 3]],
+        length_weight: f64,
+        face_costs: &[f64],
+    ) -> Result<Self> {
+        let m = faces.len();
+        let n_sides: usize = faces.iter().map(|&f| surface.around(f as usize).count()).sum();
+        let (mut starts, mut rows) = (memory::room(m + 1)?, memory::room(m + n_sides / 2)?);
+        let mut laplacian = memory::room(m + n_sides / 2)?;
         starts.push(0);
-        for f in 0..m {
+        for (k, &f) in faces.iter().enumerate() {
+            let f = f as usize;
             let mut column: Vec<(usize, f64)> = Vec::with_capacity(3);
             let mut diagonal = 0.0;
             for (h, g) in surface.around(f) {
                 let weight = length_weight * 0.5 * (face_costs[f] + face_costs[g]) * weights[f][h % 3];
                 diagonal += weight;
                 if g > f {
-                    column.push((g, -weight));
+                    column.push((places[g] as usize, -weight));
                 }
             }
             column.sort_by_key(|(row, _)| *row);
-            rows.push(f);
+            rows.push(k);
             laplacian.push(diagonal);
             for same in column.chunk_by(|a, b| a.0 == b.0) {
                 rows.push(same[0].0);
@@ -49,7 +55,8 @@ impl IndicatorStep {
             }
             starts.push(rows.len());
         }
-        let weighted = surface.areas.iter().zip(face_costs).map(|(area, cost)| length_weight * cost * area);
+        let weighted =
+            faces.iter().map(|&f| length_weight * face_costs[f as usize] * surface.areas[f as usize]);
         let weighted_areas = memory::gathered(weighted)?;
         Ok(Self {
             cholesky: Cholesky::analyze(LowerPattern { n: m, starts, rows }, None)?,

@@ -28,6 +28,7 @@ mod options;
 mod part;
 mod passes;
 mod patches;
+mod piece;
 mod regions;
 mod relabel;
 mod segmentation;
