@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use criterion::{criterion_group, criterion_main, BatchSize, Criterion};
-use ridgeform_core::linear::cholesky::Cholesky;
+use ridgeform_core::linear::cholesky::{Cholesky, Precision};
 use torus::{torus, Torus};
 
 mod torus;
@@ -19,21 +19,23 @@ fn factorization(criterion: &mut Criterion) {
         let mut group = criterion.benchmark_group(format!("40k rows, threads: {threads}"));
         group.sample_size(10);
         group.bench_function("analysis", |bencher| {
-            let analyze = |pattern| pool.install(|| Cholesky::analyze(pattern, None));
-            bencher.iter_batched(|| normal.pattern().clone(), analyze, BatchSize::PerIteration);
+            bencher.iter(|| pool.install(|| Cholesky::analyze(normal.pattern(), None)));
         });
-        let mut cholesky = pool.install(|| Cholesky::analyze(normal.pattern().clone(), None)).unwrap();
-        group.bench_function("factorization", |bencher| {
-            bencher.iter(|| pool.install(|| cholesky.factorize(&entries)));
-        });
-        group.bench_function("triangular solves, one column", |bencher| {
-            let solve = |mut right: Vec<[f64; 1]>| pool.install(|| cholesky.solve(&mut right));
-            bencher.iter_batched(|| one.clone(), solve, BatchSize::PerIteration);
-        });
-        group.bench_function("triangular solves, three columns", |bencher| {
-            let solve = |mut right: Vec<[f64; 3]>| pool.install(|| cholesky.solve(&mut right));
-            bencher.iter_batched(|| shape.vertices.clone(), solve, BatchSize::PerIteration);
-        });
+        for (name, precision) in [("", Precision::Double), (", single precision", Precision::Single)] {
+            let analyzed = || Cholesky::analyze_in(precision, normal.pattern(), None);
+            let mut cholesky = pool.install(analyzed).unwrap();
+            group.bench_function(format!("factorization{name}"), |bencher| {
+                bencher.iter(|| pool.install(|| cholesky.factorize(&entries)));
+            });
+            group.bench_function(format!("triangular solves, one column{name}"), |bencher| {
+                let solve = |mut right: Vec<[f64; 1]>| pool.install(|| cholesky.solve(&mut right));
+                bencher.iter_batched(|| one.clone(), solve, BatchSize::PerIteration);
+            });
+            group.bench_function(format!("triangular solves, three columns{name}"), |bencher| {
+                let solve = |mut right: Vec<[f64; 3]>| pool.install(|| cholesky.solve(&mut right));
+                bencher.iter_batched(|| shape.vertices.clone(), solve, BatchSize::PerIteration);
+            });
+        }
         group.finish();
     }
 }

@@ -5,7 +5,7 @@ use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
 use ridgeform_core::error::SolveError;
-use ridgeform_core::linear::cholesky::Cholesky;
+use ridgeform_core::linear::cholesky::{Cholesky, Precision};
 use ridgeform_core::linear::pattern::LowerPattern;
 use ridgeform_core::operators::{Dual, HessianPattern};
 use ridgeform_core::shapes;
@@ -83,7 +83,11 @@ impl Matrix {
     }
 
     fn solution(&self) -> Vec<[f64; 1]> {
-        let mut cholesky = Cholesky::analyze(self.pattern.clone(), None).unwrap();
+        self.solution_in(Precision::Double)
+    }
+
+    fn solution_in(&self, precision: Precision) -> Vec<[f64; 1]> {
+        let mut cholesky = Cholesky::analyze_in(precision, &self.pattern, None).unwrap();
         cholesky.factorize(&self.values).unwrap();
         let mut x = self.right();
         cholesky.solve(&mut x).unwrap();
@@ -162,11 +166,15 @@ fn agrees_with_the_library_on_matrices_of_every_shape() {
     }
     for (name, n, pairs) in shapes {
         let matrix = Matrix::of_pairs(n, &pairs, &mut random);
-        assert_near(&matrix.solution(), &matrix.reference(), 1e-12, &format!("{name}, {n} rows"));
+        let what = format!("{name}, {n} rows");
+        assert_near(&matrix.solution(), &matrix.reference(), 1e-12, &what);
+        assert_near(&matrix.solution_in(Precision::Single), &matrix.reference(), 1e-3, &what);
     }
     for (around, along) in [(12, 8), (60, 30), (200, 150)] {
         let matrix = Matrix::of_torus(around, along);
-        assert_near(&matrix.solution(), &matrix.reference(), 1e-9, &format!("torus of {around} by {along}"));
+        let what = format!("torus of {around} by {along}");
+        assert_near(&matrix.solution(), &matrix.reference(), 1e-9, &what);
+        assert_near(&matrix.solution_in(Precision::Single), &matrix.reference(), 0.1, &what);
     }
 }
 
@@ -178,10 +186,10 @@ fn large() -> Matrix {
 #[test]
 fn gives_the_same_bits_on_any_number_of_threads_and_each_time() {
     let matrix = large();
-    let run = |threads: usize| {
+    let run = |threads: usize, precision: Precision| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let mut cholesky = Cholesky::analyze(matrix.pattern.clone(), None).unwrap();
+            let mut cholesky = Cholesky::analyze_in(precision, &matrix.pattern, None).unwrap();
             let mut solve = || {
                 cholesky.factorize(&matrix.values).unwrap();
                 let right = matrix.right();
@@ -200,10 +208,36 @@ fn gives_the_same_bits_on_any_number_of_threads_and_each_time() {
             first
         })
     };
-    let one = run(1);
-    for threads in [2, 3, 5] {
-        assert_eq!(run(threads), one, "{threads} threads");
+    for precision in [Precision::Double, Precision::Single] {
+        let one = run(1, precision);
+        for threads in [2, 3, 5] {
+            assert_eq!(run(threads, precision), one, "{threads} threads");
+        }
     }
+}
+
+#[test]
+fn another_precision_is_that_of_a_factor_made_in_it_and_takes_half_the_memory() {
+    let matrix = large();
+    let mut cholesky = Cholesky::analyze(&matrix.pattern, None).unwrap();
+    for precision in [Precision::Single, Precision::Double, Precision::Single] {
+        cholesky.set_precision(precision).unwrap();
+        assert_eq!(cholesky.precision(), precision);
+        cholesky.factorize(&matrix.values).unwrap();
+        let mut x = matrix.right();
+        cholesky.solve(&mut x).unwrap();
+        assert_eq!(x, matrix.solution_in(precision));
+    }
+    let needed = |precision| {
+        let refused = Cholesky::analyze_in(precision, &matrix.pattern, Some(1000)).unwrap_err();
+        let SolveError::Memory { needed, .. } = refused else { unreachable!("{refused}") };
+        needed
+    };
+    assert_eq!(2 * needed(Precision::Single), needed(Precision::Double));
+    // What fits in single precision only is refused in double, and the factor that was is not lost silently.
+    let limit = Some(needed(Precision::Single));
+    let mut tight = Cholesky::analyze_in(Precision::Single, &matrix.pattern, limit).unwrap();
+    assert!(matches!(tight.set_precision(Precision::Double), Err(SolveError::Memory { .. })));
 }
 
 #[test]
@@ -221,7 +255,7 @@ fn a_permuted_matrix_has_the_permuted_solution() {
         permuted[place[i]] = right[i];
     }
     let other = matrix.permuted(&place);
-    let mut cholesky = Cholesky::analyze(other.pattern, None).unwrap();
+    let mut cholesky = Cholesky::analyze(&other.pattern, None).unwrap();
     cholesky.factorize(&other.values).unwrap();
     cholesky.solve(&mut permuted).unwrap();
     let back: Vec<[f64; 1]> = place.iter().map(|&p| permuted[p]).collect();
@@ -232,7 +266,7 @@ fn a_permuted_matrix_has_the_permuted_solution() {
 fn a_bad_pivot_anywhere_is_an_error_and_the_next_factorization_is_right() {
     let matrix = large();
     let right = matrix.solution();
-    let mut cholesky = Cholesky::analyze(matrix.pattern.clone(), None).unwrap();
+    let mut cholesky = Cholesky::analyze(&matrix.pattern, None).unwrap();
     let mut random = Random(9);
     for bad in [-1.0, 0.0, f64::NAN, f64::INFINITY] {
         let mut values = matrix.values.clone();

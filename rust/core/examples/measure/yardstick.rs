@@ -41,7 +41,7 @@ fn of_columns<const K: usize>(problem: &Problem, arguments: &Arguments) -> Outco
 
     let mut quadratic = set_up()?;
     let mut symbolic = Samples::new(arguments)?;
-    quadratic.cholesky = symbolic.take(|| Cholesky::analyze(quadratic.normal.pattern().clone(), None))?;
+    quadratic.cholesky = symbolic.take(|| Cholesky::analyze(quadratic.normal.pattern(), None))?;
     let mut numeric = Samples::new(arguments)?;
     numeric.take(|| quadratic.cholesky.factorize(&quadratic.entries))?;
     let mut solve = Samples::new(arguments)?;
@@ -98,7 +98,7 @@ impl<const K: usize> Quadratic<K> {
         }
         let diagonal: Vec<f64> = free.iter().map(|&i| fidelity * mass[i]).collect();
         let normal = NormalMatrix::new(&operator)?;
-        let cholesky = Cholesky::analyze(normal.pattern().clone(), None)?;
+        let cholesky = Cholesky::analyze(normal.pattern(), None)?;
         let mut entries = Vec::new();
         normal.assemble(&operator, &per_face, &diagonal, &mut entries);
         Ok(Self { right, normal, cholesky, entries })

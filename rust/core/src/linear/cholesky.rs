@@ -1,7 +1,8 @@
 //! Sparse Cholesky factorization: the one file that names the library that analyzes.
 //!
 //! Symbolic analysis once per pattern, numeric factorization as often as the values change, solves for
-//! several right sides at once. Results do not depend on the number of threads.
+//! several right sides at once, in double or in single precision. Results do not depend on the number of
+//! threads.
 
 use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::{
@@ -13,11 +14,12 @@ use faer::sparse::{FaerError, SymbolicSparseColMatRef};
 use faer::Side;
 
 use crate::error::SolveError;
-use crate::linear::multifrontal::{self, Tree, Workspace};
+use crate::linear::factor::Factor;
+use crate::linear::multifrontal::Tree;
 use crate::linear::ordering::eliminated;
 use crate::linear::pattern::LowerPattern;
 use crate::linear::subtrees::Subtrees;
-use crate::linear::triangular::{Panels, Values, LANES};
+use crate::linear::triangular::Panels;
 use crate::memory;
 
 /// Neighboring supernodes of at most so many columns are joined while less than this part of the result is
@@ -25,29 +27,52 @@ use crate::memory;
 /// on 10k and 58k rows).
 const RELAXATION: &[(usize, f64)] = &[(8, 0.3), (16, 0.1)];
 
+/// How many digits a factor has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    /// Sixteen.
+    Double,
+    /// Seven: half the memory and half the time of a large factor. What a solution is off by is a part of the
+    /// right side that grows with how unlike the matrix's eigenvalues are.
+    Single,
+}
+
+impl Precision {
+    /// Bytes of a number.
+    #[must_use]
+    pub fn size(self) -> usize {
+        match self {
+            Self::Double => size_of::<f64>(),
+            Self::Single => size_of::<f32>(),
+        }
+    }
+}
+
+/// The factor in one of its precisions.
+#[derive(Debug)]
+enum Numbers {
+    Double(Factor<f64>),
+    Single(Factor<f32>),
+}
+
 /// A factorization whose pattern is analyzed once.
 pub struct Cholesky {
-    pattern: LowerPattern,
+    n: usize,
     panels: Panels,
     tree: Tree,
     subtrees: Subtrees,
-    workspace: Workspace,
     /// The row of the matrix that each row of the factor stands for.
     order: Vec<u32>,
-    factor: Vec<f64>,
-    reciprocals: Vec<f64>,
-    /// The right sides in the order of the factor, and room for a panel of them.
-    rows: Vec<f64>,
-    space: Vec<f64>,
+    numbers: Numbers,
+    /// Entries of the factor.
+    factor_len: usize,
+    memory_limit: Option<usize>,
     n_factorizations: usize,
 }
 
 impl std::fmt::Debug for Cholesky {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Cholesky")
-            .field("n", &self.pattern.n)
-            .field("factor_len", &self.factor.len())
-            .finish()
+        f.debug_struct("Cholesky").field("n", &self.n).field("factor_len", &self.factor_len).finish()
     }
 }
 
@@ -57,7 +82,19 @@ impl Cholesky {
     ///
     /// # Errors
     /// [`SolveError::Memory`] when the factor is larger than that, or than what the system gives.
-    pub fn analyze(pattern: LowerPattern, memory_limit: Option<usize>) -> Result<Self, SolveError> {
+    pub fn analyze(pattern: &LowerPattern, memory_limit: Option<usize>) -> Result<Self, SolveError> {
+        Self::analyze_in(Precision::Double, pattern, memory_limit)
+    }
+
+    /// [`Cholesky::analyze`] for a factor in this precision.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn analyze_in(
+        precision: Precision,
+        pattern: &LowerPattern,
+        memory_limit: Option<usize>,
+    ) -> Result<Self, SolveError> {
         let failed = |error| match error {
             // What it asked for it does not say: of what it makes, the factor's pattern is the largest.
             FaerError::OutOfMemory => {
@@ -72,7 +109,7 @@ impl Cholesky {
             supernodal_params: SymbolicSupernodalParams { relax: Some(RELAXATION) },
             ..CholeskySymbolicParams::default()
         };
-        let forward = eliminated(&pattern)?;
+        let forward = eliminated(pattern)?;
         let mut backward = memory::repeated(0, pattern.n)?;
         for (k, &i) in forward.iter().enumerate() {
             backward[i] = k;
@@ -82,42 +119,51 @@ impl Cholesky {
             factorize_symbolic_cholesky(view, Side::Lower, ordering, parameters).map_err(failed)?;
         let mut order = memory::room(pattern.n)?;
         order.extend(symbolic.perm().into_iter().flat_map(|p| p.arrays().0).map(|&i| i as u32));
-        let panels = panels(&symbolic)?;
-        let tree = Tree::new(&pattern, &order, &panels)?;
-        let subtrees = Subtrees::new(&panels, &tree)?;
-        let len = symbolic.len_val() + LANES;
-        // Every further thread has about half as much waiting as the first (measured at 200k and 1M rows).
-        let waiting = tree.most_waiting(&panels) * (rayon::current_num_threads() + 1) / 2;
-        let needed = size_of::<f64>() * (len + waiting);
-        let too_large = || SolveError::Memory { needed, limit: memory_limit };
-        if needed > memory_limit.unwrap_or_else(|| memory::share_of_free(needed)) {
-            return Err(too_large());
-        }
-        let mut factor = Vec::new();
-        factor.try_reserve_exact(len).map_err(|_| too_large())?;
-        // Asked for now, while it can still be refused, and given back until it is needed.
-        Vec::<f64>::new().try_reserve_exact(waiting).map_err(|_| too_large())?;
-        factor.resize(len, 0.0);
-        let n = pattern.n;
+        let mut panels = panels(&symbolic)?;
+        let tree = Tree::new(pattern, &order, &panels)?;
+        let subtrees = Subtrees::new(&mut panels, &tree)?;
+        let factor_len = symbolic.len_val();
+        drop(symbolic);
+        let numbers = room(precision, factor_len, &tree, &panels, memory_limit)?;
         Ok(Self {
-            pattern,
+            n: pattern.n,
             panels,
             tree,
             subtrees,
-            workspace: Workspace::default(),
             order,
-            factor,
-            reciprocals: memory::room(n)?,
-            rows: Vec::new(),
-            space: Vec::new(),
+            numbers,
+            factor_len,
+            memory_limit,
             n_factorizations: 0,
         })
     }
 
-    /// The pattern that was analyzed.
+    /// How many digits the factor has.
     #[must_use]
-    pub fn pattern(&self) -> &LowerPattern {
-        &self.pattern
+    pub fn precision(&self) -> Precision {
+        match self.numbers {
+            Numbers::Double(_) => Precision::Double,
+            Numbers::Single(_) => Precision::Single,
+        }
+    }
+
+    /// The next factorizations have a factor in this precision; one in another is forgotten.
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`], as in [`Cholesky::analyze`].
+    pub fn set_precision(&mut self, precision: Precision) -> Result<(), SolveError> {
+        if self.precision() != precision {
+            // The old one goes before the new one comes.
+            self.numbers = Numbers::Single(Factor::new(0, 0)?);
+            self.numbers = room(precision, self.factor_len, &self.tree, &self.panels, self.memory_limit)?;
+        }
+        Ok(())
+    }
+
+    /// Rows of the matrix.
+    #[must_use]
+    pub fn n(&self) -> usize {
+        self.n
     }
 
     /// Numeric factorizations made so far.
@@ -129,18 +175,20 @@ impl Cholesky {
     /// Entries of the factor.
     #[must_use]
     pub fn factor_len(&self) -> usize {
-        self.factor.len() - LANES
+        self.factor_len
     }
 
     /// Factors the matrix with these values (one per entry of the pattern).
     ///
     /// # Errors
-    /// [`SolveError::Factorization`] when the matrix is not positive definite.
+    /// [`SolveError::Factorization`] when the matrix is not positive definite, in single precision also when
+    /// it nearly is not.
     pub fn factorize(&mut self, values: &[f64]) -> Result<(), SolveError> {
         self.n_factorizations += 1;
-        multifrontal::factorize(&self.tree, &self.panels, values, &mut self.factor, &self.workspace)?;
-        self.panels.reciprocals(&self.factor, &mut self.reciprocals);
-        Ok(())
+        match &mut self.numbers {
+            Numbers::Double(factor) => factor.factorize(&self.tree, &self.panels, values),
+            Numbers::Single(factor) => factor.factorize(&self.tree, &self.panels, values),
+        }
     }
 
     /// Solves in place for `K` right sides, with the last factorization. Rows of the matrix behind the last
@@ -160,22 +208,42 @@ impl Cholesky {
         &mut self,
         right: &mut [[f64; K]],
     ) -> Result<(), SolveError> {
-        memory::refill(&mut self.rows, 0.0, A * self.order.len())?;
-        let (x, _) = self.rows.as_chunks_mut::<A>();
-        for (x, &i) in x.iter_mut().zip(&self.order) {
-            if let Some(right) = right.get(i as usize) {
-                x.copy_from_slice(&right[..A]);
-            }
+        let (panels, subtrees, order) = (&self.panels, &self.subtrees, &self.order);
+        match &mut self.numbers {
+            Numbers::Double(factor) => factor.solve::<A, K>(panels, subtrees, order, right),
+            Numbers::Single(factor) => factor.solve::<A, K>(panels, subtrees, order, right),
         }
-        let values = Values { panels: &self.factor, reciprocals: &self.reciprocals };
-        self.subtrees.solve(&self.panels, values, x, &mut self.space)?;
-        for (x, &i) in x.iter().zip(&self.order) {
-            if let Some(right) = right.get_mut(i as usize) {
-                right[..A].copy_from_slice(x);
-            }
-        }
-        Ok(())
     }
+}
+
+/// Room for a factor of so many entries and for the updates that wait while it is made.
+///
+/// # Errors
+/// [`SolveError::Memory`] when that is more than `memory_limit` bytes, or than what the system gives.
+fn room(
+    precision: Precision,
+    len: usize,
+    tree: &Tree,
+    panels: &Panels,
+    memory_limit: Option<usize>,
+) -> Result<Numbers, SolveError> {
+    let size = precision.size();
+    // Every further thread has about half as much waiting as the first (measured at 200k and 1M rows).
+    let waiting = size * (tree.most_waiting(panels) * (rayon::current_num_threads() + 1) / 2);
+    let needed = size * len + waiting;
+    let too_large = || SolveError::Memory { needed, limit: memory_limit };
+    if needed > memory_limit.unwrap_or_else(|| memory::share_of_free(needed)) {
+        return Err(too_large());
+    }
+    let n = panels.begin.last().copied().unwrap_or(0);
+    let numbers = match precision {
+        Precision::Double => Factor::new(len, n).map(Numbers::Double),
+        Precision::Single => Factor::new(len, n).map(Numbers::Single),
+    };
+    let numbers = numbers.map_err(|_| too_large())?;
+    // Asked for now, while it can still be refused, and given back until it is needed.
+    Vec::<u8>::new().try_reserve_exact(waiting).map_err(|_| too_large())?;
+    Ok(numbers)
 }
 
 /// The supernodes of the factor; a factor without any, of a matrix that is nearly diagonal,
@@ -260,7 +328,7 @@ mod tests {
         let x: Vec<[f64; K]> =
             (0..n).map(|i| std::array::from_fn(|c| (i as f64 + 0.3 * c as f64).cos())).collect();
         let right = times(&pattern, &values, &x);
-        let mut cholesky = Cholesky::analyze(pattern, None).unwrap();
+        let mut cholesky = Cholesky::analyze(&pattern, None).unwrap();
         cholesky.factorize(&values).unwrap();
         let mut solution = right.clone();
         cholesky.solve_columns::<A, K>(&mut solution).unwrap();
@@ -290,20 +358,20 @@ mod tests {
     #[test]
     fn refuses_a_factor_that_is_larger_than_the_limit_and_says_how_large() {
         let (pattern, _) = matrix(200, 199);
-        let error = Cholesky::analyze(pattern.clone(), Some(10_000)).unwrap_err();
+        let error = Cholesky::analyze(&pattern, Some(10_000)).unwrap_err();
         let needed = match error {
             SolveError::Memory { needed, limit: Some(10_000) } => needed,
             _ => 0,
         };
         assert!(needed >= 8 * 200 * 201 / 2, "{needed}");
         assert!(error.to_string().contains("the limit of 0.01 MB; raise memory_limit"), "{error}");
-        assert!(Cholesky::analyze(pattern, Some(needed)).is_ok());
+        assert!(Cholesky::analyze(&pattern, Some(needed)).is_ok());
     }
 
     #[test]
     fn refuses_a_matrix_that_is_not_positive_definite_and_recovers() {
         let (pattern, values) = matrix(20, 4);
-        let mut cholesky = Cholesky::analyze(pattern.clone(), None).unwrap();
+        let mut cholesky = Cholesky::analyze(&pattern, None).unwrap();
         assert!(cholesky.factorize(&values.iter().map(|v| -v).collect::<Vec<_>>()).is_err());
         cholesky.factorize(&values).unwrap();
         let mut right = times(&pattern, &values, &[[1.0]; 20]);

@@ -8,10 +8,13 @@ pub mod bounded;
 pub mod cholesky;
 mod columns;
 pub mod conjugate_gradients;
+mod factor;
 mod multifrontal;
 pub mod ordering;
 pub mod pattern;
+mod real;
 pub mod small;
+
 mod subtrees;
 mod triangular;
 

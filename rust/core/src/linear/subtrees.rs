@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use crate::error::SolveError;
 use crate::linear::multifrontal::Tree;
+use crate::linear::real::Real;
 use crate::linear::triangular::{Panel, Panels, Values, LANES};
 use crate::memory;
 
@@ -28,17 +29,17 @@ pub(super) struct Subtrees {
     list: Vec<Range<usize>>,
     /// All other panels.
     rest: Vec<u32>,
-    /// As [`Panels::rows`], but in subtrees counted from their first row,
-    /// with those behind the subtree in the order of its root.
-    rows: Vec<u32>,
+    /// The later rows that each subtree sees.
+    behind: Vec<Vec<u32>>,
 }
 
 impl Subtrees {
-    /// Cuts the tree.
+    /// Cuts the tree. The rows of `panels` in subtrees are counted from the first row of their subtree from
+    /// then on, with those behind it in the order of its root.
     ///
     /// # Errors
     /// [`SolveError::Memory`].
-    pub(super) fn new(panels: &Panels, tree: &Tree) -> Result<Self, SolveError> {
+    pub(super) fn new(panels: &mut Panels, tree: &Tree) -> Result<Self, SolveError> {
         let count = panels.count();
         let mut entries = memory::repeated(0, count)?;
         for s in 0..count {
@@ -61,54 +62,56 @@ impl Subtrees {
         }
         list.sort_unstable_by_key(|subtree| subtree.start);
         rest.sort_unstable();
-        let rows = if list.is_empty() { Vec::new() } else { local_rows(panels, &list)? };
-        Ok(Self { list, rest, rows })
+        let twin = |subtree: &Range<usize>| memory::twin(panels.below(subtree.end - 1));
+        let behind = list.iter().map(twin).collect::<Result<Vec<_>, _>>()?;
+        for (subtree, behind) in list.iter().zip(&behind) {
+            renumber(panels, subtree, behind);
+        }
+        Ok(Self { list, rest, behind })
     }
 
     /// Solves `L Lᵀ x = right` in place; `values` belong to `L`, rows are in the order of the factor.
     ///
     /// # Errors
     /// [`SolveError::Memory`].
-    pub(super) fn solve<const K: usize>(
+    pub(super) fn solve<R: Real, const K: usize>(
         &self,
         panels: &Panels,
-        values: Values<'_>,
-        x: &mut [[f64; K]],
-        space: &mut Vec<f64>,
+        values: Values<'_, R>,
+        x: &mut [[R; K]],
+        space: &mut Vec<R>,
     ) -> Result<(), SolveError> {
         let whole = || self.rest.iter().map(|&s| panels.panel(s as usize, values));
-        let mut locals: Vec<Vec<[f64; K]>> = self
+        let mut locals: Vec<Vec<[R; K]>> = self
             .list
             .par_iter()
+            .zip(&self.behind)
             .with_max_len(1)
-            .map(|subtree| {
+            .map(|(subtree, behind)| {
                 let own = &x[rows_of(panels, subtree)];
-                let mut local = memory::room(own.len() + behind(panels, subtree).len())?;
+                let mut local = memory::room(own.len() + behind.len())?;
                 local.extend_from_slice(own);
-                local.resize(own.len() + behind(panels, subtree).len(), [0.0; K]);
-                forward(
-                    self.panels_of(panels, values, subtree),
-                    &mut local,
-                    &mut space_for(panels, subtree, K)?,
-                );
+                local.resize(own.len() + behind.len(), [R::ZERO; K]);
+                forward(panels_of(panels, values, subtree), &mut local, &mut space_for(panels, subtree, K)?);
                 Ok(local)
             })
             .collect::<Result<_, SolveError>>()?;
-        for (subtree, local) in self.list.iter().zip(&locals) {
+        for ((subtree, behind), local) in self.list.iter().zip(&self.behind).zip(&locals) {
             let n_own = rows_of(panels, subtree).len();
-            for (&row, sum) in behind(panels, subtree).iter().zip(&local[n_own..]) {
-                x[row as usize].iter_mut().zip(sum).for_each(|(x, s)| *x += s);
+            for (&row, sum) in behind.iter().zip(&local[n_own..]) {
+                x[row as usize].iter_mut().zip(sum).for_each(|(x, &s)| *x += s);
             }
         }
-        memory::refill(space, 0.0, (panels.longest() + LANES) * K)?;
+        memory::refill(space, R::ZERO, (panels.longest() + LANES) * K)?;
         forward(whole(), x, space);
         backward(whole().rev(), x, space);
-        self.list.par_iter().with_max_len(1).zip(&mut locals).try_for_each(|(subtree, local)| {
+        let each = self.list.par_iter().zip(&self.behind).with_max_len(1).zip(&mut locals);
+        each.try_for_each(|((subtree, behind), local)| {
             let n_own = rows_of(panels, subtree).len();
-            for (&row, local) in behind(panels, subtree).iter().zip(&mut local[n_own..]) {
+            for (&row, local) in behind.iter().zip(&mut local[n_own..]) {
                 *local = x[row as usize];
             }
-            let reversed = self.panels_of(panels, values, subtree).rev();
+            let reversed = panels_of(panels, values, subtree).rev();
             backward(reversed, local, &mut space_for(panels, subtree, K)?);
             Ok::<_, SolveError>(())
         })?;
@@ -118,20 +121,16 @@ impl Subtrees {
         }
         Ok(())
     }
+}
 
-    /// The panels of a subtree with its own numbers of rows.
-    fn panels_of<'p>(
-        &'p self,
-        panels: &'p Panels,
-        values: Values<'p>,
-        subtree: &Range<usize>,
-    ) -> impl DoubleEndedIterator<Item = Panel<'p>> {
-        let first = panels.begin[subtree.start];
-        subtree.clone().map(move |s| {
-            let below = &self.rows[panels.below[s]..panels.below[s + 1]];
-            panels.panel(s, values).renumbered(panels.begin[s] - first, below)
-        })
-    }
+/// The panels of a subtree with its own numbers of rows.
+fn panels_of<'p, R: Real>(
+    panels: &'p Panels,
+    values: Values<'p, R>,
+    subtree: &Range<usize>,
+) -> impl DoubleEndedIterator<Item = Panel<'p, R>> {
+    let first = panels.begin[subtree.start];
+    subtree.clone().map(move |s| panels.panel(s, values).beginning(panels.begin[s] - first))
 }
 
 /// The rows that a subtree eliminates.
@@ -139,65 +138,59 @@ fn rows_of(panels: &Panels, subtree: &Range<usize>) -> Range<usize> {
     panels.begin[subtree.start]..panels.begin[subtree.end]
 }
 
-/// The later rows that a subtree sees.
-fn behind<'p>(panels: &'p Panels, subtree: &Range<usize>) -> &'p [u32] {
-    panels.below(subtree.end - 1)
-}
-
 /// Working space for the longest panel of a subtree.
-fn space_for(panels: &Panels, subtree: &Range<usize>, n_columns: usize) -> Result<Vec<f64>, SolveError> {
+fn space_for<R: Real>(
+    panels: &Panels,
+    subtree: &Range<usize>,
+    n_columns: usize,
+) -> Result<Vec<R>, SolveError> {
     let longest = subtree.clone().map(|s| panels.n_rows(s)).max().unwrap_or(0);
-    memory::repeated(0.0, (longest + LANES) * n_columns)
+    memory::repeated(R::ZERO, (longest + LANES) * n_columns)
 }
 
-/// The rows below all panels, with the numbers that they have in their subtrees.
-fn local_rows(panels: &Panels, list: &[Range<usize>]) -> Result<Vec<u32>, SolveError> {
-    let mut rows = memory::twin(&panels.rows)?;
-    for subtree in list {
-        let own = rows_of(panels, subtree);
-        let behind = behind(panels, subtree);
-        for s in subtree.clone() {
-            let mut at = 0;
-            for row in &mut rows[panels.below[s]..panels.below[s + 1]] {
-                if (*row as usize) < own.end {
-                    *row -= own.start as u32;
-                } else {
-                    at += behind[at..].partition_point(|other| other < row);
-                    *row = (own.len() + at) as u32;
-                }
+/// Gives the rows below the panels of a subtree the numbers that they have in it.
+fn renumber(panels: &mut Panels, subtree: &Range<usize>, behind: &[u32]) {
+    let own = rows_of(panels, subtree);
+    for s in subtree.clone() {
+        let mut at = 0;
+        for row in &mut panels.rows[panels.below[s]..panels.below[s + 1]] {
+            if (*row as usize) < own.end {
+                *row -= own.start as u32;
+            } else {
+                at += behind[at..].partition_point(|other| other < row);
+                *row = (own.len() + at) as u32;
             }
         }
     }
-    Ok(rows)
 }
 
 /// `x ← L⁻¹x` by these panels.
-fn forward<'p, const K: usize>(
-    panels: impl Iterator<Item = Panel<'p>>,
-    x: &mut [[f64; K]],
-    space: &mut [f64],
+fn forward<'p, R: Real, const K: usize>(
+    panels: impl Iterator<Item = Panel<'p, R>>,
+    x: &mut [[R; K]],
+    space: &mut [R],
 ) {
-    Arch::new().dispatch(Sweep::<_, K, true> { panels, x, space });
+    Arch::new().dispatch(Sweep::<_, R, K, true> { panels, x, space });
 }
 
 /// `x ← L⁻ᵀx` by these panels, the last one first.
-fn backward<'p, const K: usize>(
-    panels: impl Iterator<Item = Panel<'p>>,
-    x: &mut [[f64; K]],
-    space: &mut [f64],
+fn backward<'p, R: Real, const K: usize>(
+    panels: impl Iterator<Item = Panel<'p, R>>,
+    x: &mut [[R; K]],
+    space: &mut [R],
 ) {
-    Arch::new().dispatch(Sweep::<_, K, false> { panels, x, space });
+    Arch::new().dispatch(Sweep::<_, R, K, false> { panels, x, space });
 }
 
 /// To be compiled for each set of vector instructions.
-struct Sweep<'b, I, const K: usize, const FORWARD: bool> {
+struct Sweep<'b, I, R, const K: usize, const FORWARD: bool> {
     panels: I,
-    x: &'b mut [[f64; K]],
-    space: &'b mut [f64],
+    x: &'b mut [[R; K]],
+    space: &'b mut [R],
 }
 
-impl<'p, I: Iterator<Item = Panel<'p>>, const K: usize, const FORWARD: bool> WithSimd
-    for Sweep<'_, I, K, FORWARD>
+impl<'p, I: Iterator<Item = Panel<'p, R>>, R: Real, const K: usize, const FORWARD: bool> WithSimd
+    for Sweep<'_, I, R, K, FORWARD>
 {
     type Output = ();
 

@@ -6,6 +6,8 @@
 
 use pulp::Simd;
 
+use crate::linear::real::Real;
+
 /// Columns of a panel that are applied together: fewer passes over the right sides,
 /// few enough for the registers.
 const COLUMNS: usize = 4;
@@ -28,34 +30,34 @@ pub(super) struct Panels {
     pub values: Vec<usize>,
     /// Where the rows below the triangle of each panel start in `rows`.
     pub below: Vec<usize>,
-    /// The rows below the triangles.
+    /// The rows below the triangles, in the numbers that subtrees give them.
     pub rows: Vec<u32>,
 }
 
 /// The numbers of a factor.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Values<'v> {
+pub(super) struct Values<'v, R> {
     /// The panels, one after the other, and [`LANES`] zeros.
-    pub panels: &'v [f64],
+    pub panels: &'v [R],
     /// The reciprocal of each diagonal entry: divisions would be half the time.
-    pub reciprocals: &'v [f64],
+    pub reciprocals: &'v [R],
 }
 
 /// One panel with its values.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Panel<'p> {
+pub(super) struct Panel<'p, R> {
     begin: usize,
     n_columns: usize,
     below: &'p [u32],
-    values: &'p [f64],
-    reciprocals: &'p [f64],
+    values: &'p [R],
+    reciprocals: &'p [R],
 }
 
 impl Panels {
     /// Panel `s` with its values.
     #[inline(always)]
     #[must_use]
-    pub(super) fn panel<'p>(&'p self, s: usize, values: Values<'p>) -> Panel<'p> {
+    pub(super) fn panel<'p, R: Real>(&'p self, s: usize, values: Values<'p, R>) -> Panel<'p, R> {
         let (begin, end) = (self.begin[s], self.begin[s + 1]);
         Panel {
             begin,
@@ -80,12 +82,12 @@ impl Panels {
     }
 
     /// The reciprocals of the diagonal of the factor with these values.
-    pub(super) fn reciprocals(&self, values: &[f64], out: &mut Vec<f64>) {
+    pub(super) fn reciprocals<R: Real>(&self, values: &[R], out: &mut Vec<R>) {
         out.clear();
         for s in 0..self.count() {
             let n_columns = self.begin[s + 1] - self.begin[s];
             let n_rows = n_columns + self.below[s + 1] - self.below[s];
-            out.extend((0..n_columns).map(|j| 1.0 / values[self.values[s] + j * n_rows + j]));
+            out.extend((0..n_columns).map(|j| R::ONE / values[self.values[s] + j * n_rows + j]));
         }
     }
 
@@ -110,16 +112,16 @@ impl Panels {
     }
 }
 
-impl<'p> Panel<'p> {
-    /// The same panel in other numbers of rows.
+impl<R: Real> Panel<'_, R> {
+    /// The same panel with another number for its first row.
     #[inline(always)]
     #[must_use]
-    pub(super) fn renumbered(self, begin: usize, below: &'p [u32]) -> Self {
-        Self { begin, below, ..self }
+    pub(super) fn beginning(self, begin: usize) -> Self {
+        Self { begin, ..self }
     }
 }
 
-impl Panel<'_> {
+impl<R: Real> Panel<'_, R> {
     #[inline(always)]
     fn n_rows(&self) -> usize {
         self.n_columns + self.below.len()
@@ -133,15 +135,16 @@ impl Panel<'_> {
 
     /// Column `j` from row `from` on, in registers.
     #[inline(always)]
-    fn column<S: Simd>(&self, j: usize, from: usize) -> &[S::f64s] {
+    fn column<S: Simd>(&self, j: usize, from: usize) -> &[R::Lanes<S>] {
         let n = self.n_rows();
-        let registers = (n - from).div_ceil(S::F64_LANES);
-        S::as_simd_f64s(&self.values[j * n + from..j * n + from + registers * S::F64_LANES]).0
+        let lanes = R::lanes::<S>();
+        let registers = (n - from).div_ceil(lanes);
+        R::registers::<S>(&self.values[j * n + from..j * n + from + registers * lanes])
     }
 
     /// The rows of this panel's triangle, right side by right side, and zeros behind the rows below.
     #[inline(always)]
-    fn load<const K: usize>(&self, x: &[[f64; K]], space: &mut [f64]) {
+    fn load<const K: usize>(&self, x: &[[R; K]], space: &mut [R]) {
         let (n, stride) = (self.n_rows(), self.stride());
         for (i, x) in x[self.begin..self.begin + self.n_columns].iter().enumerate() {
             for c in 0..K {
@@ -149,12 +152,12 @@ impl Panel<'_> {
             }
         }
         for c in 0..K {
-            space[c * stride + n..(c + 1) * stride].fill(0.0);
+            space[c * stride + n..(c + 1) * stride].fill(R::ZERO);
         }
     }
 
     #[inline(always)]
-    fn store<const K: usize>(&self, x: &mut [[f64; K]], space: &[f64]) {
+    fn store<const K: usize>(&self, x: &mut [[R; K]], space: &[R]) {
         for (i, x) in x[self.begin..self.begin + self.n_columns].iter_mut().enumerate() {
             *x = std::array::from_fn(|c| space[c * self.stride() + i]);
         }
@@ -162,11 +165,11 @@ impl Panel<'_> {
 
     /// `x ← L⁻¹x` for the columns of this panel, and what that does to the rows below.
     #[inline(always)]
-    pub(super) fn forward<S: Simd, const K: usize>(&self, simd: S, x: &mut [[f64; K]], space: &mut [f64]) {
+    pub(super) fn forward<S: Simd, const K: usize>(&self, simd: S, x: &mut [[R; K]], space: &mut [R]) {
         let (stride, s) = (self.stride(), self.n_columns);
         self.load(x, space);
         for c in 0..K {
-            space[c * stride + s..(c + 1) * stride].fill(0.0);
+            space[c * stride + s..(c + 1) * stride].fill(R::ZERO);
         }
         let mut j = 0;
         while j + COLUMNS <= s {
@@ -188,9 +191,9 @@ impl Panel<'_> {
 
     /// Solves for the rows `j..j + J` and takes their columns off the rows below.
     #[inline(always)]
-    fn eliminate<S: Simd, const J: usize, const K: usize>(&self, simd: S, j: usize, space: &mut [f64]) {
+    fn eliminate<S: Simd, const J: usize, const K: usize>(&self, simd: S, j: usize, space: &mut [R]) {
         let (n, stride) = (self.n_rows(), self.stride());
-        let mut columns: [&[S::f64s]; J] = [&[]; J];
+        let mut columns: [&[R::Lanes<S>]; J] = [&[]; J];
         for (a, column) in columns.iter_mut().enumerate() {
             *column = self.column::<S>(j + a, j + J);
         }
@@ -209,7 +212,7 @@ impl Panel<'_> {
 
     /// `x ← L⁻ᵀx` for the columns of this panel, from the rows below.
     #[inline(always)]
-    pub(super) fn backward<S: Simd, const K: usize>(&self, simd: S, x: &mut [[f64; K]], space: &mut [f64]) {
+    pub(super) fn backward<S: Simd, const K: usize>(&self, simd: S, x: &mut [[R; K]], space: &mut [R]) {
         let (stride, s) = (self.stride(), self.n_columns);
         self.load(x, space);
         for (i, &row) in self.below.iter().enumerate() {
@@ -232,17 +235,17 @@ impl Panel<'_> {
 
     /// Solves for the rows `j..j + J` when all below are known.
     #[inline(always)]
-    fn substitute<S: Simd, const J: usize, const K: usize>(&self, simd: S, j: usize, space: &mut [f64]) {
+    fn substitute<S: Simd, const J: usize, const K: usize>(&self, simd: S, j: usize, space: &mut [R]) {
         let (n, stride) = (self.n_rows(), self.stride());
-        let mut right: [&[f64]; K] = [&[]; K];
+        let mut right: [&[R]; K] = [&[]; K];
         for (c, right) in right.iter_mut().enumerate() {
             *right = &space[c * stride + j + J..(c + 1) * stride];
         }
-        let mut columns: [&[S::f64s]; J] = [&[]; J];
+        let mut columns: [&[R::Lanes<S>]; J] = [&[]; J];
         for (a, column) in columns.iter_mut().enumerate() {
             *column = self.column::<S>(j + a, j + J);
         }
-        let mut sums = [[0.0; K]; J];
+        let mut sums = [[R::ZERO; K]; J];
         if J * K <= ACCUMULATORS {
             sums = products(simd, columns, right);
         } else {
@@ -254,7 +257,7 @@ impl Panel<'_> {
             let top = &mut space[c * stride + j..c * stride + j + J];
             for a in (0..J).rev() {
                 let column = &self.values[(j + a) * n + j..(j + a) * n + j + J];
-                let mut x = top[a] - sums[a][c];
+                let mut x: R = top[a] - sums[a][c];
                 for b in a + 1..J {
                     x -= column[b] * top[b];
                 }
@@ -266,20 +269,20 @@ impl Panel<'_> {
 
 /// `t -= Σ columns[j] x[j]`.
 #[inline(always)]
-fn subtract<S: Simd, const J: usize>(simd: S, columns: [&[S::f64s]; J], x: &[f64], t: &mut [f64]) {
-    let (t, _) = S::as_mut_simd_f64s(t);
+fn subtract<S: Simd, R: Real, const J: usize>(simd: S, columns: [&[R::Lanes<S>]; J], x: &[R], t: &mut [R]) {
+    let t = R::registers_mut::<S>(t);
     let n = columns[0].len();
     let t = &mut t[..n];
-    let mut splats = [simd.splat_f64s(0.0); J];
+    let mut splats = [R::splat(simd, R::ZERO); J];
     let mut shorter = columns;
     for j in 0..J {
-        splats[j] = simd.splat_f64s(x[j]);
+        splats[j] = R::splat(simd, x[j]);
         shorter[j] = &columns[j][..n];
     }
     for (i, t) in t.iter_mut().enumerate() {
         let mut sum = *t;
         for j in 0..J {
-            sum = simd.negate_mul_add_e_f64s(shorter[j][i], splats[j], sum);
+            sum = R::minus_times(simd, shorter[j][i], splats[j], sum);
         }
         *t = sum;
     }
@@ -287,27 +290,27 @@ fn subtract<S: Simd, const J: usize>(simd: S, columns: [&[S::f64s]; J], x: &[f64
 
 /// `⟨column, t⟩` for every column and every `t`.
 #[inline(always)]
-fn products<S: Simd, const J: usize, const K: usize>(
+fn products<S: Simd, R: Real, const J: usize, const K: usize>(
     simd: S,
-    columns: [&[S::f64s]; J],
-    t: [&[f64]; K],
-) -> [[f64; K]; J] {
+    columns: [&[R::Lanes<S>]; J],
+    t: [&[R]; K],
+) -> [[R; K]; J] {
     let n = columns[0].len();
-    let mut left: [&[S::f64s]; J] = [&[]; J];
+    let mut left: [&[R::Lanes<S>]; J] = [&[]; J];
     for j in 0..J {
         left[j] = &columns[j][..n];
     }
-    let mut right: [&[S::f64s]; K] = [&[]; K];
+    let mut right: [&[R::Lanes<S>]; K] = [&[]; K];
     for c in 0..K {
-        right[c] = &S::as_simd_f64s(t[c]).0[..n];
+        right[c] = &R::registers::<S>(t[c])[..n];
     }
-    let mut sums = [[simd.splat_f64s(0.0); K]; J];
+    let mut sums = [[R::splat(simd, R::ZERO); K]; J];
     for i in 0..n {
         for j in 0..J {
             for c in 0..K {
-                sums[j][c] = simd.mul_add_e_f64s(left[j][i], right[c][i], sums[j][c]);
+                sums[j][c] = R::times_plus(simd, left[j][i], right[c][i], sums[j][c]);
             }
         }
     }
-    sums.map(|sums| sums.map(|sum| simd.reduce_sum_f64s(sum)))
+    sums.map(|sums| sums.map(|sum| R::sum(simd, sum)))
 }

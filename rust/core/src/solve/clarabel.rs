@@ -153,8 +153,8 @@ fn certified<const K: usize>(
     iterations: usize,
     status: Status,
 ) -> Result<Outcome<K>> {
-    let primal = reduced.objective(&u, &reduced.apply(&u)?);
-    let floor = reduced.floor(&reduced.apply(&reduced.target)?);
+    let primal = reduced.objective(&u, reduced.lengths(&u)?.into_iter());
+    let floor = reduced.floor(&reduced.lengths(&reduced.target)?);
     let bound = |q: &[Block<K>]| -> Result<f64> {
         let mut dual_point = DualPoint::default();
         for (b, (q, w)) in q.iter().zip(reduced.weights.iter()).enumerate() {

@@ -30,7 +30,7 @@ impl<const K: usize> LinearConstraints<K> {
     pub fn new(
         matrix: &CsMat<f64>,
         right: &Columns,
-        free: &FreeOperator,
+        free: &FreeOperator<'_>,
         columns: &[usize],
         fixed_row: &dyn Fn(usize) -> [f64; K],
     ) -> Result<Self, SolveError> {

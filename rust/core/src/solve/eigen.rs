@@ -106,7 +106,7 @@ impl Pencil<'_> {
                 let row =
                     |i: usize| std::array::from_fn(|c| group.get(c).map_or(0.0, |x| self.mass[i] * x[i]));
                 // Zeros for the unknowns between pieces of blocks.
-                let mut right = memory::repeated([0.0; AT_ONCE], shifted.cholesky.pattern().n)?;
+                let mut right = memory::repeated([0.0; AT_ONCE], shifted.cholesky.n())?;
                 right.iter_mut().zip((0..n).map(row)).for_each(|(right, row)| *right = row);
                 let wanted = (round >= PLAIN_ROUNDS).then(|| memory::twin(&right)).transpose()?;
                 shifted.cholesky.solve(&mut right)?;
@@ -168,7 +168,7 @@ impl Pencil<'_> {
         } else {
             NormalMatrix::stretched(self.operator)?
         };
-        let cholesky = Cholesky::analyze(normal.pattern().copied()?, self.memory_limit)?;
+        let cholesky = Cholesky::analyze(normal.pattern(), self.memory_limit)?;
         Ok(Shifted { values: memory::room(normal.pattern().rows.len())?, normal, cholesky, shift: 0.0 })
     }
 

@@ -8,9 +8,9 @@ use crate::memory;
 
 /// The free rows of the operator, shared by all columns of a problem, and the blocks that see one of them.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FreeOperator {
+pub struct FreeOperator<'o> {
     /// `H` on the free rows of `u`, without blocks that see fixed rows only.
-    pub operator: BlockRows,
+    pub operator: Cow<'o, BlockRows>,
     /// Which blocks are left; `None` where all are.
     pub(super) blocks: Option<Vec<u32>>,
     /// Per row of the whole `u`, its place among the free ones.
@@ -19,12 +19,12 @@ pub struct FreeOperator {
     pub free: Vec<u32>,
 }
 
-impl FreeOperator {
+impl<'o> FreeOperator<'o> {
     /// Drops the columns of `operator` whose rows of `u` are fixed, and the blocks that have no other.
     ///
     /// # Errors
     /// [`SolveError::Memory`] when the system does not give what it takes.
-    pub fn new(operator: &BlockRows, fixed: &[bool]) -> Result<Self, SolveError> {
+    pub fn new(operator: &'o BlockRows, fixed: &[bool]) -> Result<Self, SolveError> {
         let mut free: Vec<u32> = memory::room(fixed.iter().filter(|&&fixed| !fixed).count())?;
         free.extend((0..operator.n_columns as u32).filter(|&i| !fixed[i as usize]));
         let mut place = memory::repeated(None, operator.n_columns)?;
@@ -32,13 +32,7 @@ impl FreeOperator {
             place[i as usize] = Some(k as u32);
         }
         if free.len() == operator.n_columns {
-            let operator = BlockRows {
-                n_columns: operator.n_columns,
-                starts: memory::twin(&operator.starts)?,
-                columns: memory::twin(&operator.columns)?,
-                values: memory::twin(&operator.values)?,
-            };
-            return Ok(Self { operator, blocks: None, place, free });
+            return Ok(Self { operator: Cow::Borrowed(operator), blocks: None, place, free });
         }
         let mut kept = BlockRows::empty(free.len());
         let n_entries = operator.columns.iter().filter(|&&column| place[column as usize].is_some()).count();
@@ -61,7 +55,7 @@ impl FreeOperator {
                 blocks.push(b as u32);
             }
         }
-        Ok(Self { operator: kept, blocks: Some(blocks), place, free })
+        Ok(Self { operator: Cow::Owned(kept), blocks: Some(blocks), place, free })
     }
 
     /// What belongs to the blocks that are left, of something per block.

@@ -74,10 +74,28 @@ impl NormalMatrix {
         &self.pattern
     }
 
-    /// Whether an `operator` of the same pattern as the one before can be cut in the same way.
+    /// Whether every product of two entries of `operator` lands where it did of the one before: whether it
+    /// has the same pattern, and can be cut in the same way.
     #[must_use]
     pub fn fits(&self, operator: &BlockRows) -> bool {
-        self.stretching.as_ref().is_none_or(|stretching| stretching.fits(operator))
+        if let Some(stretching) = &self.stretching {
+            return stretching.fits(operator);
+        }
+        let LowerPattern { n, starts, rows } = &self.pattern;
+        let mut landing = self.landing.iter().map(|&at| at as usize);
+        operator.n_columns == *n
+            && (0..operator.n_blocks()).all(|b| {
+                let columns = operator.block(b).0;
+                (0..columns.len()).all(|i| {
+                    columns[..=i].iter().all(|&column| {
+                        let column = starts[column as usize]..starts[column as usize + 1];
+                        landing
+                            .next()
+                            .is_some_and(|at| column.contains(&at) && rows[at] == columns[i] as usize)
+                    })
+                })
+            })
+            && landing.next().is_none()
     }
 
     /// The values of `HᵀRH + diag(d)`, one per entry of the pattern.
@@ -204,7 +222,7 @@ mod tests {
         }
         assert_eq!(seen, 4 + 2 * 4, "no entry is missing: four off the diagonal");
 
-        let mut cholesky = Cholesky::analyze(pattern.clone(), None).unwrap();
+        let mut cholesky = Cholesky::analyze(pattern, None).unwrap();
         cholesky.factorize(&values).unwrap();
         let x = [1.0, -2.0, 3.0, 0.5, 0.0, 4.0, -1.0, 2.0];
         let mut right: Vec<[f64; 2]> = expected
@@ -216,5 +234,29 @@ mod tests {
             assert!((0..2).all(|c| (right[c] - x[4 * c + i]).abs() < 1e-12));
         }
         assert!(cholesky.factorize(&vec![0.0; values.len()]).is_err());
+    }
+
+    /// Values may change; a column, an entry, or a block that goes somewhere else is another pattern.
+    #[test]
+    fn only_an_operator_with_the_same_entries_fits() {
+        let h = operator();
+        let normal = NormalMatrix::new(&h).unwrap();
+        let changed = |change: &dyn Fn(&mut BlockRows)| {
+            let mut other = operator();
+            change(&mut other);
+            other
+        };
+        assert!(normal.fits(&changed(&|other| other.values[2] = [0.0; BLOCK])));
+        for (what, other) in [
+            ("a column", changed(&|other| other.columns[4] = 3)),
+            ("another number of columns", changed(&|other| other.n_columns = 5)),
+            ("an entry in another block", changed(&|other| other.starts = vec![0, 2, 2, 5])),
+            ("blocks joined", changed(&|other| other.starts = vec![0, 5])),
+            ("a block less", changed(&|other| other.starts = vec![0, 3])),
+        ] {
+            assert!(!normal.fits(&other), "{what}");
+        }
+        // A block without entries lands nowhere.
+        assert!(normal.fits(&changed(&|other| other.starts = vec![0, 3, 5])));
     }
 }

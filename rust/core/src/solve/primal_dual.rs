@@ -151,7 +151,7 @@ impl<const K: usize> Model<K> {
             let moved = self.h.iter().zip(change).map(|(h, by)| combine(1.0, h, part, by));
             let h: Vec<Block<K>> = memory::gathered(moved)?;
             if self.value(reduced, &u, &h) <= before {
-                let primal = reduced.objective(&u, &h);
+                let primal = reduced.objective(&u, h.iter().map(norm));
                 return Ok(Some((u, primal)));
             }
             part *= 0.5;
@@ -333,7 +333,7 @@ mod tests {
             for barrier in [1e-1, 1e-3, 1e-5] {
                 let (u, z, _) = center(&mut reduced, barrier, 40);
                 let h = reduced.apply(&u).unwrap();
-                let primal = reduced.objective(&u, &h);
+                let primal = reduced.objective(&u, h.iter().map(norm));
                 let along = h.iter().zip(&z).map(|(h, z)| crate::solve::cones::inner(h, z)).sum::<f64>();
                 // What a cone leaves is at most twice μ.
                 let left = primal - reduced.fidelity_term(&u) - reduced.offset - along;

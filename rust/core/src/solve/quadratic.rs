@@ -81,7 +81,7 @@ struct Totals {
 /// The factored matrix on the free rows.
 struct Newton<'a> {
     problem: &'a Problem<'a>,
-    free: &'a FreeOperator,
+    free: &'a FreeOperator<'a>,
     cholesky: Cholesky,
     shift: Shift,
     /// Whether the target is an answer, and costs 0 at least.
@@ -101,13 +101,13 @@ enum Shift {
 }
 
 impl<'a> Newton<'a> {
-    fn new(problem: &'a Problem<'a>, free: &'a FreeOperator, settings: &Settings) -> Result<Self> {
+    fn new(problem: &'a Problem<'a>, free: &'a FreeOperator<'a>, settings: &Settings) -> Result<Self> {
         let negative = problem.weights.iter().any(|w| *w < 0.0);
         let normal = normal_matrix(problem, free)?;
         let mut newton = Self {
             problem,
             free,
-            cholesky: Cholesky::analyze(normal.pattern().copied()?, settings.memory_limit)?,
+            cholesky: Cholesky::analyze(normal.pattern(), settings.memory_limit)?,
             shift: Shift::Mean,
             may_stay: !negative && problem.linear_constraints.is_none(),
             goal: settings.tolerance.unwrap_or(ENOUGH.sqrt()),
@@ -328,7 +328,7 @@ impl Quadratic<1> for Descending<'_, '_> {
 }
 
 /// The matrix of the free rows. A cut block with a negative weight makes any that is not definite.
-fn normal_matrix(problem: &Problem<'_>, free: &FreeOperator) -> Result<NormalMatrix> {
+fn normal_matrix(problem: &Problem<'_>, free: &FreeOperator<'_>) -> Result<NormalMatrix> {
     let negative = problem.weights.iter().any(|w| *w < 0.0);
     let of = if negative { NormalMatrix::new } else { NormalMatrix::stretched };
     Ok(of(&free.operator)?)

@@ -45,7 +45,7 @@ impl BlockRanges {
 #[derive(Debug)]
 pub struct Reduced<'a, const K: usize> {
     /// `H` and who is free.
-    pub free: &'a FreeOperator,
+    pub free: &'a FreeOperator<'a>,
     /// How many of the `K` columns are in use; the others are zero.
     pub n_columns: usize,
     /// `c`: what the fixed rows contribute; empty where none is fixed.
@@ -71,7 +71,7 @@ impl<'a, const K: usize> Reduced<'a, K> {
     /// [`SolveError::Infeasible`] when a linear constraint speaks of fixed rows only and contradicts them.
     pub fn new(
         problem: &'a Problem<'_>,
-        free: &'a FreeOperator,
+        free: &'a FreeOperator<'a>,
         columns: &[usize],
     ) -> Result<Self, SolveError> {
         let row_of = |i: usize| -> [f64; K] {
@@ -145,6 +145,17 @@ impl<'a, const K: usize> Reduced<'a, K> {
         self.product(|b| self.constant(b), u)
     }
 
+    /// `‖H u + c‖` of each block.
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub fn lengths(&self, u: &[[f64; K]]) -> Result<Vec<f64>, SolveError> {
+        let mut out = memory::room(self.n_blocks())?;
+        let sums = (0..self.n_blocks()).into_par_iter().with_min_len(GRAIN);
+        sums.map(|b| norm(&self.block_at(b, u))).collect_into_vec(&mut out);
+        Ok(out)
+    }
+
     /// `H u`, of a change of the point.
     ///
     /// # Errors
@@ -162,6 +173,13 @@ impl<'a, const K: usize> Reduced<'a, K> {
         let sums = (0..self.n_blocks()).into_par_iter().with_min_len(GRAIN);
         sums.map(|b| self.block_added(to(b), b, u)).collect_into_vec(&mut out);
         Ok(out)
+    }
+
+    /// Block `b` of `H u + c`.
+    #[inline(always)]
+    #[must_use]
+    pub fn block_at(&self, b: usize, u: &[[f64; K]]) -> Block<K> {
+        self.block_added(self.constant(b), b, u)
     }
 
     /// Block `b` of `H u`.
@@ -207,18 +225,18 @@ impl<'a, const K: usize> Reduced<'a, K> {
         Ok(sums.swap_remove(0))
     }
 
-    /// The objective at `u`, where `h = H u + c`.
+    /// The objective at `u`, where the blocks of `H u + c` have these lengths.
     #[must_use]
-    pub fn objective(&self, u: &[[f64; K]], h: &[Block<K>]) -> f64 {
-        let norms: f64 = h.iter().zip(self.weights.iter()).map(|(x, w)| w * norm(x)).sum();
+    pub fn objective(&self, u: &[[f64; K]], lengths: impl Iterator<Item = f64>) -> f64 {
+        let norms: f64 = lengths.zip(self.weights.iter()).map(|(x, w)| w * x).sum();
         self.offset + norms + self.fidelity_term(u)
     }
 
     /// Below this an objective counts as zero: a millionth of the objective at the target, or 1e-9 of what
-    /// that would be if the terms of `H t + c` did not cancel, whichever is larger. `h` is the operator
-    /// applied to the target.
+    /// that would be if the terms of `H t + c` did not cancel, whichever is larger. The blocks of `H t + c`
+    /// have these `lengths`.
     #[must_use]
-    pub fn floor(&self, h: &[Block<K>]) -> f64 {
+    pub fn floor(&self, lengths: &[f64]) -> f64 {
         let operator = &self.free.operator;
         let mut without_cancelling = self.offset;
         for (b, w) in self.weights.iter().enumerate() {
@@ -229,7 +247,7 @@ impl<'a, const K: usize> Reduced<'a, K> {
             });
             without_cancelling += w * (norm(&self.constant(b)) + terms.sum::<f64>());
         }
-        (1e-6 * self.objective(&self.target, h)).max(1e-9 * without_cancelling)
+        (1e-6 * self.objective(&self.target, lengths.iter().copied())).max(1e-9 * without_cancelling)
     }
 
     /// `Σ a_i ‖u_i − t_i‖²`.

@@ -5,6 +5,7 @@ use crate::block_rows::{BlockRows, BLOCK};
 use crate::linear::Columns;
 use crate::progress::Progress;
 use crate::solve::clarabel;
+use crate::solve::cones::norm;
 use crate::solve::fast;
 use crate::solve::fast::system::System;
 use crate::solve::free_operator::FreeOperator;
@@ -20,14 +21,8 @@ pub const MAX_JOINT_COLUMNS: usize = 16;
 /// What [`super::Session`] keeps of one problem.
 #[derive(Debug, Default)]
 pub(super) struct Single {
-    structure: Option<Structure>,
-    warm: Vec<StoredWarm>,
-}
-
-#[derive(Debug)]
-struct Structure {
-    free: FreeOperator,
     system: Option<System>,
+    warm: Vec<StoredWarm>,
 }
 
 /// Who minimizes the reduced problem.
@@ -64,6 +59,14 @@ fn groups(problem: &Problem<'_>) -> Result<Vec<Vec<usize>>> {
     })
 }
 
+/// The columns of a problem that share a norm, on its free rows.
+#[derive(Clone, Copy)]
+struct Parts<'p> {
+    problem: &'p Problem<'p>,
+    free: &'p FreeOperator<'p>,
+    columns: &'p [usize],
+}
+
 /// A [`Warm`] of any number of columns.
 #[derive(Debug, Clone)]
 struct StoredWarm {
@@ -81,8 +84,7 @@ impl Single {
 
     /// Bytes of the factor.
     pub(super) fn factor_bytes(&self) -> usize {
-        let system = self.structure.as_ref().and_then(|structure| structure.system.as_ref());
-        system.map_or(0, System::factor_bytes)
+        self.system.as_ref().map_or(0, System::factor_bytes)
     }
 
     /// Solves `problem`, starting from the last solution if it had as many blocks and columns.
@@ -91,20 +93,25 @@ impl Single {
     /// A failed factorization, contradicting constraints, or [`Error::Cancelled`].
     pub(super) fn run(&mut self, problem: &Problem<'_>, call: &Call<'_>) -> Result<Solution> {
         let groups = groups(problem)?;
-        self.prepare(problem.operator, &problem.fixed)?;
-        let stored = std::mem::take(&mut self.warm);
-        let fits = stored.len() == groups.len();
+        let free = FreeOperator::new(problem.operator, &problem.fixed)?;
+        self.keep_if_fitting(&free);
+        let mut stored = std::mem::take(&mut self.warm);
+        if stored.len() != groups.len() {
+            stored.clear();
+        }
+        let mut stored = stored.into_iter();
         let mut total = Total::new(problem, call.method)?;
-        for (g, columns) in groups.iter().enumerate() {
+        for columns in &groups {
             call.progress.check()?;
-            let warm = if fits { stored.get(g) } else { None };
+            let (warm, total) = (stored.next(), &mut total);
+            let parts = Parts { problem, free: &free, columns };
             match columns.len() {
-                1 => self.group::<1>(problem, columns, warm, call, &mut total)?,
-                2 => self.group::<2>(problem, columns, warm, call, &mut total)?,
+                1 => self.group::<1>(parts, warm, call, total)?,
+                2 => self.group::<2>(parts, warm, call, total)?,
                 // Rows of four fill a vector register, and the solves leave the empty column out.
-                3 | 4 => self.group::<4>(problem, columns, warm, call, &mut total)?,
-                5..=8 => self.group::<8>(problem, columns, warm, call, &mut total)?,
-                _ => self.group::<MAX_JOINT_COLUMNS>(problem, columns, warm, call, &mut total)?,
+                3 | 4 => self.group::<4>(parts, warm, call, total)?,
+                5..=8 => self.group::<8>(parts, warm, call, total)?,
+                _ => self.group::<MAX_JOINT_COLUMNS>(parts, warm, call, total)?,
             }
         }
         Ok(total.into_solution())
@@ -121,46 +128,27 @@ impl Single {
         fixed: &[bool],
         memory_limit: Option<usize>,
     ) -> Result<()> {
-        self.prepare(operator, fixed)?;
-        match &mut self.structure {
-            Some(Structure { free, system }) if system.is_none() && !free.free.is_empty() => {
-                *system = Some(System::new(free, memory_limit)?);
-            }
-            _ => {}
+        let free = FreeOperator::new(operator, fixed)?;
+        self.keep_if_fitting(&free);
+        if self.system.is_none() && !free.free.is_empty() {
+            self.system = Some(System::new(&free, memory_limit)?);
         }
         Ok(())
     }
 
-    fn prepare(&mut self, operator: &BlockRows, fixed: &[bool]) -> Result<()> {
-        let free = FreeOperator::new(operator, fixed)?;
-        match &mut self.structure {
-            Some(s)
-                if s.free.free == free.free
-                    && s.free.operator.starts == free.operator.starts
-                    && s.free.operator.columns == free.operator.columns
-                    && s.system.as_ref().is_none_or(|system| system.fits(&free.operator)) =>
-            {
-                s.free = free;
-            }
-            structure => {
-                *structure = Some(Structure { free, system: None });
-            }
-        }
-        Ok(())
+    /// Forgets the linear system of another pattern.
+    fn keep_if_fitting(&mut self, free: &FreeOperator<'_>) {
+        self.system = self.system.take().filter(|system| system.fits(&free.operator));
     }
 
     fn group<const K: usize>(
         &mut self,
-        problem: &Problem<'_>,
-        columns: &[usize],
-        warm: Option<&StoredWarm>,
+        Parts { problem, free, columns }: Parts<'_>,
+        warm: Option<StoredWarm>,
         call: &Call<'_>,
         total: &mut Total,
     ) -> Result<()> {
-        let Some(structure) = &mut self.structure else {
-            return Ok(());
-        };
-        let reduced = Reduced::<K>::new(problem, &structure.free, columns)?;
+        let reduced = Reduced::<K>::new(problem, free, columns)?;
         if reduced.n() == 0 {
             total.add_fixed(&reduced)?;
             return Ok(());
@@ -168,7 +156,7 @@ impl Single {
         let may_skip = call.may_skip || columns.first() != Some(&0);
         if call.progress.is_finishing() && may_skip && reduced.constraints.is_none() {
             // Each column takes some factorizations to come anywhere.
-            total.add(&fast::untouched(reduced)?, &structure.free.free, columns);
+            total.add(&fast::untouched(reduced)?, &free.free, columns);
             return Ok(());
         }
         let outcome = match call.method {
@@ -177,19 +165,18 @@ impl Single {
                 clarabel::minimize(&reduced, method, call.settings, call.progress)?
             }
             Method::Fast => {
-                let system = match &mut structure.system {
+                let system = match &mut self.system {
                     Some(system) => system,
-                    empty => empty.insert(System::new(&structure.free, call.settings.memory_limit)?),
+                    empty => empty.insert(System::new(free, call.settings.memory_limit)?),
                 };
                 let before = system.n_factorizations();
-                let n_blocks = structure.free.operator.n_blocks();
-                let warm = warm.map(|w| w.restore(n_blocks)).transpose()?.flatten();
+                let warm = warm.map(|w| w.restore(free.operator.n_blocks())).transpose()?.flatten();
                 let outcome = fast::minimize(reduced, system, warm, call.settings, call.progress)?;
                 total.factorisations += system.n_factorizations() - before;
                 outcome
             }
         };
-        total.add(&outcome, &structure.free.free, columns);
+        total.add(&outcome, &free.free, columns);
         self.warm.extend(outcome.warm.map(StoredWarm::new));
         Ok(())
     }
@@ -201,13 +188,13 @@ impl StoredWarm {
         Self { columns: K, z: flat(warm.z), p: flat(warm.p), length: warm.length }
     }
 
-    fn restore<const K: usize>(&self, n_blocks: usize) -> Result<Option<Warm<K>>> {
+    fn restore<const K: usize>(self, n_blocks: usize) -> Result<Option<Warm<K>>> {
         if self.columns != K || self.length.len() != n_blocks {
             return Ok(None);
         }
         let block = |b: &[f64]| std::array::from_fn(|r| std::array::from_fn(|c| b[r * K + c]));
         let blocks = |flat: &[f64]| memory::gathered(flat.chunks_exact(BLOCK * K).map(block));
-        Ok(Some(Warm { z: blocks(&self.z)?, p: blocks(&self.p)?, length: memory::twin(&self.length)? }))
+        Ok(Some(Warm { z: blocks(&self.z)?, p: blocks(&self.p)?, length: self.length }))
     }
 }
 
@@ -256,8 +243,8 @@ impl Total {
 
     /// Everything is fixed: the objective is a constant and its own bound.
     fn add_fixed<const K: usize>(&mut self, reduced: &Reduced<'_, K>) -> Result<()> {
-        let constant: Vec<_> = memory::gathered((0..reduced.n_blocks()).map(|b| reduced.constant(b)))?;
-        let objective = reduced.objective(&[], &constant);
+        let constant = (0..reduced.n_blocks()).map(|b| norm(&reduced.constant(b)));
+        let objective = reduced.objective(&[], constant);
         self.primal += objective;
         self.dual += objective;
         Ok(())

@@ -33,6 +33,8 @@ const LINK: u32 = u32::MAX;
 /// How an operator with dense blocks is cut.
 #[derive(Debug, Clone)]
 pub(super) struct Stretching {
+    /// Columns of the operator.
+    n_columns: usize,
     /// The cut operator, with values at the new unknowns only.
     rows: BlockRows,
     /// The block that each block of the cut operator is, or is a piece of.
@@ -76,6 +78,7 @@ impl Stretching {
         let mut starts = memory::room(n_blocks + 1)?;
         starts.push(0);
         let mut found = Self {
+            n_columns: operator.n_columns,
             rows: BlockRows {
                 n_columns: operator.n_columns,
                 starts,
@@ -142,12 +145,24 @@ impl Stretching {
         column
     }
 
-    /// Whether `operator`, of the same pattern, can be cut in the same way:
+    /// Whether `operator` has entries where the one before had them, and can be cut in the same way:
     /// rows that had no entries still have none.
     pub(super) fn fits(&self, operator: &BlockRows) -> bool {
-        self.cut.iter().all(|&(b, used)| {
-            used_rows(operator, b as usize).iter().zip(used).all(|(now, then)| then || !now)
-        })
+        let is_entry = |b: usize, k: usize| {
+            let (entry, block) = (self.entries[k] as usize, self.blocks[b] as usize);
+            let range = operator.starts[block]..operator.starts[block + 1];
+            range.contains(&entry) && operator.columns[entry] == self.rows.columns[k]
+        };
+        let of_operator = |k: &usize| self.entries[*k] != LINK;
+        operator.n_columns == self.n_columns
+            && self.blocks.last().is_some_and(|&last| last as usize + 1 == operator.n_blocks())
+            && (0..self.entries.len()).filter(of_operator).count() == operator.columns.len()
+            && (0..self.scales.len()).all(|b| {
+                (self.rows.starts[b]..self.rows.starts[b + 1]).filter(of_operator).all(|k| is_entry(b, k))
+            })
+            && self.cut.iter().all(|&(b, used)| {
+                used_rows(operator, b as usize).iter().zip(used).all(|(now, then)| then || !now)
+            })
     }
 
     /// The cut operator without the values of `operator`: its pattern.
@@ -214,7 +229,7 @@ mod tests {
     const SIZE: usize = 300;
 
     fn solved(normal: &NormalMatrix, values: &[f64], n: usize) -> (Vec<[f64; 2]>, usize) {
-        let mut cholesky = Cholesky::analyze(normal.pattern().clone(), None).unwrap();
+        let mut cholesky = Cholesky::analyze(normal.pattern(), None).unwrap();
         cholesky.factorize(values).unwrap();
         let mut right: Vec<[f64; 2]> = (0..n).map(|i| [(i as f64).cos(), 1.0 / (1 + i) as f64]).collect();
         cholesky.solve(&mut right).unwrap();
@@ -277,7 +292,7 @@ mod tests {
         let entries = |n: usize| {
             let h = hubs(n);
             let cut = NormalMatrix::stretched(&h).unwrap();
-            Cholesky::analyze(cut.pattern().clone(), None).unwrap().factor_len() as f64
+            Cholesky::analyze(cut.pattern(), None).unwrap().factor_len() as f64
         };
         let sizes = [2000, 4000, 8000, 16_000].map(|n| entries(n) / n as f64);
         assert!(sizes.iter().all(|a| *a < 150.0) && sizes[3] < 1.2 * sizes[0], "entries a column: {sizes:?}");
@@ -298,5 +313,26 @@ mod tests {
         assert!(cut.fits(&h));
         h.values.last_mut().unwrap()[1] = 1.0;
         assert!(!cut.fits(&h));
+    }
+
+    #[test]
+    fn an_operator_with_other_entries_does_not_fit() {
+        let cut = Stretching::new(&hubs(SIZE)).unwrap().unwrap();
+        let changed = |change: &dyn Fn(&mut BlockRows)| {
+            let mut other = hubs(SIZE);
+            change(&mut other);
+            other
+        };
+        assert!(cut.fits(&changed(&|other| other.values[2] = [7.0; BLOCK])));
+        for (what, other) in [
+            ("a column of a small block", changed(&|other| other.columns[1] = 5)),
+            ("a column of a large one", changed(&|other| *other.columns.last_mut().unwrap() += 1)),
+            ("another number of columns", changed(&|other| other.n_columns += 1)),
+            ("an entry in another block", changed(&|other| other.starts[1] -= 1)),
+            ("a block more", changed(&|other| other.push_block([]))),
+            ("another size", hubs(SIZE + 1)),
+        ] {
+            assert!(!cut.fits(&other), "{what}");
+        }
     }
 }

@@ -1,11 +1,12 @@
 //! Adding what is left of a child to the front of its parent (extend-add; Duff and Reid 1983).
 
-use super::padded::Padded;
+use super::padded::{stride_of, Padded};
+use crate::linear::real::Real;
 
 /// Adds the columns that belong to the panel: `relative` are the places of the rows of `from` in the front,
 /// whose first `n_columns` are the panel's.
-pub(super) fn add_to_panel(relative: &[u32], from: &[f64], n_columns: usize, panel: &mut Padded) {
-    let stride = Padded::stride_of(relative.len());
+pub(super) fn add_to_panel<R: Real>(relative: &[u32], from: &[R], n_columns: usize, panel: &mut Padded<R>) {
+    let stride = stride_of(relative.len());
     let run = run(relative);
     for (j, &column) in relative.iter().enumerate() {
         let column = column as usize;
@@ -18,14 +19,14 @@ pub(super) fn add_to_panel(relative: &[u32], from: &[f64], n_columns: usize, pan
 }
 
 /// Adds the other columns to what will be left of the parent.
-pub(super) fn add_to_update(
+pub(super) fn add_to_update<R: Real>(
     relative: &[u32],
-    from: &[f64],
+    from: &[R],
     n_columns: usize,
-    update: &mut [f64],
+    update: &mut [R],
     stride: usize,
 ) {
-    let own = Padded::stride_of(relative.len());
+    let own = stride_of(relative.len());
     let run = run(relative);
     let first = relative.partition_point(|&row| (row as usize) < n_columns);
     for (j, &column) in relative.iter().enumerate().skip(first) {
@@ -48,11 +49,11 @@ fn run(relative: &[u32]) -> usize {
 
 /// Adds one column; its first `scattered` rows are spread in the parent.
 #[inline(always)]
-fn add(relative: &[u32], from: &[f64], scattered: usize, shift: usize, to: &mut [f64]) {
-    for (&row, x) in relative.iter().zip(&from[..scattered]) {
+fn add<R: Real>(relative: &[u32], from: &[R], scattered: usize, shift: usize, to: &mut [R]) {
+    for (&row, &x) in relative.iter().zip(&from[..scattered]) {
         to[row as usize - shift] += x;
     }
     if let Some(&row) = relative.get(scattered) {
-        to[row as usize - shift..].iter_mut().zip(&from[scattered..]).for_each(|(to, x)| *to += x);
+        to[row as usize - shift..].iter_mut().zip(&from[scattered..]).for_each(|(to, &x)| *to += x);
     }
 }

@@ -8,7 +8,8 @@ use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, MatMut, MatRef, Par};
 use pulp::{Arch, Simd, WithSimd};
 
-use super::padded::{Padded, COLUMNS};
+use super::padded::{stride_of, Padded, COLUMNS};
+use crate::linear::real::Real;
 
 /// Columns that are eliminated before the rest of a wide panel is brought up to date.
 const BLOCK_COLUMNS: usize = 64;
@@ -23,19 +24,19 @@ const SHARED: usize = 512;
 /// One front: `panel` holds its first `n_columns` columns of `n_rows`,
 /// `update` the columns and rows after these.
 #[derive(Debug)]
-pub(super) struct Front<'f> {
+pub(super) struct Front<'f, R> {
     /// Columns to be eliminated, lower triangle.
-    pub panel: &'f mut Padded,
+    pub panel: &'f mut Padded<R>,
     /// What is left for the parent, lower triangle with the stride of [`Padded`];
     /// what stood there is forgotten.
-    pub update: &'f mut [f64],
+    pub update: &'f mut [R],
     /// Rows of the panel.
     pub n_rows: usize,
     /// Columns of the panel.
     pub n_columns: usize,
 }
 
-impl Front<'_> {
+impl<R: Real> Front<'_, R> {
     /// Turns the panel into columns of the factor and takes their product off the update;
     /// `false` when a pivot is not positive.
     #[must_use]
@@ -76,7 +77,7 @@ impl Front<'_> {
     fn take_off(&mut self) {
         let (k, m) = (self.n_columns, self.n_rows);
         let n = m - k;
-        let (stride, own) = (Padded::stride_of(n), self.panel.stride);
+        let (stride, own) = (stride_of(n), self.panel.stride);
         if k < LARGE {
             let update = &mut *self.update;
             Arch::new().dispatch(TakeOff { update, stride, n, panel: &self.panel.values, own, k });
@@ -90,11 +91,12 @@ impl Front<'_> {
 
 /// `target −= x xᵀ` or `target = −x xᵀ`, lower triangle: cut in halves,
 /// on several threads while they are large.
-fn subtract_product(target: MatMut<'_, f64>, x: MatRef<'_, f64>, accumulate: Accum) {
+fn subtract_product<R: Real>(target: MatMut<'_, R>, x: MatRef<'_, R>, accumulate: Accum) {
     let n = target.nrows();
     if n < SHARED {
         let (lower, rectangle) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
-        triangular::matmul(target, lower, accumulate, x, rectangle, x.transpose(), rectangle, -1.0, Par::Seq);
+        let (other, minus) = (x.transpose(), R::of(-1.0));
+        triangular::matmul(target, lower, accumulate, x, rectangle, other, rectangle, minus, Par::Seq);
         return;
     }
     let (left, _, below, right) = target.split_at_mut(n / 2, n / 2);
@@ -110,10 +112,10 @@ fn subtract_product(target: MatMut<'_, f64>, x: MatRef<'_, f64>, accumulate: Acc
 }
 
 /// `target −= x yᵀ` or `target = −x yᵀ`, cut into parts for several threads.
-fn subtract_rectangle(target: MatMut<'_, f64>, x: MatRef<'_, f64>, y: MatRef<'_, f64>, accumulate: Accum) {
+fn subtract_rectangle<R: Real>(target: MatMut<'_, R>, x: MatRef<'_, R>, y: MatRef<'_, R>, accumulate: Accum) {
     let n = target.nrows();
     if n < SHARED {
-        matmul(target, accumulate, x, y.transpose(), -1.0, Par::Seq);
+        matmul(target, accumulate, x, y.transpose(), R::of(-1.0), Par::Seq);
         return;
     }
     let (above, below) = target.split_at_row_mut(n / 2);
@@ -127,40 +129,40 @@ fn subtract_rectangle(target: MatMut<'_, f64>, x: MatRef<'_, f64>, y: MatRef<'_,
 /// `target −= Σ_a source_a · tops_a` for the rows from `first` to `end` of [`COLUMNS`] columns: row `i` of
 /// the target goes with row `i + shift` of the sources, and `tops_a` are the rows from `top` on of source
 /// `a`.
-struct RankUpdate<'u> {
-    target: &'u mut [f64],
+struct RankUpdate<'u, R> {
+    target: &'u mut [R],
     stride: usize,
     first: usize,
     end: usize,
-    sources: &'u [f64],
+    sources: &'u [R],
     own: usize,
     n_sources: usize,
     shift: usize,
     top: usize,
 }
 
-impl RankUpdate<'_> {
+impl<R: Real> RankUpdate<'_, R> {
     #[inline(always)]
     fn run<S: Simd, const REPLACES: bool>(self, simd: S) {
-        let step = 2 * S::F64_LANES;
+        let step = 2 * R::lanes::<S>();
         let mut i = self.first;
         while i < self.end {
-            let mut sums = [[simd.splat_f64s(0.0); 2]; COLUMNS];
+            let mut sums = [[R::splat(simd, R::ZERO); 2]; COLUMNS];
             for a in 0..self.n_sources {
                 let source = &self.sources[a * self.own..];
-                let rows = S::as_simd_f64s(&source[i + self.shift..i + self.shift + step]).0;
+                let rows = R::registers::<S>(&source[i + self.shift..i + self.shift + step]);
                 let tops = &source[self.top..self.top + COLUMNS];
                 for c in 0..COLUMNS {
-                    let top = simd.splat_f64s(tops[c]);
-                    sums[c][0] = simd.mul_add_e_f64s(rows[0], top, sums[c][0]);
-                    sums[c][1] = simd.mul_add_e_f64s(rows[1], top, sums[c][1]);
+                    let top = R::splat(simd, tops[c]);
+                    sums[c][0] = R::times_plus(simd, rows[0], top, sums[c][0]);
+                    sums[c][1] = R::times_plus(simd, rows[1], top, sums[c][1]);
                 }
             }
             for (c, sums) in sums.iter().enumerate() {
                 let rows = &mut self.target[c * self.stride + i..c * self.stride + i + step];
-                let rows = S::as_mut_simd_f64s(rows).0;
+                let rows = R::registers_mut::<S>(rows);
                 for (row, sum) in rows.iter_mut().zip(sums) {
-                    *row = if REPLACES { simd.neg_f64s(*sum) } else { simd.sub_f64s(*row, *sum) };
+                    *row = if REPLACES { R::negated(simd, *sum) } else { R::minus(simd, *row, *sum) };
                 }
             }
             i += step;
@@ -169,20 +171,20 @@ impl RankUpdate<'_> {
 }
 
 /// Eliminates `n_columns` columns, those from `first` on of a panel; `block` starts with them.
-struct Eliminate<'e> {
-    block: &'e mut [f64],
+struct Eliminate<'e, R> {
+    block: &'e mut [R],
     stride: usize,
     first: usize,
     n_columns: usize,
 }
 
-impl WithSimd for Eliminate<'_> {
+impl<R: Real> WithSimd for Eliminate<'_, R> {
     type Output = bool;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> bool {
         let stride = self.stride;
-        let step = 2 * S::F64_LANES;
+        let step = 2 * R::lanes::<S>();
         for j in (0..self.n_columns).step_by(COLUMNS) {
             let row = self.first + j;
             let first = row / step * step;
@@ -216,13 +218,13 @@ impl WithSimd for Eliminate<'_> {
 /// `L` of the triangle at `row`, column by column, and the reciprocals of its diagonal;
 /// the identity behind `width`.
 #[inline(always)]
-fn corner(
-    columns: &[f64],
+fn corner<R: Real>(
+    columns: &[R],
     stride: usize,
     row: usize,
     width: usize,
-) -> Option<([[f64; COLUMNS]; COLUMNS], [f64; COLUMNS])> {
-    let (mut lower, mut reciprocals) = ([[0.0; COLUMNS]; COLUMNS], [1.0; COLUMNS]);
+) -> Option<([[R; COLUMNS]; COLUMNS], [R; COLUMNS])> {
+    let (mut lower, mut reciprocals) = ([[R::ZERO; COLUMNS]; COLUMNS], [R::ONE; COLUMNS]);
     for j in 0..width {
         for i in j..width {
             let mut sum = columns[j * stride + row + i];
@@ -230,11 +232,11 @@ fn corner(
                 sum -= before[i] * before[j];
             }
             if i == j {
-                if !(sum > 0.0 && sum.is_finite()) {
+                if !(sum > R::ZERO && sum.is_number()) {
                     return None;
                 }
-                lower[j][j] = sum.sqrt();
-                reciprocals[j] = 1.0 / lower[j][j];
+                lower[j][j] = sum.root();
+                reciprocals[j] = R::ONE / lower[j][j];
             } else {
                 lower[j][i] = sum * reciprocals[j];
             }
@@ -245,48 +247,48 @@ fn corner(
 
 /// The rows from `first` on of [`COLUMNS`] columns times the inverse transpose of a triangle.
 #[inline(always)]
-fn divide<S: Simd>(
+fn divide<S: Simd, R: Real>(
     simd: S,
-    columns: &mut [f64],
+    columns: &mut [R],
     stride: usize,
     first: usize,
-    lower: &[[f64; COLUMNS]; COLUMNS],
-    reciprocals: &[f64; COLUMNS],
+    lower: &[[R; COLUMNS]; COLUMNS],
+    reciprocals: &[R; COLUMNS],
 ) {
     for c in 0..COLUMNS {
         let (before, column) = columns.split_at_mut(c * stride);
-        let column = S::as_mut_simd_f64s(&mut column[first..stride]).0;
-        let scale = simd.splat_f64s(reciprocals[c]);
-        let mut earlier: [&[S::f64s]; COLUMNS] = [&[]; COLUMNS];
+        let column = R::registers_mut::<S>(&mut column[first..stride]);
+        let scale = R::splat(simd, reciprocals[c]);
+        let mut earlier: [&[R::Lanes<S>]; COLUMNS] = [&[]; COLUMNS];
         for b in 0..c {
-            earlier[b] = &S::as_simd_f64s(&before[b * stride + first..(b + 1) * stride]).0[..column.len()];
+            earlier[b] = &R::registers::<S>(&before[b * stride + first..(b + 1) * stride])[..column.len()];
         }
         for i in 0..column.len() {
             let mut x = column[i];
             for b in 0..c {
-                x = simd.negate_mul_add_e_f64s(earlier[b][i], simd.splat_f64s(lower[b][c]), x);
+                x = R::minus_times(simd, earlier[b][i], R::splat(simd, lower[b][c]), x);
             }
-            column[i] = simd.mul_f64s(x, scale);
+            column[i] = R::times(simd, x, scale);
         }
     }
 }
 
 /// Writes what the `k` columns of a panel take off the `n` rows below, lower triangle.
-struct TakeOff<'t> {
-    update: &'t mut [f64],
+struct TakeOff<'t, R> {
+    update: &'t mut [R],
     stride: usize,
     n: usize,
-    panel: &'t [f64],
+    panel: &'t [R],
     own: usize,
     k: usize,
 }
 
-impl WithSimd for TakeOff<'_> {
+impl<R: Real> WithSimd for TakeOff<'_, R> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let step = 2 * S::F64_LANES;
+        let step = 2 * R::lanes::<S>();
         for t in (0..self.n).step_by(COLUMNS) {
             let update = RankUpdate {
                 target: &mut self.update[t * self.stride..],
@@ -322,7 +324,7 @@ mod tests {
             [(1, 1), (2, 1), (5, 3), (8, 4), (16, 16), (23, 9), (40, 33), (150, 70), (600, 200), (530, 3)]
         {
             let (mut panel, mut update) = (Padded::default(), vec![f64::NAN; update_len(m - k)]);
-            let stride = Padded::stride_of(m - k);
+            let stride = stride_of(m - k);
             panel.clear(m, k).unwrap();
             for j in 0..k {
                 for i in j..m {

@@ -19,6 +19,7 @@ use rayon::prelude::*;
 pub(super) use tree::Tree;
 
 use crate::error::SolveError;
+use crate::linear::real::Real;
 use crate::linear::triangular::Panels;
 
 /// Factors the matrix with these values (one per entry of the pattern) into `factor`, panel by panel as in
@@ -26,12 +27,12 @@ use crate::linear::triangular::Panels;
 ///
 /// # Errors
 /// [`SolveError::Factorization`] when it is not positive definite, [`SolveError::Memory`].
-pub(super) fn factorize(
+pub(super) fn factorize<R: Real>(
     tree: &Tree,
     panels: &Panels,
     values: &[f64],
-    factor: &mut [f64],
-    workspace: &Workspace,
+    factor: &mut [R],
+    workspace: &Workspace<R>,
 ) -> Result<(), SolveError> {
     let numeric = Numeric { tree, panels, values, workspace };
     numeric
@@ -45,17 +46,17 @@ fn not_definite() -> SolveError {
     SolveError::Factorization { reason }
 }
 
-struct Numeric<'n> {
+struct Numeric<'n, R> {
     tree: &'n Tree,
     panels: &'n Panels,
     values: &'n [f64],
-    workspace: &'n Workspace,
+    workspace: &'n Workspace<R>,
 }
 
-impl Numeric<'_> {
+impl<R: Real> Numeric<'_, R> {
     /// Factors subtrees that follow each other, and returns what is left of each;
     /// `factor` starts with panel `begin`.
-    fn subtrees(&self, roots: &[u32], begin: usize, factor: &mut [f64]) -> Result<Vec<Vec<f64>>, SolveError> {
+    fn subtrees(&self, roots: &[u32], begin: usize, factor: &mut [R]) -> Result<Vec<Vec<R>>, SolveError> {
         let mut rest = factor;
         let mut at = self.panels.values[begin];
         let mut segments = Vec::with_capacity(roots.len());
@@ -71,7 +72,7 @@ impl Numeric<'_> {
 
     /// Factors a subtree into `factor`, which starts with its first panel,
     /// and returns what is left for the parent of its root.
-    fn subtree(&self, root: usize, factor: &mut [f64]) -> Result<Vec<f64>, SolveError> {
+    fn subtree(&self, root: usize, factor: &mut [R]) -> Result<Vec<R>, SolveError> {
         let first = self.tree.first[root] as usize;
         let base = self.panels.values[first];
         let mut update = Vec::new();
@@ -80,7 +81,7 @@ impl Numeric<'_> {
             let left = self.subtrees(self.tree.children(root), first, below)?;
             self.workspace.take(padded::update_len(self.panels.below(root).len()), &mut update)?;
             let mut work = self.workspace.work();
-            let children: Vec<&[f64]> = left.iter().map(Vec::as_slice).collect();
+            let children: Vec<&[R]> = left.iter().map(Vec::as_slice).collect();
             let done = self.front(root, own, &children, &mut update, &mut work.panel);
             self.workspace.back(work);
             left.into_iter().for_each(|x| self.workspace.give(x));
@@ -107,9 +108,9 @@ impl Numeric<'_> {
     fn stacked(
         &self,
         s: usize,
-        out: &mut [f64],
-        work: &mut Work,
-        update: Option<&mut [f64]>,
+        out: &mut [R],
+        work: &mut Work<R>,
+        update: Option<&mut [R]>,
     ) -> Result<(), SolveError> {
         let children = self.tree.children(s);
         let [even, odd] = &mut work.stacks;
@@ -135,10 +136,10 @@ impl Numeric<'_> {
     fn front(
         &self,
         s: usize,
-        out: &mut [f64],
-        left: &[&[f64]],
-        update: &mut [f64],
-        panel: &mut padded::Padded,
+        out: &mut [R],
+        left: &[&[R]],
+        update: &mut [R],
+        panel: &mut padded::Padded<R>,
     ) -> Result<(), SolveError> {
         let n_columns = self.panels.begin[s + 1] - self.panels.begin[s];
         let n_below = self.panels.below(s).len();
@@ -146,7 +147,7 @@ impl Numeric<'_> {
         panel.clear(n_rows, n_columns)?;
         let entries = self.tree.starts[s]..self.tree.starts[s + 1];
         for (&source, &target) in self.tree.source[entries.clone()].iter().zip(&self.tree.target[entries]) {
-            panel.values[target as usize] += self.values[source as usize];
+            panel.values[target as usize] += R::of(self.values[source as usize]);
         }
         let relative = |child: u32| {
             let child = child as usize;
@@ -161,7 +162,7 @@ impl Numeric<'_> {
         for (out, column) in out.chunks_exact_mut(n_rows).zip(panel.values.chunks_exact(panel.stride)) {
             out.copy_from_slice(&column[..n_rows]);
         }
-        let stride = padded::Padded::stride_of(n_below);
+        let stride = padded::stride_of(n_below);
         for (&child, from) in self.tree.children(s).iter().zip(left) {
             assembly::add_to_update(relative(child), from, n_columns, update, stride);
         }

@@ -1,6 +1,6 @@
 //! The tree of the fronts, and where everything goes in them: found once per pattern.
 
-use super::padded::{update_len, Padded};
+use super::padded::{len_of, stride_of, update_len};
 use crate::buckets::Buckets;
 use crate::error::SolveError;
 use crate::linear::pattern::LowerPattern;
@@ -130,7 +130,7 @@ impl Tree {
         for s in 0..panels.count() {
             let (k, below) = (panels.begin[s + 1] - panels.begin[s], panels.below(s).len());
             waiting += update_len(below);
-            most = most.max(waiting + Padded::len_of(k + below, k));
+            most = most.max(waiting + len_of(k + below, k));
             waiting -=
                 self.children(s).iter().map(|&c| update_len(panels.below(c as usize).len())).sum::<usize>();
         }
@@ -193,7 +193,7 @@ impl Tree {
             for (i, row) in (begin..end).chain(below.iter().map(|&row| row as usize)).enumerate() {
                 local[row] = i as u32;
             }
-            let stride = Padded::stride_of(end - begin + below.len());
+            let stride = stride_of(end - begin + below.len());
             for [e, row, column] in &at[self.starts[s]..self.starts[s + 1]] {
                 self.source.push(*e);
                 self.target.push(((*column as usize - begin) * stride) as u32 + local[*row as usize]);

@@ -94,7 +94,7 @@ impl<const K: usize> Run<'_, '_, K> {
             aim = aim.min(NEXT_AIM * self.gap()).max(least_aim(settings));
         }
         let h = self.reduced.apply(&self.u)?;
-        self.sweep = Sweep::new(&self.reduced, &self.r, |b| (h[b], steps.z[b]))?;
+        self.sweep = Sweep::new(&self.reduced, &self.r, &self.u, |b| (h[b], steps.z[b]))?;
         if self.is_certified(settings) || progress.is_finishing() {
             return Ok(());
         }

@@ -16,8 +16,7 @@ use run::{Best, Run, FACTORIZATION, FIRST_STEPS, RESIDUAL_GOAL};
 
 use crate::block_rows::BLOCK;
 use crate::progress::Progress;
-use crate::solve::certificate::spread;
-use crate::solve::cones::{scaled, Block};
+use crate::solve::cones::scaled;
 use crate::solve::fast::penalty::{reweighted, uniform};
 use crate::solve::fast::sweep::Sums;
 use crate::solve::fast::system::{System, Weighing};
@@ -42,10 +41,6 @@ const SPLIT_RESIDUAL: f64 = 2e-2;
 /// ten (measured on the flow), so there is no need to wait for the residuals.
 const GAP_ENOUGH: f64 = 1e-3;
 
-/// The part of the gap asked for that residuals of the linear system may take before its solutions are
-/// refined.
-const WORTH_REFINING: f64 = 0.1;
-
 /// The first new penalties come after this many iterations from nothing, when the ridges begin to show, and
 /// then each time the iterations have tripled.
 const REWEIGHT_COLD: usize = 10;
@@ -64,9 +59,9 @@ pub fn minimize<const K: usize>(
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Outcome<K>> {
-    let h = reduced.apply(&reduced.target)?;
-    let floor = reduced.floor(&h);
-    let primal = reduced.objective(&reduced.target, &h);
+    let lengths = reduced.lengths(&reduced.target)?;
+    let floor = reduced.floor(&lengths);
+    let primal = reduced.objective(&reduced.target, lengths.iter().copied());
     if primal <= settings.tolerance.unwrap_or(RESIDUAL_GOAL) * floor && reduced.constraints.is_none() {
         // The target is affine up to rounding: it is the solution, and zero is the bound.
         return Ok(Outcome {
@@ -79,7 +74,7 @@ pub fn minimize<const K: usize>(
             warm: None,
         });
     }
-    Run::new(reduced, system, warm, h, floor, progress)?.iterate(settings, progress)
+    Run::new(reduced, system, warm, &lengths, floor, progress)?.iterate(settings, progress)
 }
 
 /// The values that a run would start from, where there is no time for one: no norm is less than zero.
@@ -87,8 +82,9 @@ pub fn minimize<const K: usize>(
 /// # Errors
 /// [`crate::Error::Solve`] where memory is missing.
 pub fn untouched<const K: usize>(reduced: Reduced<'_, K>) -> Result<Outcome<K>> {
-    let h = reduced.apply(&reduced.target)?;
-    let (floor, primal) = (reduced.floor(&h), reduced.objective(&reduced.target, &h));
+    let lengths = reduced.lengths(&reduced.target)?;
+    let floor = reduced.floor(&lengths);
+    let primal = reduced.objective(&reduced.target, lengths.into_iter());
     let (dual, status) = (reduced.offset, Status::Stopped);
     Ok(Outcome { u: reduced.target, primal, dual, floor, iterations: 0, status, warm: None })
 }
@@ -100,35 +96,34 @@ struct Checked {
 }
 
 impl<'r, 's, const K: usize> Run<'r, 's, K> {
-    /// `h` is the operator applied to the target, `floor` what counts as zero.
+    /// `lengths` are those of the operator applied to the target, `floor` what counts as zero.
     fn new(
         mut reduced: Reduced<'r, K>,
         system: &'s mut System,
         warm: Option<Warm<K>>,
-        h: Vec<Block<K>>,
+        lengths: &[f64],
         floor: f64,
         progress: &Progress,
     ) -> Result<Self> {
         let (r, next_reweighting) = match &warm {
             Some(warm) => (reweighted(&warm.length, &reduced.weights)?, REWEIGHT_WARM),
-            None => (uniform(&mut reduced, system, &h, progress)?, REWEIGHT_COLD),
+            None => (uniform(&mut reduced, system, lengths, progress)?, REWEIGHT_COLD),
         };
         if warm.is_some() {
             system.factorize(&mut reduced, Weighing::Penalties(&r))?;
         }
-        let sweep = Sweep::new(&reduced, &r, |b| match &warm {
+        let sweep = Sweep::new(&reduced, &r, &reduced.target, |b| match &warm {
             Some(warm) => (warm.z[b], scaled(reduced.weights[b], &warm.p[b])),
             None => ([[0.0; K]; BLOCK], [[0.0; K]; BLOCK]),
         })?;
         let best = Best { u: memory::twin(&reduced.target)?, primal: f64::INFINITY, dual: 0.0 };
-        let (u, previous) = (memory::twin(&reduced.target)?, memory::twin(&reduced.target)?);
+        let u = memory::twin(&reduced.target)?;
         Ok(Self {
             reduced,
             system,
             r,
             sweep,
             u,
-            previous,
             y: Vec::new(),
             floor,
             best,
@@ -150,14 +145,13 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
                 break;
             }
             iterations += 1;
-            self.previous.clone_from(&self.u);
             self.y = self.system.solve(&self.reduced, self.sweep.right(), &mut self.u)?;
             let check = iterations % CHECK_EVERY == 0 || iterations == max;
             let sums = self.sweep.advance(&self.reduced, &self.r, &self.u, check);
             let primal = self.reduced.offset + sums.norms + self.reduced.fidelity_term(&self.u);
             self.offer(primal);
             if check {
-                self.bound(&sums, settings)?;
+                self.bound(&sums)?;
                 if self.is_done(settings, last_check.primal, &sums) {
                     status = Status::Solved;
                     break;
@@ -188,10 +182,9 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
 
     /// Lower bounds from `p + R (H u + c − z)` and, where there is fidelity everywhere, from the multipliers
     /// themselves, which are never too long.
-    fn bound(&mut self, sums: &Sums, settings: &Settings) -> Result<()> {
+    fn bound(&mut self, sums: &Sums) -> Result<()> {
         let mut g = memory::twin(self.sweep.from_equations())?;
         self.add_constraints(&mut g);
-        self.refine_if_worth(&g, settings);
         self.bound_from(&sums.from_equations, &g);
         if self.reduced.has_fidelity_everywhere {
             let mut g = memory::twin(self.sweep.multipliers())?;
@@ -199,25 +192,6 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
             self.bound_from(&sums.multipliers, &g);
         }
         Ok(())
-    }
-
-    /// Asks the linear system for refined solutions once what it leaves over would show in the gap. `g` is
-    /// `Hᵀq + Aᵀy` for the dual point that solves the equations, were they solved exactly.
-    fn refine_if_worth(&mut self, g: &[[f64; K]], settings: &Settings) {
-        let spread = spread(&self.u);
-        let mut left = 0.0;
-        for (i, g) in g.iter().enumerate() {
-            let (a, proximal) = (2.0 * self.reduced.fidelity[i], self.system.proximal()[i]);
-            let (t, u, before) = (&self.reduced.target[i], &self.u[i], &self.previous[i]);
-            for c in 0..K {
-                let exact = a * (t[c] - u[c]) + proximal * (before[c] - u[c]);
-                left += (g[c] - exact).abs() * spread[c];
-            }
-        }
-        let goal = settings.tolerance.unwrap_or(RESIDUAL_GOAL);
-        if left > WORTH_REFINING * goal * Problem::gap_scale(self.best.primal, self.floor) {
-            self.system.refine();
-        }
     }
 
     fn is_done(&self, settings: &Settings, last_check: f64, sums: &Sums) -> bool {

@@ -1,6 +1,6 @@
 //! The penalties of the fast solver: found from the problem itself, never set by hand.
 
-use crate::solve::cones::{norm, scaled, Block};
+use crate::solve::cones::scaled;
 use crate::solve::fast::system::{System, Weighing};
 use crate::solve::reduced::Reduced;
 use crate::{memory, Progress, Result};
@@ -47,9 +47,9 @@ pub fn reweighted(lengths: &[f64], weights: &[f64]) -> Result<Vec<f64>> {
     Ok(memory::gathered(lengths.iter().zip(weights).map(penalty))?)
 }
 
-/// The penalties `R = ρ w` to start with: `ρ · mean ‖H u(ρ) + c‖ ≈ BALANCE`, where `u(ρ)` is the quadratic
-/// minimizer. Leaves `system` factored for them, after one to a few factorizations. `h` is the operator
-/// applied to the target.
+/// The penalties `R = ρ w` to start with: `ρ · mean ‖H u(ρ) + c‖ ≈ BALANCE`, where `u(ρ)` is the
+/// quadratic minimizer. Leaves `system` factored for them, after one to a few factorizations. `lengths`
+/// are those of the operator applied to the target.
 ///
 /// Without fidelity `u(ρ)` does not depend on `ρ`, and one factorization does.
 ///
@@ -58,11 +58,11 @@ pub fn reweighted(lengths: &[f64], weights: &[f64]) -> Result<Vec<f64>> {
 pub fn uniform<const K: usize>(
     reduced: &mut Reduced<'_, K>,
     system: &mut System,
-    h: &[Block<K>],
+    lengths: &[f64],
     progress: &Progress,
 ) -> Result<Vec<f64>> {
     let has_fidelity = reduced.fidelity.iter().any(|a| *a > 0.0);
-    let mut scale = if has_fidelity { first_scale(reduced, h)? } else { 1.0 };
+    let mut scale = if has_fidelity { first_scale(reduced, lengths) } else { 1.0 };
     let weights = reduced.weights.clone();
     let penalties = |scale: f64| memory::gathered(weights.iter().map(|w| scale * w));
     let mut attempts = 0;
@@ -74,10 +74,10 @@ pub fn uniform<const K: usize>(
         if attempts == MOST_ATTEMPTS || progress.is_finishing() {
             return Ok(r);
         }
-        let right = reduced.apply_transposed(|b| scaled(-r[b], &reduced.constant(b)))?;
+        let right = reduced.apply_transposed(|b| scaled(-r[b], &reduced.block_at(b, &reduced.target)))?;
         let mut u = memory::twin(&reduced.target)?;
         system.solve(reduced, &right, &mut u)?;
-        let next = balance_for(reduced, &reduced.apply(&u)?)?;
+        let next = balance_for(reduced, &reduced.lengths(&u)?);
         if !has_fidelity {
             system.rescale(next / scale);
             return Ok(penalties(next)?);
@@ -92,10 +92,14 @@ pub fn uniform<const K: usize>(
 /// A guess at the scale, before anything is known but the target: what balances the target itself is far too
 /// little where there is noise, by a factor of thousands on fine meshes, so what would balance [`FOLDS`] over
 /// the whole surface counts for the most of it.
-fn first_scale<const K: usize>(reduced: &Reduced<'_, K>, h: &[Block<K>]) -> Result<f64> {
-    let noisy = balance_for(reduced, h)?;
-    let smooth = BALANCE * h.len() as f64 / (FOLDS * deviation(&reduced.target) * mean_norm(reduced));
-    Ok(if smooth.is_finite() && smooth > noisy { noisy * (smooth / noisy).powf(SMOOTH_SHARE) } else { noisy })
+fn first_scale<const K: usize>(reduced: &Reduced<'_, K>, lengths: &[f64]) -> f64 {
+    let noisy = balance_for(reduced, lengths);
+    let smooth = BALANCE * lengths.len() as f64 / (FOLDS * deviation(&reduced.target) * mean_norm(reduced));
+    if smooth.is_finite() && smooth > noisy {
+        noisy * (smooth / noisy).powf(SMOOTH_SHARE)
+    } else {
+        noisy
+    }
 }
 
 /// The standard deviation of the rows, all columns together.
@@ -116,10 +120,13 @@ fn mean_norm<const K: usize>(reduced: &Reduced<'_, K>) -> f64 {
     (0..operator.n_blocks()).map(norm).sum::<f64>() / operator.n_blocks().max(1) as f64
 }
 
-fn balance_for<const K: usize>(reduced: &Reduced<'_, K>, h: &[Block<K>]) -> Result<f64> {
-    let lengths: Vec<f64> = memory::gathered(h.iter().map(norm))?;
-    let mean = weighted_mean(&lengths, &reduced.weights);
-    Ok(if mean > 0.0 && mean.is_finite() { BALANCE / mean } else { 1.0 })
+fn balance_for<const K: usize>(reduced: &Reduced<'_, K>, lengths: &[f64]) -> f64 {
+    let mean = weighted_mean(lengths, &reduced.weights);
+    if mean > 0.0 && mean.is_finite() {
+        BALANCE / mean
+    } else {
+        1.0
+    }
 }
 
 fn weighted_mean(values: &[f64], weights: &[f64]) -> f64 {

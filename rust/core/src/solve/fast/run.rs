@@ -2,14 +2,14 @@
 
 use crate::progress::Report;
 use crate::solve::certificate::{bound_along_ray, DualPoint};
-use crate::solve::cones::{norm, scaled};
+use crate::solve::cones::norm;
 use crate::solve::fast::penalty::reweighted;
 use crate::solve::fast::sweep::Sweep;
 use crate::solve::fast::system::{System, Weighing};
 use crate::solve::outcome::{Outcome, Warm};
 use crate::solve::problem::{Problem, Settings, Status};
 use crate::solve::reduced::Reduced;
-use crate::{memory, Result};
+use crate::Result;
 
 /// The true error that a run without a tolerance aims at.
 pub(super) const RESIDUAL_GOAL: f64 = 1e-4;
@@ -27,7 +27,6 @@ pub(super) struct Run<'r, 's, const K: usize> {
     pub(super) r: Vec<f64>,
     pub(super) sweep: Sweep<K>,
     pub(super) u: Vec<[f64; K]>,
-    pub(super) previous: Vec<[f64; K]>,
     pub(super) y: Vec<[f64; K]>,
     pub(super) floor: f64,
     pub(super) best: Best<K>,
@@ -54,7 +53,7 @@ impl<const K: usize> Run<'_, '_, K> {
 
     /// The same split variables and multipliers under other penalties.
     pub(super) fn under(&self, r: &[f64]) -> Result<Sweep<K>> {
-        Ok(Sweep::new(&self.reduced, r, |b| self.sweep.split(&self.reduced.weights, &self.r, b))?)
+        Ok(Sweep::new(&self.reduced, r, &self.u, |b| self.sweep.split(&self.reduced.weights, &self.r, b))?)
     }
 
     /// Takes the present point, of this objective, if it is the best so far.
@@ -106,20 +105,17 @@ impl<const K: usize> Run<'_, '_, K> {
 
     /// The typical length of `(H u + c)_b` and `z_b`.
     pub(super) fn lengths(&self) -> Result<Vec<f64>> {
-        let h = self.reduced.apply(&self.u)?;
-        let z = |b| self.sweep.split(&self.reduced.weights, &self.r, b).0;
-        Ok(memory::gathered(h.iter().enumerate().map(|(b, h)| 0.5 * (norm(h) + norm(&z(b)))))?)
+        let mut lengths = self.reduced.lengths(&self.u)?;
+        for (b, length) in lengths.iter_mut().enumerate() {
+            let z = self.sweep.split(&self.reduced.weights, &self.r, b).0;
+            *length = 0.5 * (*length + norm(&z));
+        }
+        Ok(lengths)
     }
 
     pub(super) fn outcome(self, iterations: usize, status: Status) -> Result<Outcome<K>> {
         let length = self.lengths()?;
-        let weights = &self.reduced.weights;
-        let (mut z, mut p) = (memory::room(weights.len())?, memory::room(weights.len())?);
-        for (b, &w) in weights.iter().enumerate() {
-            let (own, multipliers) = self.sweep.split(weights, &self.r, b);
-            z.push(own);
-            p.push(if w > 0.0 { scaled(1.0 / w, &multipliers) } else { multipliers });
-        }
+        let (z, p) = self.sweep.into_split(&self.reduced.weights, &self.r)?;
         Ok(Outcome {
             u: self.best.u,
             primal: self.best.primal,

@@ -12,7 +12,7 @@ use crate::block_rows::BLOCK;
 use crate::error::SolveError;
 use crate::memory;
 use crate::solve::certificate::DualPoint;
-use crate::solve::cones::{combine, norm, shrink, Block};
+use crate::solve::cones::{combine, norm, scaled, shrink, Block};
 use crate::solve::reduced::{add_outer, add_outer_transposed, gather, BlockRanges, Reduced};
 
 /// Over-relaxation: 1.5 to 1.8 is usual for alternating directions; 1.7 was the best measured.
@@ -43,13 +43,14 @@ pub struct Sums {
 }
 
 impl<const K: usize> Sweep<K> {
-    /// Starts from `z` and `p` of each block, under the penalties `r`.
+    /// Starts from `z` and `p` of each block, under the penalties `r`, and from the point `u`.
     ///
     /// # Errors
     /// [`SolveError::Memory`].
     pub fn new(
         reduced: &Reduced<'_, K>,
         r: &[f64],
+        u: &[[f64; K]],
         start: impl Fn(usize) -> (Block<K>, Block<K>),
     ) -> Result<Self, SolveError> {
         let join = |(b, &r): (usize, &f64)| {
@@ -60,7 +61,7 @@ impl<const K: usize> Sweep<K> {
                 [[0.0; K]; BLOCK]
             }
         };
-        Self::resume(reduced, r, |b| join((b, &r[b])))
+        Self::resume(reduced, r, u, |b| join((b, &r[b])))
     }
 
     /// Starts from `v = z + p/R` of each block, and takes all that later passes need.
@@ -70,6 +71,7 @@ impl<const K: usize> Sweep<K> {
     pub fn resume(
         reduced: &Reduced<'_, K>,
         r: &[f64],
+        u: &[[f64; K]],
         state: impl Fn(usize) -> Block<K>,
     ) -> Result<Self, SolveError> {
         let n_multipliers = if reduced.has_fidelity_everywhere { reduced.n() } else { 0 };
@@ -81,16 +83,16 @@ impl<const K: usize> Sweep<K> {
             from_equations: parts(reduced.n())?,
             multipliers: parts(n_multipliers)?,
         };
-        let right = reduced.apply_transposed(|b| sweep.next_right(reduced, r, b))?;
+        let right = reduced.apply_transposed(|b| sweep.next_right(reduced, r, u, b))?;
         sweep.right[0].extend_from_slice(&right);
         Ok(sweep)
     }
 
-    /// `R(z − c) − p` of block `b`.
-    fn next_right(&self, reduced: &Reduced<'_, K>, r: &[f64], b: usize) -> Block<K> {
+    /// `R(z − H u − c) − p` of block `b`.
+    fn next_right(&self, reduced: &Reduced<'_, K>, r: &[f64], u: &[[f64; K]], b: usize) -> Block<K> {
         let (z, p) = self.split(&reduced.weights, r, b);
-        let fixed = combine(r[b], &z, -r[b], &reduced.constant(b));
-        combine(1.0, &fixed, -1.0, &p)
+        let h = combine(1.0, &reduced.block_times(b, u), 1.0, &reduced.constant(b));
+        combine(1.0, &combine(r[b], &z, -r[b], &h), -1.0, &p)
     }
 
     /// `z` and `p` of block `b`.
@@ -104,7 +106,26 @@ impl<const K: usize> Sweep<K> {
         (z, combine(r[b], v, -r[b], &z))
     }
 
-    /// `Hᵀ(R(z − c) − p)`: the right side of the next linear solve.
+    /// `z`, and `p` over the weight where there is one, of all blocks.
+    ///
+    /// # Errors
+    /// [`SolveError::Memory`].
+    pub fn into_split(
+        mut self,
+        weights: &[f64],
+        r: &[f64],
+    ) -> Result<(Vec<Block<K>>, Vec<Block<K>>), SolveError> {
+        (self.right, self.from_equations, self.multipliers) = (Vec::new(), Vec::new(), Vec::new());
+        let mut all = memory::room(r.len())?;
+        for (b, &w) in weights.iter().enumerate() {
+            let (z, p) = self.split(weights, r, b);
+            self.state[b] = z;
+            all.push(if w > 0.0 { scaled(1.0 / w, &p) } else { p });
+        }
+        Ok((self.state, all))
+    }
+
+    /// `Hᵀ(R(z − H u − c) − p)`: what the next linear solve changes `u` for.
     #[must_use]
     pub fn right(&self) -> &[[f64; K]] {
         &self.right[0]
@@ -213,8 +234,8 @@ impl<const K: usize, const CHECK: bool> WithSimd for Pass<'_, K, CHECK> {
                     }
                 }
             }
-            // R(z − c) − p
-            let next = combine(2.0 * r, &z, -r, &combine(1.0, v, 1.0, &c));
+            // R(z − H u − c) − p
+            let next = combine(2.0 * r, &z, -r, &combine(1.0, v, 1.0, &h));
             for (&column, value) in columns.iter().zip(values) {
                 add_outer_transposed(&mut self.right[column as usize], value, &next);
             }
@@ -245,7 +266,6 @@ mod tests {
     use super::*;
     use crate::block_rows::BlockRows;
     use crate::linear::Columns;
-    use crate::solve::cones::scaled;
     use crate::solve::{Coupling, FreeOperator, Problem};
 
     /// Enough blocks for several parts, over columns of a ring; the first column is fixed.
@@ -280,7 +300,7 @@ mod tests {
         };
         let free = FreeOperator::new(&operator, &problem.fixed).unwrap();
         let reduced = Reduced::<1>::new(&problem, &free, &[0]).unwrap();
-        let mut sweep = Sweep::resume(&reduced, &[], |_| [[0.0]; BLOCK]).unwrap();
+        let mut sweep = Sweep::resume(&reduced, &[], &reduced.target, |_| [[0.0]; BLOCK]).unwrap();
         sweep.advance(&reduced, &[], &reduced.target, true);
         for sums in [sweep.right(), sweep.from_equations(), sweep.multipliers()] {
             assert_eq!(sums, [[0.0]; 3]);
@@ -317,10 +337,10 @@ mod tests {
         let p: Vec<Block<2>> = z.iter().zip(w).map(|(z, w)| scaled(w / norm(z).max(1e-300), z)).collect();
         let u: Vec<[f64; 2]> = (0..reduced.n()).map(|i| [(i as f64).sin(), (2.0 * i as f64).cos()]).collect();
 
-        let mut sweep = Sweep::new(&reduced, &r, |b| (z[b], p[b])).unwrap();
-        let next = |z: &Block<2>, p: &Block<2>, b: usize| {
-            combine(1.0, &combine(r[b], z, -r[b], &reduced.constant(b)), -1.0, p)
-        };
+        let mut sweep = Sweep::new(&reduced, &r, &u, |b| (z[b], p[b])).unwrap();
+        let h = reduced.apply(&u).unwrap();
+        let next =
+            |z: &Block<2>, p: &Block<2>, b: usize| combine(1.0, &combine(r[b], z, -r[b], &h[b]), -1.0, p);
         let expected = reduced.apply_transposed(|b| next(&z[b], &p[b], b)).unwrap();
         let close = |a: &[[f64; 2]], b: &[[f64; 2]]| {
             a.iter().flatten().zip(b.iter().flatten()).all(|(x, y)| (x - y).abs() < 1e-9)
@@ -328,7 +348,6 @@ mod tests {
         assert!(close(sweep.right(), &expected));
 
         let sums = sweep.advance(&reduced, &r, &u, true);
-        let h = reduced.apply(&u).unwrap();
         let (mut q, mut apart) = (DualPoint::default(), 0.0);
         let mut q_at = vec![[[0.0; 2]; BLOCK]; m];
         let after: Vec<(Block<2>, Block<2>)> = (0..m)

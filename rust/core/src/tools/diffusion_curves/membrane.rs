@@ -111,7 +111,7 @@ impl<'a> Screened<'a> {
         let (pattern, entries) = self.membrane.matrix(&all, &all, |v| weights[v])?;
         let cholesky = match &mut self.cholesky {
             Some(cholesky) => cholesky,
-            none => none.insert(Cholesky::analyze(pattern, None)?),
+            none => none.insert(Cholesky::analyze(&pattern, None)?),
         };
         cholesky.factorize(&entries)?;
         let mut values = target.copied()?;
@@ -143,7 +143,7 @@ impl<'a> Harmonic<'a> {
             None
         } else {
             let (pattern, values) = membrane.matrix(&free, &index, |_| 0.0)?;
-            let mut cholesky = Cholesky::analyze(pattern, None)?;
+            let mut cholesky = Cholesky::analyze(&pattern, None)?;
             cholesky.factorize(&values)?;
             Some(cholesky)
         };

@@ -188,7 +188,7 @@ impl<'a> Membrane<'a> {
         }
         if !free.is_empty() {
             let (pattern, values) = assembled(entries, free.len())?;
-            let mut cholesky = Cholesky::analyze(pattern, None)?;
+            let mut cholesky = Cholesky::analyze(&pattern, None)?;
             cholesky.factorize(&values)?;
             cholesky.solve(&mut right)?;
         }

@@ -70,7 +70,7 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point], stage: &S
     let is_hub = [hubs.mask(true, n)?, hubs.mask(false, m)?];
     let pattern = pattern(&incidences, &at.0, &at.1, &is_hub)?;
     let (starts, rows) = (&pattern.starts, &pattern.rows);
-    let mut cholesky = Cholesky::analyze(pattern.copied()?, None)?;
+    let mut cholesky = Cholesky::analyze(&pattern, None)?;
     let (mut last, mut slack) = (f64::INFINITY, SLACK[usize::from(shape.off_planes() < FLAT)]);
     for step in 0..2 * STEPS {
         stage.step()?;

@@ -11,6 +11,8 @@ pub(super) struct IndicatorStep {
     cholesky: Cholesky,
     /// `λ` times the cost and the area of each face.
     weighted_areas: Vec<f64>,
+    /// Where the columns of `λ L` start, each with its diagonal entry.
+    starts: Vec<usize>,
     /// The entries of `λ L`.
     laplacian: Vec<f64>,
     values: Vec<f64>,
@@ -58,8 +60,10 @@ impl IndicatorStep {
         let weighted =
             faces.iter().map(|&f| length_weight * face_costs[f as usize] * surface.areas[f as usize]);
         let weighted_areas = memory::gathered(weighted)?;
+        let pattern = LowerPattern { n: m, starts, rows };
         Ok(Self {
-            cholesky: Cholesky::analyze(LowerPattern { n: m, starts, rows }, None)?,
+            cholesky: Cholesky::analyze(&pattern, None)?,
+            starts: pattern.starts,
             weighted_areas,
             values: memory::twin(&laplacian)?,
             laplacian,
@@ -82,8 +86,7 @@ impl IndicatorStep {
             *value = self.epsilon * entry;
         }
         let pull = |area: f64| 0.25 / self.epsilon * area.max(1e-12 * largest);
-        let starts = &self.cholesky.pattern().starts;
-        for ((&start, norm), &area) in starts.iter().zip(norms).zip(&self.weighted_areas) {
+        for ((&start, norm), &area) in self.starts.iter().zip(norms).zip(&self.weighted_areas) {
             self.values[start] += norm + pull(area);
         }
         let mut v: Vec<[f64; 1]> = memory::gathered(self.weighted_areas.iter().map(|&area| [pull(area)]))?;

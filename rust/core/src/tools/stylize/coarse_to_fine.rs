@@ -45,7 +45,7 @@ pub(super) fn coarse_to_fine(
 ) -> Result<Stylized> {
     let start = mesh.positions().ok_or(MeshError::NoPositions)?;
     let held = held(options, start.len())?;
-    let levels = levels(mesh, held.as_deref(), ENOUGH, progress)?;
+    let mut levels = levels(mesh, held.as_deref(), ENOUGH, progress)?;
     // One unit of length for all levels.
     let lengths = edge_lengths(mesh.connectivity().faces(), start)?;
     let coarse_scale = Scale::Length(scale.unit(mesh.connectivity(), start, &lengths));
@@ -81,6 +81,8 @@ pub(super) fn coarse_to_fine(
             let sharpening = left.sharpening.as_ref().map(finer_factors).transpose()?;
             legacy = Some(Legacy { points, sharpening, ..left });
         }
+        // The finer ones need no more of it.
+        levels.truncate(depth - 1);
     }
     if let Some(legacy) = legacy {
         finest.resume(legacy)?;
