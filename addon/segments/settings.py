@@ -42,7 +42,7 @@ def by_count(settings: object) -> bool:
 
 def by_angle(settings: object) -> bool:
     """Whether the angle between faces says how many segments there are."""
-    return of_faces(settings) and settings.source == "SHAPE" and not by_count(settings)
+    return of_shape(settings) and not by_count(settings)
 
 
 def by_weight(settings: object) -> bool:
@@ -54,10 +54,19 @@ EXPERT_OF_FACES = {"section": shared.EXPERT, "shown": of_faces}
 """Where the numbers of the functional are, which only finds faces."""
 
 
+def of_shape(settings: object) -> bool:
+    """Whether segments are faces of a shape."""
+    return of_faces(settings) and settings.source == "SHAPE"
+
+
 def may_simplify(settings: object) -> bool:
     """Whether the segments of a large mesh may be found on a simplified one."""
-    plain = settings.method == "fitted" and not settings.use_fidelity
-    return of_faces(settings) and settings.source == "SHAPE" and plain
+    return of_shape(settings) and is_plain(settings)
+
+
+def is_plain(settings: object) -> bool:
+    """Whether segments are found as this project does, not as the paper."""
+    return settings.method == "fitted" and not settings.use_fidelity
 
 
 BEND = 0.8
@@ -88,6 +97,14 @@ KINDS = items(
 SOURCES = items(
     SHAPE="Parts that are nearly flat or evenly curved, with borders along the ridges",
     ATTRIBUTE="Parts on which an attribute, color, or vertex group is even or rises evenly",
+)
+FILLETS = items(
+    automatic="Found where a crease parts them from their sides, or the mesh is as a CAD kernel makes it",
+    apart=(
+        "Each is a segment: faces are told by the planes, spheres, cylinders, cones, and tori that they lie "
+        "on, also on scans and remeshed parts"
+    ),
+    joined="Each belongs to the larger side beside it: a box with rounded or beveled edges has six sides",
 )
 MODES = items(
     AUTO=("Automatic", "As many as there are, given an angle, a weight, or a coarseness"),
@@ -161,6 +178,14 @@ class SegmentSettings(Settings):
             BEND * 0.5, min=np.radians(0.005), max=np.pi, soft_min=np.radians(2.0), soft_max=np.radians(120.0)
         ),
         shown=by_angle,
+    )
+    fillets: choice(
+        "Fillets",
+        "What becomes of fillets and bevels, which round or break the edge of two sides",
+        FILLETS,
+        default="automatic",
+        shown=of_shape,
+        active=is_plain,
     )
     length_weight: number(
         "Border Weight",
@@ -308,6 +333,7 @@ def segment_options(settings: object) -> dict[str, object]:
         "cut_threshold": settings.cut_threshold,
         "min_faces": chosen(settings, "min_faces"),
         "method": settings.method,
+        "fillets": settings.fillets if may_simplify(settings) else "automatic",
         "scale": settings.scale,
         "coarse_to_fine": None if settings.coarse_to_fine else False,
         "solver": settings.solver,

@@ -84,6 +84,7 @@ TOOLS: dict[str, st.SearchStrategy[dict[str, Any]]] = {
             "length_weight": powers,
             "fidelity": powers,
             "method": st.sampled_from(["fitted", "paper"]),
+            "fillets": st.sampled_from(["automatic", "apart", "joined"]),
             "n_segments": st.sampled_from([1, 3, 1000]),
             "min_faces": st.sampled_from([0, 5]),
             "values": st.just("vertex values"),

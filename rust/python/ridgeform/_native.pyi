@@ -150,6 +150,7 @@ def segment(
     min_faces: int | None = None,
     scale: Literal["extent", "bounding_box", "area", "max_edge"] | float = "extent",
     method: Literal["fitted", "paper"] = "fitted",
+    fillets: Literal["automatic", "apart", "joined"] = "automatic",
     n_segments: int | None = None,
     face_weights: ArrayLike | None = None,
     edge_weights: ArrayLike | None = None,

@@ -2,13 +2,17 @@
 
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
-use ridgeform_core::tools::{self, Hierarchy, Scale, SegmentMethod};
+use ridgeform_core::tools::{self, Fillets, Hierarchy, Scale, SegmentMethod};
 
 use crate::columns::{self, Values};
 use crate::mesh::Mesh;
 use crate::nested::nested_divisions;
 use crate::numbers::at_least_if;
 use crate::{arrays, doorway, options};
+
+/// What becomes of fillets, by name.
+const FILLETS: [(&str, Fillets); 3] =
+    [("automatic", Fillets::Automatic), ("apart", Fillets::Apart), ("joined", Fillets::Joined)];
 
 /// What `segment` returns: a label for every face, and finer and coarser segmentations nested with it.
 #[pyclass(frozen, module = "ridgeform")]
@@ -84,6 +88,10 @@ solver_function! {
     ///     "bounding_box" (the longest side is 1), "area" or "max_edge"
     /// method : "fitted" (watershed of v, merging of what bends little, border faces moved to the segment
     ///     that they fit best) or "paper" (cuts below the threshold, small pieces merged by majority)
+    /// fillets : "automatic" (segments are told by bends, and where a mesh is exact by its surfaces), "apart"
+    ///     (by the planes, spheres, cylinders, cones and tori that their faces lie on, under noise as well:
+    ///     every fillet is one) or "joined" (the same, and fillets and bevels belong to the larger side
+    ///     beside them). The latter for shapes by "fitted" without `fidelity`
     /// n_segments : number of segments wanted, or None; fewer where the finest segmentation has fewer
     /// face_weights : (m,) array ≥ 0, what borders cost there: 1 is neutral, smaller attracts them
     /// edge_weights : (m,3) array ≥ 0, the same for edges, column i opposite corner i;
@@ -110,13 +118,14 @@ solver_function! {
     /// Rowe et al. 2024, eqs. (25) and (41), section 7.5, supplement E.
     signature = (mesh, *, values=None, length_weight=0.5, fidelity=None, epsilon_start=0.1, epsilon_end=0.001,
         inner_tolerance=1e-5, cut_threshold=0.6, min_faces=None, scale=None, method="fitted",
-        n_segments=None, face_weights=None, edge_weights=None, faces=None, noise=None, coarse_to_fine=None),
+        fillets="automatic", n_segments=None, face_weights=None, edge_weights=None, faces=None, noise=None,
+        coarse_to_fine=None),
         tolerance = None,
         text_signature = "(mesh, *, values=None, length_weight=0.5, fidelity=None, epsilon_start=0.1, \
     epsilon_end=0.001, inner_tolerance=1e-05, cut_threshold=0.6, min_faces=None, scale='extent', \
-    method='fitted', n_segments=None, face_weights=None, edge_weights=None, faces=None, noise=None, \
-    coarse_to_fine=None, solver='auto', tolerance=None, max_iterations=None, memory_limit=None, \
-    threads=None, progress=None)";
+    method='fitted', fillets='automatic', n_segments=None, face_weights=None, edge_weights=None, \
+    faces=None, noise=None, coarse_to_fine=None, solver='auto', tolerance=None, max_iterations=None, \
+    memory_limit=None, threads=None, progress=None)";
     pub fn segment(py: Python<'_>, solve, progress;
         mesh: &Mesh,
         values: Option<&Bound<'_, PyAny>>,
@@ -129,6 +138,7 @@ solver_function! {
         min_faces: Option<i64>,
         scale: Option<&Bound<'_, PyAny>>,
         method: &str,
+        fillets: &str,
         n_segments: Option<i64>,
         face_weights: Option<&Bound<'_, PyAny>>,
         edge_weights: Option<&Bound<'_, PyAny>>,
@@ -141,6 +151,7 @@ solver_function! {
         let methods = [("fitted", SegmentMethod::Fitted), ("paper", SegmentMethod::Paper)];
         let options = tools::SegmentOptions {
             method: options::choice(py, "method", method, &methods)?,
+            fillets: options::choice(py, "fillets", fillets, &FILLETS)?,
             length_weight,
             fidelity,
             epsilon_start,

@@ -39,7 +39,7 @@ pub use parts::{parts, Parts, PartsOptions};
 pub use restore::{restore, RestoreOptions, RestoreStatus, Restored, RestoredSurface};
 pub use scalar::ScalarOptions;
 pub use scale::Scale;
-pub use segment::{segment, Hierarchy, SegmentMethod, SegmentOptions, Segmentation};
+pub use segment::{segment, Fillets, Hierarchy, SegmentMethod, SegmentOptions, Segmentation};
 pub use sharpness::sharpened_weights;
 pub use stylize::{stylize, Flatness, FlowStatus, StylizeOptions, Stylized};
 

@@ -7,7 +7,7 @@ use ridgeform_core::remesh::RemeshOptions;
 use ridgeform_core::shapes::Random;
 use ridgeform_core::solve::{Coupling, Solver};
 use ridgeform_core::tools::{
-    DenoiseOptions, DiffusionCurvesOptions, EnergyOptions, FacetOptions, FillHolesOptions, Levels,
+    DenoiseOptions, DiffusionCurvesOptions, EnergyOptions, FacetOptions, FillHolesOptions, Fillets, Levels,
     LoopChoice, ModeOptions, PartsOptions, PatchShape, RestoreOptions, ScalarOptions, Scale, SegmentMethod,
     SegmentOptions, Sharpness, SolveOptions, StylizeOptions, Symmetric,
 };
@@ -208,6 +208,7 @@ pub(crate) fn segment(random: &mut Random, mesh: &Mesh) -> SegmentOptions {
         noise: maybe(random, amount),
         levels: levels(random),
         solve: solving(random),
+        fillets: any(random, &[Fillets::Automatic, Fillets::Automatic, Fillets::Apart, Fillets::Joined]),
         ..standard
     }
 }

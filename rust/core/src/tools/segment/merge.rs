@@ -7,6 +7,7 @@ use super::constants::MERGE_SHARES;
 use super::crease::Border;
 use super::slopes::Slopes;
 use super::surface::Surface;
+use crate::mesh::partition::Partition;
 use crate::ordered::Ordered;
 use crate::progress::Progress;
 use crate::{memory, Result};
@@ -179,6 +180,24 @@ pub(super) fn rename(labels: &mut [u32], merges: &[Merge]) {
             *label = *name;
         }
     }
+}
+
+/// The same merges in the order given, each named by segments that are still there.
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub(super) fn within_order(labels: &[u32], n: usize, merges: &[Merge]) -> Result<Vec<Merge>> {
+    debug_assert!(labels.iter().all(|l| (*l as usize) < n));
+    let mut segments = Partition::new(n)?;
+    let mut ordered = memory::room(merges.len())?;
+    for merge in merges {
+        let (kept, gone) = (segments.root(merge.kept), segments.root(merge.gone));
+        if kept != gone {
+            segments.attach(gone, kept);
+            ordered.push(Merge { kept, gone, strength: merge.strength });
+        }
+    }
+    Ok(ordered)
 }
 
 /// Removes borders weaker than `threshold`, weakest first; borders that two segments had with a third become

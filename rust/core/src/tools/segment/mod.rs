@@ -6,10 +6,12 @@
 //! ([`explain`]), and moving faces at borders to the segment that they fit best ([`relabel`]), or, between
 //! curved segments, along creases ([`straighten`]). Sides of a few triangles, which the Hessian cannot see,
 //! are told by their planes ([`exact`]), tangent faces of CAD parts by their surfaces ([`cover`]), sides of a
-//! few rows under little noise by the clear ridges around them ([`regions`]). In any case a [`hierarchy`] of
-//! nested segmentations comes with it. Faces split at T-junctions ([`split`]) and [`copies`] of faces are
-//! given back as the mesh has them.
+//! few rows under little noise by the clear ridges around them ([`regions`]). Where fillets are wanted apart
+//! or joined, segments are told by the surfaces of the labelling ([`mod@fillets`]). In any case a
+//! [`hierarchy`] of nested segmentations comes with it. Faces split at T-junctions ([`split`]) and [`copies`]
+//! of faces are given back as the mesh has them.
 
+mod blends;
 mod coarse_to_fine;
 mod constants;
 mod copies;
@@ -18,6 +20,7 @@ mod crease;
 mod divide;
 mod exact;
 mod explain;
+mod fillets;
 mod hierarchy;
 mod indicator;
 mod indicator_step;
@@ -42,7 +45,7 @@ mod walk;
 mod watershed;
 
 pub use hierarchy::Hierarchy;
-pub use options::{SegmentMethod, SegmentOptions};
+pub use options::{Fillets, SegmentMethod, SegmentOptions};
 pub(super) use segmentation::boundary_edges;
 pub use segmentation::Segmentation;
 
@@ -60,8 +63,9 @@ use crate::{memory, Result};
 use coarse_to_fine::coarse_to_fine;
 use constants::{BEND, LEAST_EPSILON};
 use copies::Copies;
-use cover::covered;
+use cover::{covered, is_even};
 use exact::coarse_planes;
+use fillets::by_surfaces;
 use indicator::Functional;
 use noise::noise_level;
 use normalized::Normalized;
@@ -194,8 +198,30 @@ fn whole(
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Segmentation> {
+    if options.fillets == Fillets::Automatic {
+        return Ok(by_bends(mesh, values, options, settings, progress)?.0);
+    }
+    mesh.demand(Tool::Restore).admit(options.solve.memory_limit)?;
+    let all = SegmentOptions { n_segments: None, ..options.copied()? };
+    let (found, is_exact) = by_bends(mesh, values, &all, settings, progress)?;
     let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
-    let unit = options.scale.unit(mesh.connectivity(), positions, mesh.edge_lengths());
+    let costs = options.edge_costs(mesh)?;
+    let surface = Surface::new(mesh.connectivity(), positions, options.unit_of(mesh), costs)?;
+    // A tessellation is in its surfaces already, and has few vertices inside of them to see any by.
+    let is_tessellated = is_exact && !is_even(&surface, BEND * options.length_weight)?;
+    by_surfaces(mesh, &surface, found, is_tessellated, options, progress)
+}
+
+/// Segments all faces by the bends between them, and says whether the shape is exact.
+fn by_bends(
+    mesh: &Mesh,
+    values: Option<&Columns>,
+    options: &SegmentOptions,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<(Segmentation, bool)> {
+    let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
+    let unit = options.unit_of(mesh);
     if !(unit > 0.0 && unit.is_finite()) {
         return Err(MeshError::NoFaces.into());
     }
@@ -227,10 +253,11 @@ fn whole(
     };
     if options.are_levels_used(positions.len(), values.is_some()) {
         if !is_exact {
-            let segment =
-                |mesh: &Mesh, options: &SegmentOptions| whole(mesh, None, options, settings, progress);
+            let segment = |mesh: &Mesh, options: &SegmentOptions| {
+                Ok(by_bends(mesh, None, options, settings, progress)?.0)
+            };
             if let Some(found) = coarse_to_fine(mesh, &surface, noise, unit, options, progress, segment)? {
-                return Ok(found);
+                return Ok((found, false));
             }
         }
         mesh.demand(Tool::Segment)
@@ -281,7 +308,7 @@ fn whole(
             Ok(Columns { data, ..*columns })
         }
     };
-    Ok(Segmentation {
+    let found = Segmentation {
         boundary_edges: boundary_edges(mesh, &labels)?,
         labels,
         n_segments,
@@ -293,5 +320,6 @@ fn whole(
         epsilons,
         alternations: found.alternations,
         status: if progress.is_finishing() { Status::Stopped } else { found.status },
-    })
+    };
+    Ok((found, is_exact))
 }

@@ -1,6 +1,6 @@
 //! How to segment.
 
-use super::constants::{CLEAN_FIDELITY, DEFAULT_SCALE};
+use super::constants::{CLEAN_FIDELITY, DEFAULT_SCALE, MOST_LEAST_FACES, NOISY};
 use crate::linear::Columns;
 use crate::mesh::Mesh;
 use crate::solve::MAX_JOINT_COLUMNS;
@@ -21,11 +21,25 @@ pub enum SegmentMethod {
     Paper,
 }
 
+/// What becomes of the fillets and bevels of a shape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Fillets {
+    /// Segments are told by bends, and on exact shapes by their surfaces.
+    #[default]
+    Automatic,
+    /// Segments are told by the surfaces that their faces lie on: every fillet is one of its own.
+    Apart,
+    /// The same, and fillets and bevels belong to the larger one of the sides beside them.
+    Joined,
+}
+
 /// How to segment.
 #[derive(Debug, Clone)]
 pub struct SegmentOptions {
     /// How segments are made from the indicator.
     pub method: SegmentMethod,
+    /// What becomes of fillets and bevels; for shapes by [`SegmentMethod::Fitted`].
+    pub fillets: Fillets,
     /// `λ`, what a border costs per length. A crease that bends by more (radians; for other signals the jump
     /// of the slope, with the signal's range and the shape's size as 1) is worth a border.
     pub length_weight: f64,
@@ -67,6 +81,7 @@ impl Default for SegmentOptions {
     fn default() -> Self {
         Self {
             method: SegmentMethod::Fitted,
+            fillets: Fillets::Automatic,
             length_weight: 0.5,
             fidelity: None,
             epsilon_start: 0.1,
@@ -105,6 +120,10 @@ impl SegmentOptions {
         }
         if let Some(noise) = self.noise.filter(|noise| !(*noise >= 0.0 && noise.is_finite())) {
             return Err(Error::argument("noise", format!("is {noise}; it must be finite and at least 0")));
+        }
+        if self.fillets != Fillets::Automatic && !self.is_plain(values.is_some()) {
+            let problem = "are told on shapes by method \"fitted\" without fidelity; pass \"automatic\"";
+            return Err(Error::argument("fillets", problem.to_owned()));
         }
         check_range("cut_threshold", self.cut_threshold, 0.0, 1.0)?;
         check_weights("face_weights", self.face_weights.as_ref(), m, "face")?;
@@ -151,6 +170,20 @@ impl SegmentOptions {
     pub(super) fn are_levels_used(&self, n_vertices: usize, has_values: bool) -> bool {
         let is_suited = self.is_plain(has_values) && self.edge_weights.is_none();
         is_suited && self.levels.are_used(n_vertices, ENOUGH, true)
+    }
+
+    /// How many faces a segment must have where the noise is this part of a mean edge: twenty where it is a
+    /// tenth, down to a fifth of that where there is less.
+    pub(super) fn least_faces(&self, noise: f64) -> usize {
+        let is_paper = self.method == SegmentMethod::Paper;
+        let share = if is_paper { 1.0 } else { (noise / NOISY).clamp(0.2, 1.0) };
+        self.min_faces.unwrap_or((share * MOST_LEAST_FACES).round() as usize)
+    }
+
+    /// The unit of length of the weights on a mesh.
+    pub(super) fn unit_of(&self, mesh: &Mesh) -> f64 {
+        let positions = mesh.positions().unwrap_or_default();
+        self.scale.unit(mesh.connectivity(), positions, mesh.edge_lengths())
     }
 
     /// `α` to start with.

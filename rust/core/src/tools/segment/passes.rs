@@ -1,12 +1,12 @@
 //! The passes from the indicator to segments and their hierarchy,
 //! each with what it takes from the options and the noise.
 
-use super::constants::{BEND, BEND_SHARES, MOST_LEAST_FACES, NOISY, PERSISTENCE, PLANE_EDGE, PLANE_NOISE};
+use super::constants::{BEND, BEND_SHARES, PERSISTENCE, PLANE_EDGE, PLANE_NOISE};
 use super::divide::Divide;
 use super::exact::Planes;
 use super::explain::Explain;
 use super::hierarchy::Hierarchy;
-use super::merge::{rename, Merge, Merging};
+use super::merge::{rename, within_order, Merge, Merging};
 use super::options::{SegmentMethod, SegmentOptions};
 use super::patches::patch_size;
 use super::regions::Regions;
@@ -19,7 +19,6 @@ use super::threshold::cut_and_merge;
 use super::watershed::watershed;
 use crate::linear::Columns;
 use crate::mesh::partition::contiguous;
-use crate::mesh::partition::Partition;
 use crate::progress::{Progress, Report};
 use crate::{memory, Result};
 
@@ -107,13 +106,9 @@ impl<'a> Passes<'a> {
         Ok(labels)
     }
 
-    /// How many faces a segment must have: twenty where the noise is a tenth of an edge, down to a fifth of
-    /// that where there is less.
+    /// How many faces a segment must have.
     fn least_faces(&self) -> usize {
-        let noise = self.noise / self.surface.mean_edge;
-        let share =
-            if self.options.method == SegmentMethod::Paper { 1.0 } else { (noise / NOISY).clamp(0.2, 1.0) };
-        self.options.min_faces.unwrap_or((share * MOST_LEAST_FACES).round() as usize)
+        self.options.least_faces(self.noise / self.surface.mean_edge)
     }
 
     /// How far the corners of a side are off it, as a standard deviation and at most.
@@ -346,19 +341,4 @@ fn common(surface: &Surface<'_>, first: &[u32], second: &[u32]) -> Result<Vec<u3
         *names.entry(pair).or_insert(fresh)
     }))?;
     Ok(pieces(surface, &labels)?.0)
-}
-
-/// The same merges in the order given, each named by segments that are still there.
-fn within_order(labels: &[u32], n: usize, merges: &[Merge]) -> Result<Vec<Merge>> {
-    debug_assert!(labels.iter().all(|l| (*l as usize) < n));
-    let mut segments = Partition::new(n)?;
-    let mut ordered = memory::room(merges.len())?;
-    for merge in merges {
-        let (kept, gone) = (segments.root(merge.kept), segments.root(merge.gone));
-        if kept != gone {
-            segments.attach(gone, kept);
-            ordered.push(Merge { kept, gone, strength: merge.strength });
-        }
-    }
-    Ok(ordered)
 }

@@ -30,9 +30,8 @@ use grow::Grown;
 /// # Errors
 /// [`crate::Error::Cancelled`], and [`crate::Error::Solve`] where memory is missing.
 pub(super) fn covered(surface: &Surface<'_>, bend: f64, progress: &Progress) -> Result<Option<Planes>> {
-    let largest = surface.positions.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
-    let shape = Shape::new(surface, SINGLE_PRECISION * largest, bend.min(MOST_BEND_ON_A_SURFACE))?;
-    if shape.n_inside(surface)? as f64 > MOST_INSIDE * shape.positions.len() as f64 {
+    let shape = exact_shape(surface, bend)?;
+    if has_many_inside(&shape, surface)? {
         return Ok(None);
     }
     let smooth = |f: &u32| shape.links(*f).iter().any(|link| link.bend < MOST_BEND_ON_A_SURFACE);
@@ -77,6 +76,23 @@ pub(super) fn covered(surface: &Surface<'_>, bend: f64, progress: &Progress) -> 
         normals: memory::gathered(shape.labels.iter().map(|&f| shape.normals[f as usize]))?,
         groups: Some(memory::gathered(shape.labels.iter().map(group))?),
     }))
+}
+
+/// Whether an exact mesh is even, with vertices inside of its planes, as no kernel makes it.
+///
+/// # Errors
+/// [`crate::Error::Solve`] where memory is missing.
+pub(super) fn is_even(surface: &Surface<'_>, bend: f64) -> Result<bool> {
+    has_many_inside(&exact_shape(surface, bend)?, surface)
+}
+
+fn exact_shape<'a>(surface: &'a Surface<'_>, bend: f64) -> Result<Shape<'a>> {
+    let largest = surface.positions.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
+    Shape::new(surface, SINGLE_PRECISION * largest, bend.min(MOST_BEND_ON_A_SURFACE))
+}
+
+fn has_many_inside(shape: &Shape<'_>, surface: &Surface<'_>) -> Result<bool> {
+    Ok(shape.n_inside(surface)? as f64 > MOST_INSIDE * shape.positions.len() as f64)
 }
 
 /// Surfaces that are found one by one.
