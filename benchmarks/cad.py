@@ -30,11 +30,14 @@ ROOT = Path(__file__).resolve().parents[1]
 
 RESULTS = ROOT / "benchmarks/cad.md"
 REQUIREMENTS = ROOT / "benchmarks/requirements-cad.txt"
-SOURCES = [ROOT / f"benchmarks/{name}.py" for name in ("cad_parts", "cad_meshes")]
+SOURCES = [ROOT / f"benchmarks/{name}.py" for name in ("cad_fillets", "cad_parts", "cad_meshes")]
 MESHES = STATE / "bench-cad-meshes"
 NOISES = (0.0, 0.1, 0.2)
 KINDS = ("coarse", "fine", *(f"{noise:g}" for noise in NOISES))
 SEED = 10
+OPTIONS = ("apart", "joined")
+CELLS = [*(("apart", kind) for kind in KINDS[2:]), *(("joined", kind) for kind in KINDS)]
+"""The cells of the second table: raw tessellations are apart in the first."""
 
 
 def make_meshes(site: Path) -> None:
@@ -64,9 +67,14 @@ def meshes_of(k: int, kinds: list[str]) -> dict[str, Part]:
     return found
 
 
-def passes(kind: str, part: Part, labels: NDArray[np.int64]) -> bool:
+def fillets_of(k: int, kind: str) -> NDArray[np.bool_]:
+    """Which faces of the k-th part are fillets or chamfers."""
+    name = kind if kind in ("coarse", "fine") else "remeshed"
+    return np.load(MESHES / f"{k}.npz")[f"{name}_fillets"]
+
+
+def passes(kind: str, agreement: float) -> bool:
     """Whether the faces are right: exactly as tessellated, nearly all under noise."""
-    agreement = adjusted_rand_index(labels, part.truth)
     if kind in ("coarse", "fine"):
         return agreement == 1.0
     return agreement >= (0.98 if float(kind) <= 0.1 else 0.92)
@@ -84,7 +92,7 @@ def judge(
     for kind, part in parts.items():
         labels = ridgeform.segment(ridgeform.Mesh(part.vertices, part.faces), threads=1).labels
         agreements[kind] = adjusted_rand_index(labels, part.truth)
-        right[kind] = passes(kind, part, labels)
+        right[kind] = passes(kind, agreements[kind])
         count = len(np.unique(labels[labels >= 0]))
         words = f"{agreements[kind]:.3f}, {count} / {part.n_parts}"
         row.append(f"**{words}**" if right[kind] else words)
@@ -92,6 +100,32 @@ def judge(
             draw(pictures / f"{k:02}_{kind}.png", f"{name}, {kind}: {words}", part, labels)
     sizes = [str(len(parts[kind].faces)) for kind in kinds if kind in ("coarse", "fine")]
     return [*row, " ".join(sizes), duration(time.process_time() - begin)], right, agreements
+
+
+def judge_fillets(k: int, name: str, kinds: list[str], pictures: Path | None) -> tuple[list[str], dict, dict]:
+    """The same for fillets apart and joined, from one run: keys are pairs of the option and the kind."""
+    import ridgeform  # noqa: PLC0415
+
+    cells, right, agreements = {}, {}, {}
+    begin = time.process_time()
+    for kind, part in meshes_of(k, kinds).items():
+        mesh = ridgeform.Mesh(part.vertices, part.faces)
+        found = ridgeform.segment(mesh, fillets="joined", threads=1)
+        is_fillet = fillets_of(k, kind)
+        on_side = ~is_fillet[part.truth]
+        for option in OPTIONS:
+            labels = found.labels if option == "joined" else found.labels_at(found.range[1])
+            taken = on_side if option == "joined" else np.ones_like(on_side)
+            wanted = int((~is_fillet).sum()) if option == "joined" else part.n_parts
+            agreement = adjusted_rand_index(labels[taken], part.truth[taken])
+            agreements[option, kind] = agreement
+            right[option, kind] = passes(kind, agreement)
+            words = f"{agreement:.3f}, {len(np.unique(labels))} / {wanted}"
+            cells[option, kind] = f"**{words}**" if right[option, kind] else words
+            if pictures:
+                draw(pictures / f"{k:02}_{kind}_{option}.png", f"{name}, {kind}, {option}", part, labels)
+    row = [cells[option, kind] for option in OPTIONS for kind in kinds if (option, kind) in CELLS]
+    return [name, *row, duration(time.process_time() - begin)], right, agreements
 
 
 def draw(path: Path, title: str, part: Part, labels: NDArray[np.int64]) -> None:
@@ -120,23 +154,29 @@ def main() -> None:
     sys.path.insert(0, str(site))
     make_meshes(site)
     names = (MESHES / "names.txt").read_text(encoding="utf-8").splitlines()
-    rows, rights, agreements = [], [], []
-    for k, name in enumerate(names):
-        if given.only not in name:
-            continue
-        row, right, agreement = judge(k, name, given.kinds, given.pictures)
-        rows.append(row)
-        rights.append(right)
-        agreements.append(agreement)
-        print(grid([], [row]).splitlines()[-1], flush=True)
-    totals = ["**right**"] + [f"{sum(r[kind] for r in rights)} of {len(rights)}" for kind in given.kinds]
-    means = ["**mean**"] + [f"{np.mean([a[kind] for a in agreements]):.3f}" for kind in given.kinds]
-    rows += [[*means, "", ""], [*totals, "", ""]]
-    print(grid([], rows[-2:]).partition("\n")[2].partition("\n")[2], flush=True)
+    parts = [(k, name) for k, name in enumerate(names) if given.only in name]
+    tables = []
+    for judging, cells in ((judge, given.kinds), (judge_fillets, CELLS)):
+        rows, rights, agreements = [], [], []
+        for k, name in parts:
+            row, right, agreement = judging(k, name, given.kinds, given.pictures)
+            rows.append(row)
+            rights.append(right)
+            agreements.append(agreement)
+            print(grid([], [row]).splitlines()[-1], flush=True)
+        columns = [cell for cell in cells if cell in given.kinds or cell[1] in given.kinds]
+        totals = ["**right**"] + [f"{sum(r[cell] for r in rights)} of {len(rights)}" for cell in columns]
+        means = ["**mean**"] + [f"{np.mean([a[cell] for a in agreements]):.3f}" for cell in columns]
+        rest = [""] * (len(rows[0]) - len(means)) if rows else []
+        rows += [[*means, *rest], [*totals, *rest]]
+        print(grid([], rows[-2:]).partition("\n")[2].partition("\n")[2], flush=True)
+        tables.append(rows)
     if given.only or given.kinds != list(KINDS):
         return
     head = ["part", *(HEADS.get(kind, f"noise {kind}") for kind in KINDS), "triangles", "time"]
-    RESULTS.write_text(INTRODUCTION + grid(head, rows), encoding="utf-8")
+    head_of_fillets = ["part", *(f"{option}, {HEADS.get(kind, kind)}" for option, kind in CELLS), "time"]
+    page = INTRODUCTION + grid(head, tables[0]) + FILLETS + grid(head_of_fillets, tables[1])
+    RESULTS.write_text(page, encoding="utf-8")
 
 
 HEADS = {"coarse": "coarse tessellation", "fine": "fine tessellation"}
@@ -149,6 +189,15 @@ thousand, Gaussian noise in every coordinate of the given share of the mean edge
 single precision. Each cell: adjusted Rand index with the truth, segments found / faces; one set of defaults
 for all. Bold: every face exactly as in the kernel where it is tessellated, at least 0.98 up to noise of 0.1,
 at least 0.92 at 0.2. Triangles: of the two tessellations. Time: processor time of the row.
+
+"""
+FILLETS = """
+## Fillets apart and joined
+
+The same meshes with `fillets="apart"`: every face by the surface that it lies on; and with
+`fillets="joined"`: fillets and chamfers with the larger side beside them. What is a fillet or a chamfer, the
+generator knows ([cad_fillets.py](cad_fillets.py)); *joined* is judged on the faces of sides: adjusted Rand
+index with these, segments found / sides.
 
 """
 

@@ -3,8 +3,9 @@
 python benchmarks/cad_meshes.py FOLDER
 
 Writes FOLDER/names.txt, and FOLDER/K.npz for the K-th part of `cad_parts.py`, with `KIND_vertices` (n,3),
-`KIND_faces` (m,3), and `KIND_truth` (m,) for each kind of mesh: `coarse` and `fine` as the kernel tessellates
-it, `remeshed` with even triangles.
+`KIND_faces` (m,3), `KIND_truth` (m,), and which of the faces of the kernel are fillets or chamfers,
+`KIND_fillets`, for each kind of mesh: `coarse` and `fine` as the kernel tessellates it, `remeshed` with even
+triangles.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from pathlib import Path
 import cadquery as cq
 import numpy as np
 import ridgeform
+from cad_fillets import Fillets
 from cad_parts import PARTS
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
@@ -27,11 +29,15 @@ FACES = 12_000
 SAME = 1e-5
 """Corners of faces are one vertex within this part of the size."""
 
+FIELDS = ("vertices", "faces", "truth")
+
 Mesh = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
-def tessellated(part: cq.Workplane, linear: float, angular: float) -> Mesh:
-    """The kernel's triangles, those of each of its faces with one label, corners that coincide as one."""
+def tessellated(part: cq.Workplane, linear: float, angular: float) -> tuple[Mesh, np.ndarray]:
+    """The kernel's triangles, those of each of its faces with one label, corners that coincide as one, and
+    which of its faces have triangles.
+    """
     solid = part.val().copy()
     solid.mesh(linear, angular)
     points, triangles, truth, count = [], [], [], 0
@@ -45,7 +51,8 @@ def tessellated(part: cq.Workplane, linear: float, angular: float) -> Mesh:
     vertices, corner = welded(vertices, SAME * np.ptp(vertices, axis=0).max())
     faces = corner[np.array(triangles)]
     whole = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
-    return vertices, faces[whole], np.unique(np.array(truth)[whole], return_inverse=True)[1]
+    there, labels = np.unique(np.array(truth)[whole], return_inverse=True)
+    return (vertices, faces[whole], labels), there
 
 
 def welded(points: np.ndarray, distance: float) -> tuple[np.ndarray, np.ndarray]:
@@ -93,12 +100,16 @@ def main(folder: Path) -> None:
     """Write the meshes of all parts."""
     folder.mkdir(parents=True, exist_ok=True)
     for k, make in enumerate(PARTS.values()):
-        meshes = {kind: tessellated(make(), *tolerance) for kind, tolerance in TOLERANCES.items()}
-        meshes["remeshed"] = remeshed(meshes.pop("source"))
+        with Fillets() as fillets:
+            part = make()
+        is_fillet = np.array([fillets.have(face) for face in part.val().Faces()])
         arrays = {}
-        for kind, mesh in meshes.items():
-            for name, array in zip(("vertices", "faces", "truth"), mesh, strict=True):
-                arrays[f"{kind}_{name}"] = array
+        for kind, tolerance in TOLERANCES.items():
+            mesh, there = tessellated(part, *tolerance)
+            name = "remeshed" if kind == "source" else kind
+            fields = zip(FIELDS, remeshed(mesh) if kind == "source" else mesh, strict=True)
+            arrays |= {f"{name}_{field}": array for field, array in fields}
+            arrays[f"{name}_fillets"] = is_fillet[there]
         np.savez(folder / f"{k}.npz", **arrays)
     (folder / "names.txt").write_text("\n".join(PARTS) + "\n", encoding="utf-8")
 
