@@ -112,16 +112,14 @@ def test_ridges_come_back_under_noise(solid, place, radius, noise):
 
 @pytest.mark.parametrize("coarse", [shapes.octahedron(0), shapes.icosphere(0)], ids=["four", "five"])
 def test_a_corner_of_many_planes_comes_back(coarse):
-    """One of ten does not, and which one the last digits decide."""
+    """The first try finds one in ten of these not, a later one from a patch that is further does."""
     solid = holed_shapes.polyhedron(coarse, shapes.subdivide(*coarse, 4))
-    off = []
     for seed in range(8):
         irregular = holed_shapes.irregular(solid, seed)
         holed = holed_shapes.cut(irregular, [(coarse[0][4], 0.35)], seed=seed)
         filled = ridgeform.fill_holes(ridgeform.Mesh(holed.vertices, holed.faces))
         new = filled.faces[filled.patch >= 0]
-        off.append(fill_measures.point_distances(holed.ridge, filled.vertices, new).max())
-    assert sorted(off)[6] < 1e-6, off
+        assert fill_measures.point_distances(holed.ridge, filled.vertices, new).max() < 1e-9
 
 
 def test_a_cylinders_rim_bends_on():

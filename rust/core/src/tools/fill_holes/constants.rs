@@ -32,7 +32,8 @@ pub(super) const FLOW_STEPS: usize = 3;
 pub(super) const SNAP_FROM: usize = 3;
 pub(super) const SNAPS: usize = 2;
 
-/// Cycles before the parts around the hole are extended into it.
+/// Cycles before the parts around the hole are extended into it; where they do not meet, it is tried again
+/// each time the cycles have doubled.
 pub(super) const EXTEND_AFTER: usize = 2;
 
 /// Every so many cycles the patch is remeshed: snapping crowds vertices on ridges, and ridges stretch the

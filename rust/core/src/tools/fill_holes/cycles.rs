@@ -66,7 +66,7 @@ impl Completion<'_, '_> {
                 self.completed.status = HoleStatus::Converged;
                 break;
             }
-            if is_sharp && cycle == EXTEND_AFTER {
+            if is_sharp && cycle >= EXTEND_AFTER && cycle.is_power_of_two() {
                 if let Some(extended) =
                     self.extended(region, &smooth)?.filter(|extended| last.allows(extended))
                 {
