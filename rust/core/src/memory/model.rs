@@ -128,10 +128,10 @@ impl Tool {
             Self::Denoise => (100.0, 113.0, 115.0),
             Self::Interpolate => (20.0, 140.0, 115.0),
             Self::Quadratic => (670.0, 101.0, 24.0),
-            Self::Modes => (1500.0, 68.0, 40.0),
+            Self::Modes => (1200.0, 55.0, 40.0),
             Self::QuadraticModes => (830.0, 62.0, 30.0),
             Self::Segment => (2000.0, 62.0, 0.0),
-            Self::SegmentByLevels => (380.0, 0.0, 0.0),
+            Self::SegmentByLevels => (345.0, 0.0, 0.0),
             Self::Parts => (520.0, 0.0, 0.0),
             Self::Facet => (820.0, 0.0, 0.0),
             Self::FacetByLevels => (580.0, 0.0, 0.0),
@@ -154,7 +154,7 @@ pub(super) const CLARABEL: Cost = Cost { face: 4600.0, logarithmic: 100.0, colum
 pub(super) const DIVIDED: (f64, f64) = (4500.0, 1300.0);
 
 /// What segments and facets on a coarser mesh take beside its faces.
-pub(super) const ON_COARSER: [f64; 2] = [38e6, 9e6];
+pub(super) const ON_COARSER: [f64; 2] = [36e6, 9e6];
 
 /// The vertices from which there is a coarser mesh.
 pub(super) const COARSER: usize = 18_000;
