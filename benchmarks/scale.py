@@ -25,12 +25,11 @@ HEAD = """# How Stylize scales
 
 `make bench-scale`, at the add-on's settings for half strength, on one shape at any density (a ring with
 relief, `benchmarks/scale_shapes.py`), clean and with noise of a tenth of an edge. Seconds are processor
-time, and elapsed time in brackets, on a machine of two cores, one of which other work used at the same time
-from 35,000 vertices on. *Preview* is when the first result was there to be shown. Flat share is the part of
-the area in flat faces. *Apart* is the distance of the vertices from those of the full flow, with all steps on
-the mesh itself, root mean square, in parts of how far those had moved: where facets lie on a round shape is
-chance. MeshLib denoises by normals (`meshlib` 3.1.4.297, its default settings). Sizes that are missing were
-not measured yet.
+time, and elapsed time in brackets, on a machine of two cores, with two threads alone, with one beside other
+work. *Preview* is when the first result was there to be shown. Flat share is the part of the area in flat
+faces. *Apart* is the distance of the vertices from those of the full flow, with all steps on the mesh itself,
+root mean square, in parts of how far those had moved: where facets lie on a round shape is chance. MeshLib
+denoises by normals (`meshlib` 3.1.4.297, its default settings). Sizes that are missing were not measured yet.
 """
 
 TITLES = (
