@@ -91,8 +91,7 @@ impl<const K: usize> Sweep<K> {
     /// `R(z − H u − c) − p` of block `b`.
     fn next_right(&self, reduced: &Reduced<'_, K>, r: &[f64], u: &[[f64; K]], b: usize) -> Block<K> {
         let (z, p) = self.split(&reduced.weights, r, b);
-        let h = combine(1.0, &reduced.block_times(b, u), 1.0, &reduced.constant(b));
-        combine(1.0, &combine(r[b], &z, -r[b], &h), -1.0, &p)
+        combine(1.0, &combine(r[b], &z, -r[b], &reduced.block_at(b, u)), -1.0, &p)
     }
 
     /// `z` and `p` of block `b`.

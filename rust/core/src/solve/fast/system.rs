@@ -112,7 +112,8 @@ impl System {
                 self.values[s] = d + (least - a).max(0.0);
             }
             let mut done = self.cholesky.factorize(&self.values);
-            if done.is_err() && self.cholesky.precision() == Precision::Single {
+            let is_indefinite = matches!(done, Err(SolveError::Factorization { .. }));
+            if is_indefinite && self.cholesky.precision() == Precision::Single {
                 self.cholesky.set_precision(Precision::Double)?;
                 done = self.cholesky.factorize(&self.values);
             }
