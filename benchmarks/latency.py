@@ -1,6 +1,7 @@
 """How soon every tool hears a wish to stop: a table in docs/reliability.md.
 
     make bench-latency    (ARGS="--vertices 10000 --tools remesh segment")
+    make bench-latency ARGS="--large 140000 560000"    Stylize on large meshes: the second table
 
 A call asks whether to stop between pieces of its work, and counts how often (`Progress.asked`). The longest
 time between two questions, in any stage, is the longest that anybody waits. Each call is canceled and
@@ -18,10 +19,14 @@ from pathlib import Path
 import numpy as np
 import ridgeform
 from known_shapes import shapes
+from scale_run import HALF
+from scale_shapes import NOISE, ring
 
 PAGE = Path(__file__).resolve().parents[1] / "docs/reliability.md"
 BEGIN, END = "<!-- latency:begin -->", "<!-- latency:end -->"
+LARGE_BEGIN, LARGE_END = "<!-- latency-large:begin -->", "<!-- latency-large:end -->"
 MOMENTS = (0.05, 0.3, 0.55, 0.8)
+LARGE_MOMENTS = tuple((k + 0.5) / 12 for k in range(12))
 PAUSE = 5e-4
 
 Call = Callable[[ridgeform.Progress], object]
@@ -140,12 +145,45 @@ def row(name: str, call: Call) -> str:
     return f"| {' | '.join(cells)} |"
 
 
+def large_row(size: int) -> str:
+    """A line of the table of large meshes: at twelve moments a wish, to cancel and to finish in turns."""
+    mesh = ridgeform.Mesh(*ring(size, NOISE))
+
+    def call(progress: ridgeform.Progress) -> object:
+        return ridgeform.stylize(mesh, threads=1, progress=progress, **HALF)
+
+    took, longest = Run(call).silences()
+    ends: dict[str, list[float]] = {"cancel": [], "finish": []}
+    for k, part in enumerate(LARGE_MOMENTS):
+        wish = ("cancel", "finish")[k % 2]
+        ends[wish].append(Run(call).stopped(took * part, wish))
+        print(size, wish, f"{took * part:.2f}", f"{ends[wish][-1]:.3f}", flush=True)
+    cells = [f"{mesh.n_vertices:,}", f"{took:.1f}", f"{max(longest.values()):.2f}"]
+    cells += [f"{np.median(times):.2f}, {max(times):.2f}" for times in ends.values()]
+    return f"| {' | '.join(cells)} |"
+
+
+def large(sizes: list[int]) -> None:
+    """Measure Stylize on large meshes, and put the table where it belongs."""
+    heads = ["vertices", "takes", "longest silence", "until canceled", "until finished"]
+    lines = [f"| {' | '.join(heads)} |", "| ---: | ---: | ---: | ---: | ---: |"]
+    lines += [large_row(size) for size in sizes]
+    text = PAGE.read_text(encoding="utf-8")
+    head, _, rest = text.partition(LARGE_BEGIN)
+    after = rest.partition(LARGE_END)[2]
+    PAGE.write_text(head + "\n".join([LARGE_BEGIN, *lines, LARGE_END]) + after, encoding="utf-8")
+
+
 def main() -> None:
     """Measure, print, and put the table where it belongs."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--vertices", type=int, default=10_000)
     parser.add_argument("--tools", nargs="*", help="only those whose names begin so")
+    parser.add_argument("--large", nargs="*", type=int, help="Stylize alone, on so many vertices")
     given = parser.parse_args()
+    if given.large:
+        large(given.large)
+        return
     chosen = {
         name: call
         for name, call in calls(given.vertices).items()

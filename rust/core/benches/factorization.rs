@@ -4,6 +4,7 @@
 
 use criterion::{criterion_group, criterion_main, BatchSize, Criterion};
 use ridgeform_core::linear::cholesky::{Cholesky, Precision};
+use ridgeform_core::Progress;
 use torus::{torus, Torus};
 
 mod torus;
@@ -19,13 +20,13 @@ fn factorization(criterion: &mut Criterion) {
         let mut group = criterion.benchmark_group(format!("40k rows, threads: {threads}"));
         group.sample_size(10);
         group.bench_function("analysis", |bencher| {
-            bencher.iter(|| pool.install(|| Cholesky::analyze(normal.pattern(), None)));
+            bencher.iter(|| pool.install(|| Cholesky::analyze(normal.pattern(), None, &Progress::new())));
         });
         for (name, precision) in [("", Precision::Double), (", single precision", Precision::Single)] {
-            let analyzed = || Cholesky::analyze_in(precision, normal.pattern(), None);
+            let analyzed = || Cholesky::analyze_in(precision, normal.pattern(), None, &Progress::new());
             let mut cholesky = pool.install(analyzed).unwrap();
             group.bench_function(format!("factorization{name}"), |bencher| {
-                bencher.iter(|| pool.install(|| cholesky.factorize(&entries)));
+                bencher.iter(|| pool.install(|| cholesky.factorize(&entries, &Progress::new())));
             });
             group.bench_function(format!("triangular solves, one column{name}"), |bencher| {
                 let solve = |mut right: Vec<[f64; 1]>| pool.install(|| cholesky.solve(&mut right));

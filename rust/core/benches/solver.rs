@@ -27,10 +27,12 @@ fn solver(criterion: &mut Criterion) {
         bencher.iter(|| normal.assemble(&operator, &ones, &fidelity, &mut entries));
     });
     group.bench_function("factorization, symbolic", |bencher| {
-        bencher.iter(|| Cholesky::analyze(normal.pattern(), None));
+        bencher.iter(|| Cholesky::analyze(normal.pattern(), None, &Progress::new()));
     });
-    let mut cholesky = Cholesky::analyze(normal.pattern(), None).unwrap();
-    group.bench_function("factorization, numeric", |bencher| bencher.iter(|| cholesky.factorize(&entries)));
+    let mut cholesky = Cholesky::analyze(normal.pattern(), None, &Progress::new()).unwrap();
+    group.bench_function("factorization, numeric", |bencher| {
+        bencher.iter(|| cholesky.factorize(&entries, &Progress::new()))
+    });
     let points = Columns::from_points(&shape.vertices).unwrap();
     let one: Vec<[f64; 1]> = shape.vertices.iter().map(|x| [x[0]]).collect();
     group.bench_function("triangular solves, one column", |bencher| {

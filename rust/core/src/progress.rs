@@ -41,6 +41,9 @@ struct Wishes {
     cancel: AtomicBool,
     finish: AtomicBool,
     asked: AtomicU64,
+    /// At which question to wish so by itself; 0 for never.
+    cancel_at: AtomicU64,
+    finish_at: AtomicU64,
 }
 
 /// A handle shared between a running call and whoever watches it; clones share one state.
@@ -50,8 +53,19 @@ pub struct Progress {
     state: Arc<Mutex<State>>,
     /// What the coordinates are measured in that are published through this handle.
     unit: Unit,
-    /// Whether a wish to finish is not heard.
-    is_patient: bool,
+    hearing: Hearing,
+}
+
+/// What a wish to finish is to a part of the call.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum Hearing {
+    /// A wish to return what there is.
+    #[default]
+    Whole,
+    /// Nothing.
+    Patient,
+    /// The same as a wish to cancel.
+    Hasty,
 }
 
 impl Progress {
@@ -78,7 +92,14 @@ impl Progress {
     /// does not hear a wish to finish.
     #[must_use]
     pub fn patient(&self) -> Self {
-        Self { is_patient: true, ..self.clone() }
+        Self { hearing: Hearing::Patient, ..self.clone() }
+    }
+
+    /// A handle for a part of the call of which nothing is taken unless it is done: a wish to finish ends it
+    /// with [`Error::Cancelled`], which says nothing of the call, whose own handle may not be cancelled.
+    #[must_use]
+    pub fn hasty(&self) -> Self {
+        Self { hearing: Hearing::Hasty, ..self.clone() }
     }
 
     /// Ask the running call to stop and return [`Error::Cancelled`].
@@ -91,11 +112,26 @@ impl Progress {
         self.wishes.finish.store(true, Ordering::Relaxed);
     }
 
-    /// Whether [`Progress::cancel`] was called.
+    /// [`Progress::cancel`] when the call asks for the `n`th time from now, or [`Progress::finish`] with
+    /// `finish`: what a wish at this place of the work leads to is the same on any machine.
+    pub fn stop_when_asked(&self, n: u64, finish: bool) {
+        let at = if finish { &self.wishes.finish_at } else { &self.wishes.cancel_at };
+        at.store(self.n_asked() + n.max(1), Ordering::Relaxed);
+    }
+
+    /// Whether [`Progress::cancel`] was called, or what is done here is not worth going on with
+    /// ([`Progress::hasty`]).
     #[must_use]
     pub fn is_cancelled(&self) -> bool {
-        self.wishes.asked.fetch_add(1, Ordering::Relaxed);
-        self.wishes.cancel.load(Ordering::Relaxed)
+        let asked = self.wishes.asked.fetch_add(1, Ordering::Relaxed) + 1;
+        if asked == self.wishes.cancel_at.load(Ordering::Relaxed) {
+            self.cancel();
+        }
+        if asked == self.wishes.finish_at.load(Ordering::Relaxed) {
+            self.finish();
+        }
+        let is_hasty = self.hearing == Hearing::Hasty;
+        self.wishes.cancel.load(Ordering::Relaxed) || is_hasty && self.wishes.finish.load(Ordering::Relaxed)
     }
 
     /// Whether to leave what is being done: the call is to be cancelled, or to finish with what there is.
@@ -107,7 +143,7 @@ impl Progress {
     /// Whether [`Progress::finish`] was called, and is heard here.
     #[must_use]
     pub fn is_finishing(&self) -> bool {
-        !self.is_patient && self.wishes.finish.load(Ordering::Relaxed)
+        self.hearing != Hearing::Patient && self.wishes.finish.load(Ordering::Relaxed)
     }
 
     /// How often the call has asked whether to stop: between two questions it hears nothing.
@@ -117,7 +153,7 @@ impl Progress {
     }
 
     /// # Errors
-    /// [`Error::Cancelled`] after [`Progress::cancel`].
+    /// [`Error::Cancelled`] where [`Progress::is_cancelled`] says so.
     pub fn check(&self) -> Result<()> {
         if self.is_cancelled() {
             Err(Error::Cancelled)
@@ -200,5 +236,29 @@ mod tests {
         assert_eq!(std::thread::spawn(move || watcher.snapshot()).join().ok(), Some(None));
         drop(held);
         assert!(progress.snapshot().is_some());
+    }
+
+    #[test]
+    fn a_wish_to_finish_ends_what_is_hasty_and_nothing_that_is_patient() {
+        let progress = Progress::new();
+        let (hasty, patient) = (progress.hasty(), progress.patient());
+        assert!(!hasty.is_cancelled());
+        progress.finish();
+        assert_eq!(
+            (hasty.check(), progress.check(), patient.check()),
+            (Err(Error::Cancelled), Ok(()), Ok(()))
+        );
+        assert_eq!([&hasty, &progress, &patient].map(Progress::is_finishing), [true, true, false]);
+    }
+
+    #[test]
+    fn a_wish_may_wait_for_a_question() {
+        let progress = Progress::new();
+        assert!(!progress.is_cancelled());
+        progress.stop_when_asked(2, false);
+        progress.stop_when_asked(1, true);
+        assert!(!progress.is_finishing() && !progress.is_cancelled());
+        assert!(progress.is_finishing() && progress.is_cancelled());
+        assert_eq!(progress.n_asked(), 3);
     }
 }

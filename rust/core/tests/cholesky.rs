@@ -10,6 +10,7 @@ use ridgeform_core::linear::pattern::LowerPattern;
 use ridgeform_core::operators::{Dual, HessianPattern};
 use ridgeform_core::shapes;
 use ridgeform_core::solve::normal_matrix::NormalMatrix;
+use ridgeform_core::{Error, Progress};
 
 /// Numbers without a pattern, the same every time (splitmix64).
 struct Random(u64);
@@ -87,8 +88,8 @@ impl Matrix {
     }
 
     fn solution_in(&self, precision: Precision) -> Vec<[f64; 1]> {
-        let mut cholesky = Cholesky::analyze_in(precision, &self.pattern, None).unwrap();
-        cholesky.factorize(&self.values).unwrap();
+        let mut cholesky = Cholesky::analyze_in(precision, &self.pattern, None, &Progress::new()).unwrap();
+        cholesky.factorize(&self.values, &Progress::new()).unwrap();
         let mut x = self.right();
         cholesky.solve(&mut x).unwrap();
         x
@@ -189,9 +190,10 @@ fn gives_the_same_bits_on_any_number_of_threads_and_each_time() {
     let run = |threads: usize, precision: Precision| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let mut cholesky = Cholesky::analyze_in(precision, &matrix.pattern, None).unwrap();
+            let mut cholesky =
+                Cholesky::analyze_in(precision, &matrix.pattern, None, &Progress::new()).unwrap();
             let mut solve = || {
-                cholesky.factorize(&matrix.values).unwrap();
+                cholesky.factorize(&matrix.values, &Progress::new()).unwrap();
                 let right = matrix.right();
                 let (mut one, mut three) =
                     (right.clone(), right.iter().map(|[x]| [*x, 1.0, -x]).collect::<Vec<_>>());
@@ -219,24 +221,26 @@ fn gives_the_same_bits_on_any_number_of_threads_and_each_time() {
 #[test]
 fn another_precision_is_that_of_a_factor_made_in_it_and_takes_half_the_memory() {
     let matrix = large();
-    let mut cholesky = Cholesky::analyze(&matrix.pattern, None).unwrap();
+    let mut cholesky = Cholesky::analyze(&matrix.pattern, None, &Progress::new()).unwrap();
     for precision in [Precision::Single, Precision::Double, Precision::Single] {
         cholesky.set_precision(precision).unwrap();
         assert_eq!(cholesky.precision(), precision);
-        cholesky.factorize(&matrix.values).unwrap();
+        cholesky.factorize(&matrix.values, &Progress::new()).unwrap();
         let mut x = matrix.right();
         cholesky.solve(&mut x).unwrap();
         assert_eq!(x, matrix.solution_in(precision));
     }
     let needed = |precision| {
-        let refused = Cholesky::analyze_in(precision, &matrix.pattern, Some(1000)).unwrap_err();
-        let SolveError::Memory { needed, .. } = refused else { unreachable!("{refused}") };
+        let refused =
+            Cholesky::analyze_in(precision, &matrix.pattern, Some(1000), &Progress::new()).unwrap_err();
+        let Error::Solve(SolveError::Memory { needed, .. }) = refused else { unreachable!("{refused}") };
         needed
     };
     assert_eq!(2 * needed(Precision::Single), needed(Precision::Double));
     // What fits in single precision only is refused in double, and the factor that was is not lost silently.
     let limit = Some(needed(Precision::Single));
-    let mut tight = Cholesky::analyze_in(Precision::Single, &matrix.pattern, limit).unwrap();
+    let mut tight =
+        Cholesky::analyze_in(Precision::Single, &matrix.pattern, limit, &Progress::new()).unwrap();
     assert!(matches!(tight.set_precision(Precision::Double), Err(SolveError::Memory { .. })));
 }
 
@@ -255,8 +259,8 @@ fn a_permuted_matrix_has_the_permuted_solution() {
         permuted[place[i]] = right[i];
     }
     let other = matrix.permuted(&place);
-    let mut cholesky = Cholesky::analyze(&other.pattern, None).unwrap();
-    cholesky.factorize(&other.values).unwrap();
+    let mut cholesky = Cholesky::analyze(&other.pattern, None, &Progress::new()).unwrap();
+    cholesky.factorize(&other.values, &Progress::new()).unwrap();
     cholesky.solve(&mut permuted).unwrap();
     let back: Vec<[f64; 1]> = place.iter().map(|&p| permuted[p]).collect();
     assert_near(&back, &matrix.solution(), 1e-9, "permuted");
@@ -266,20 +270,71 @@ fn a_permuted_matrix_has_the_permuted_solution() {
 fn a_bad_pivot_anywhere_is_an_error_and_the_next_factorization_is_right() {
     let matrix = large();
     let right = matrix.solution();
-    let mut cholesky = Cholesky::analyze(&matrix.pattern, None).unwrap();
+    let mut cholesky = Cholesky::analyze(&matrix.pattern, None, &Progress::new()).unwrap();
     let mut random = Random(9);
     for bad in [-1.0, 0.0, f64::NAN, f64::INFINITY] {
         let mut values = matrix.values.clone();
         values[matrix.pattern.starts[random.below(matrix.pattern.n)]] = bad;
-        let error = cholesky.factorize(&values).unwrap_err();
+        let error = cholesky.factorize(&values, &Progress::new()).unwrap_err();
         assert!(
             matches!(
                 &error,
-                SolveError::Factorization { reason } if reason.contains("not positive definite")
+                Error::Solve(SolveError::Factorization { reason }) if reason.contains("not positive definite")
             ),
             "{error}"
         );
-        cholesky.factorize(&matrix.values).unwrap();
+        cholesky.factorize(&matrix.values, &Progress::new()).unwrap();
+        let mut x = matrix.right();
+        cholesky.solve(&mut x).unwrap();
+        assert_eq!(x, right);
+    }
+}
+
+/// How often the analysis of the torus and its factorization ask whether to stop.
+fn asked(around: usize, along: usize) -> [u64; 2] {
+    let matrix = Matrix::of_torus(around, along);
+    let progress = Progress::new();
+    let mut cholesky = Cholesky::analyze(&matrix.pattern, None, &progress).unwrap();
+    let of_analysis = progress.n_asked();
+    cholesky.factorize(&matrix.values, &progress).unwrap();
+    [of_analysis, progress.n_asked() - of_analysis]
+}
+
+/// Counted, not timed: 2.25 times as many rows, and 3.4 times as many multiplications.
+#[test]
+fn questions_whether_to_stop_are_as_many_as_the_work_is_much() {
+    let ([analysis, factorization], [more_analysis, more_factorization]) = (asked(200, 130), asked(300, 195));
+    assert!(more_analysis >= 2 * analysis, "{analysis} and {more_analysis}");
+    assert!(4 * more_factorization >= 9 * factorization, "{factorization} and {more_factorization}");
+    assert!(analysis > 100 && factorization > 20, "{analysis} and {factorization}");
+}
+
+#[test]
+fn stopped_anywhere_it_says_so_and_the_next_factorization_is_right() {
+    /// Places of the work where it is stopped, and questions of what had begun beside it.
+    const PLACES: u64 = 7;
+    const BESIDE: u64 = 64;
+    let matrix = Matrix::of_torus(200, 130);
+    let progress = Progress::new();
+    let mut cholesky = Cholesky::analyze(&matrix.pattern, None, &progress).unwrap();
+    let of_analysis = progress.n_asked();
+    cholesky.factorize(&matrix.values, &progress).unwrap();
+    let of_factorization = progress.n_asked() - of_analysis;
+    let mut right = matrix.right();
+    cholesky.solve(&mut right).unwrap();
+    for place in 0..PLACES {
+        let progress = Progress::new();
+        let at = 1 + place * (of_analysis - 1) / PLACES;
+        progress.stop_when_asked(at, false);
+        assert_eq!(Cholesky::analyze(&matrix.pattern, None, &progress).unwrap_err(), Error::Cancelled);
+        assert!(progress.n_asked() <= at + BESIDE, "{} after {at}", progress.n_asked());
+
+        let progress = Progress::new();
+        let at = 1 + place * (of_factorization - 1) / PLACES;
+        progress.stop_when_asked(at, place % 2 == 1);
+        assert_eq!(cholesky.factorize(&matrix.values, &progress.hasty()).unwrap_err(), Error::Cancelled);
+        assert!(progress.n_asked() <= at + BESIDE, "{} after {at}", progress.n_asked());
+        cholesky.factorize(&matrix.values, &Progress::new()).unwrap();
         let mut x = matrix.right();
         cholesky.solve(&mut x).unwrap();
         assert_eq!(x, right);

@@ -189,6 +189,44 @@ fn progress_cancels_finishes_and_shows_every_step() {
     assert_eq!(stylize(&mesh, &strong(3), &progress).unwrap_err(), Error::Cancelled);
 }
 
+/// Places are counted in questions whether to stop, so that the test is the same on any machine.
+#[test]
+fn stopped_anywhere_a_flow_on_levels_leaves_its_last_step() {
+    /// Places where it is stopped, and questions until it has ended.
+    const PLACES: u64 = 9;
+    const BESIDE: u64 = 64;
+    let shape = shapes::torus(160, 120, 3.0, 1.0).noisy(0.01, 1);
+    let mesh = shape.mesh().unwrap();
+    let solve = SolveOptions { threads: Some(1), ..SolveOptions::default() };
+    let options = StylizeOptions { movement: Some(0.02), solve, ..strong(3) };
+    let progress = Progress::new();
+    let whole = stylize(&mesh, &options, &progress).unwrap();
+    assert!(whole.level_vertices[0] < shape.vertices.len(), "{:?}", whole.level_vertices);
+    let total = progress.n_asked();
+    let mut done = Vec::new();
+    for place in 0..PLACES {
+        let (progress, at) = (Progress::new(), 1 + place * (total - 1) / PLACES);
+        progress.stop_when_asked(at, true);
+        let result = stylize(&mesh, &options, &progress).unwrap();
+        assert_eq!(result.status, FlowStatus::Stopped);
+        assert!(progress.n_asked() <= at + BESIDE, "{} after {at} of {total}", progress.n_asked());
+        let n_steps = result.gap.len();
+        assert_eq!(result.gap, whole.gap[..n_steps]);
+        assert_eq!(result.energy, whole.energy[..=n_steps]);
+        let shown = progress.snapshot();
+        assert!(shown.is_some() || n_steps == 0);
+        let last = shown.as_deref().unwrap_or(&shape.vertices);
+        assert!(farthest(&result.vertices, last) < 1e-9, "{}", farthest(&result.vertices, last));
+        done.push(n_steps);
+
+        let progress = Progress::new();
+        progress.stop_when_asked(at, false);
+        assert_eq!(stylize(&mesh, &options, &progress).unwrap_err(), Error::Cancelled);
+        assert!(progress.n_asked() <= at + BESIDE, "{} after {at} of {total}", progress.n_asked());
+    }
+    assert!(done.is_sorted() && done[0] == 0 && done[PLACES as usize - 1] >= 2, "{done:?}");
+}
+
 #[test]
 fn same_bits_for_any_number_of_threads() {
     let shape = shapes::icosphere(4).noisy(0.02, 1);

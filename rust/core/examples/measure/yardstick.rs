@@ -13,6 +13,7 @@ use ridgeform_core::mesh::{triangle, Mesh};
 use ridgeform_core::operators::{voronoi_mass, Dual, HessianPattern};
 use ridgeform_core::solve::cones::Block;
 use ridgeform_core::solve::normal_matrix::NormalMatrix;
+use ridgeform_core::Progress;
 
 use crate::clock::Samples;
 use crate::input::{Arguments, Problem};
@@ -41,9 +42,10 @@ fn of_columns<const K: usize>(problem: &Problem, arguments: &Arguments) -> Outco
 
     let mut quadratic = set_up()?;
     let mut symbolic = Samples::new(arguments)?;
-    quadratic.cholesky = symbolic.take(|| Cholesky::analyze(quadratic.normal.pattern(), None))?;
+    quadratic.cholesky =
+        symbolic.take(|| Cholesky::analyze(quadratic.normal.pattern(), None, &Progress::new()))?;
     let mut numeric = Samples::new(arguments)?;
-    numeric.take(|| quadratic.cholesky.factorize(&quadratic.entries))?;
+    numeric.take(|| quadratic.cholesky.factorize(&quadratic.entries, &Progress::new()))?;
     let mut solve = Samples::new(arguments)?;
     solve.take(|| quadratic.back_substitute(&quadratic.right.clone()))?;
     let mut fields = whole.fields();
@@ -98,7 +100,7 @@ impl<const K: usize> Quadratic<K> {
         }
         let diagonal: Vec<f64> = free.iter().map(|&i| fidelity * mass[i]).collect();
         let normal = NormalMatrix::new(&operator)?;
-        let cholesky = Cholesky::analyze(normal.pattern(), None)?;
+        let cholesky = Cholesky::analyze(normal.pattern(), None, &Progress::new())?;
         let mut entries = Vec::new();
         normal.assemble(&operator, &per_face, &diagonal, &mut entries);
         Ok(Self { right, normal, cholesky, entries })
@@ -111,7 +113,7 @@ impl<const K: usize> Quadratic<K> {
     }
 
     fn solve(mut self) -> Result<Vec<[f64; K]>, Box<dyn std::error::Error>> {
-        self.cholesky.factorize(&self.entries)?;
+        self.cholesky.factorize(&self.entries, &Progress::new())?;
         self.cholesky.solve(&mut self.right)?;
         Ok(self.right)
     }

@@ -10,7 +10,10 @@ use crate::mesh::vector::{add, area_vector, dot, scale, sub, Point};
 use crate::mesh::Mesh;
 use crate::remesh::closest::{closest_on_triangle, ClosestPoint};
 use crate::remesh::editable::HUB;
-use crate::{memory, Result};
+use crate::{memory, Progress, Result};
+
+/// Vertices between two looks at whether to go on: some hundredths of a second.
+const AT_ONCE: usize = 1 << 15;
 
 /// For every vertex of a fine mesh that is not held a point of a coarser one: three of its vertices with
 /// weights that sum to one.
@@ -32,8 +35,15 @@ impl Carry {
     /// there to ever closer faces, so that no point is found across a gap or on the other side of a sheet.
     ///
     /// # Errors
-    /// [`MeshError::NoPositions`]; [`crate::Error::Solve`] where memory is missing, here and below.
-    pub(super) fn new(fine: &[Point], parents: &[u32], is_held: &[bool], coarse: &Mesh) -> Result<Self> {
+    /// [`MeshError::NoPositions`], [`crate::Error::Cancelled`]; [`crate::Error::Solve`] where memory is
+    /// missing, here and below.
+    pub(super) fn new(
+        fine: &[Point],
+        parents: &[u32],
+        is_held: &[bool],
+        coarse: &Mesh,
+        progress: &Progress,
+    ) -> Result<Self> {
         let points = coarse.positions().ok_or(MeshError::NoPositions)?;
         let faces = coarse.connectivity().faces();
         let around = Buckets::new(points.len(), |visit| {
@@ -77,14 +87,20 @@ impl Carry {
                 from = &faces[f as usize];
             }
         };
-        let carried = |((&p, &parent), &is_held): ((&Point, &u32), &bool)| {
-            if is_held || parent == u32::MAX {
+        let carried = |v: usize| {
+            if is_held[v] || parents[v] == u32::MAX {
                 None
             } else {
-                place(p, parent)
+                place(fine[v], parents[v])
             }
         };
-        Ok(Self { places: memory::joined(fine.par_iter().zip(parents).zip(is_held).map(carried))? })
+        let mut places = memory::room(fine.len())?;
+        for first in (0..fine.len()).step_by(AT_ONCE) {
+            progress.check()?;
+            let many = first..fine.len().min(first + AT_ONCE);
+            places.par_extend(many.into_par_iter().map(carried));
+        }
+        Ok(Self { places })
     }
 
     /// For every vertex the coarse face that its point is on, and the weights of that face's corners; nothing

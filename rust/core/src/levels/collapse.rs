@@ -67,11 +67,12 @@ impl Collapser {
     pub(super) fn new(
         connectivity: &Connectivity,
         positions: &[Point],
-        held: Option<&[bool]>,
-        kept: Option<&[bool]>,
+        [held, kept]: [Option<&[bool]>; 2],
+        progress: &Progress,
     ) -> Result<Self> {
         let n = positions.len();
         let mesh = EditableMesh::new(memory::twin(positions)?, memory::twin(connectivity.faces())?)?;
+        progress.check()?;
         let found = (0..n as u32).into_par_iter().with_min_len(AT_ONCE).map(|v| quadric(&mesh, v));
         let mut quadrics: Vec<Quadric> = memory::joined(found)?;
         let manifold = (0..n as u32).into_par_iter().with_min_len(AT_ONCE).map(|v| mesh.is_manifold(v));
@@ -80,7 +81,9 @@ impl Collapser {
             is_border: false,
             is_locked: !is_manifold || kept.is_some_and(|kept| kept[v]),
         };
+        progress.check()?;
         let mut kinds: Vec<Kind> = memory::joined(manifold.enumerate().map(kind))?;
+        progress.check()?;
         // A border is kept by the planes through its edges across their faces.
         for h in connectivity.boundary() {
             let [tail, head, tip] = [connectivity.tail(h), connectivity.head(h), connectivity.opposite(h)];
@@ -119,7 +122,7 @@ impl Collapser {
         loop {
             changed.iter().for_each(|&v| self.is_changed[v as usize] = true);
             candidates.retain(|&(_, ends)| ends.iter().all(|&v| !self.is_changed[v as usize]));
-            self.add_candidates(&changed, &mut candidates)?;
+            self.add_candidates(&changed, &mut candidates, progress)?;
             changed.iter().for_each(|&v| self.is_changed[v as usize] = false);
             changed.clear();
             let count = self.n_left.saturating_sub(wanted).min(candidates.len());
@@ -168,7 +171,12 @@ impl Collapser {
     }
 
     /// Adds the edges at the vertices that have changed, each once.
-    fn add_candidates(&self, vertices: &[u32], candidates: &mut Vec<Candidate>) -> Result<()> {
+    fn add_candidates(
+        &self,
+        vertices: &[u32],
+        candidates: &mut Vec<Candidate>,
+        progress: &Progress,
+    ) -> Result<()> {
         let at = |&v: &u32| {
             let others = self.mesh.neighbors(v).into_iter();
             others.filter(move |&w| v < w || !self.is_changed[w as usize]).filter_map(move |w| {
@@ -178,6 +186,7 @@ impl Collapser {
         };
         // Parts that are small, and then all of them in order: a whole in one piece cannot be refused.
         for many in vertices.chunks(AT_ONCE * AT_ONCE) {
+            progress.check()?;
             let found = many.par_chunks(AT_ONCE).map(|few| few.iter().flat_map(at).collect());
             let found: Vec<Vec<Candidate>> = memory::joined(found)?;
             memory::extend(candidates, found.iter().map(Vec::len).sum())?;

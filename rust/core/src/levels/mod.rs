@@ -80,7 +80,7 @@ fn means(n: usize, values: impl Iterator<Item = (u32, f64)>) -> Result<Vec<f64>>
 /// [`MeshError::NoPositions`] and cancellation.
 pub fn levels(mesh: &Mesh, held: Option<&[bool]>, enough: usize, progress: &Progress) -> Result<Vec<Level>> {
     let positions = mesh.positions().ok_or(MeshError::NoPositions)?;
-    let mut collapser = Collapser::new(mesh.connectivity(), positions, held, None)?;
+    let mut collapser = Collapser::new(mesh.connectivity(), positions, [held, None], progress)?;
     let mut found: Vec<Level> = Vec::new();
     loop {
         let finer = found.last().map_or(mesh, |level| &level.mesh);
@@ -95,7 +95,7 @@ pub fn levels(mesh: &Mesh, held: Option<&[bool]>, enough: usize, progress: &Prog
         if collapser.n_left() as f64 > WORTHWHILE * n as f64 {
             return Ok(found);
         }
-        let level = made(&mut collapser, finer)?;
+        let level = made(&mut collapser, finer, progress)?;
         found.push(level);
     }
 }
@@ -116,9 +116,9 @@ pub fn level(
     let unit = mesh.unit();
     let measured = mesh.measured(unit)?;
     let positions = measured.positions().ok_or(MeshError::NoPositions)?;
-    let mut collapser = Collapser::new(mesh.connectivity(), positions, held, kept)?;
+    let mut collapser = Collapser::new(mesh.connectivity(), positions, [held, kept], progress)?;
     collapser.reduce_to(n_vertices, progress)?;
-    let mut level = made(&mut collapser, &measured)?;
+    let mut level = made(&mut collapser, &measured, progress)?;
     if let (false, Some(original)) = (unit.is_one(), mesh.positions()) {
         let points = level.mesh.positions().ok_or(MeshError::NoPositions)?;
         let mut restored = memory::gathered(points.iter().map(|p| p.map(|x| unit.restore(x))))?;
@@ -132,12 +132,13 @@ pub fn level(
 }
 
 /// The level that has been reached above the `finer` mesh.
-fn made(collapser: &mut Collapser, finer: &Mesh) -> Result<Level> {
+fn made(collapser: &mut Collapser, finer: &Mesh, progress: &Progress) -> Result<Level> {
     let is_held = collapser.held()?;
     let (points, faces, parents) = collapser.level()?;
     let fine: &[Point] = finer.positions().ok_or(MeshError::NoPositions)?;
+    progress.check()?;
     let coarse = Mesh::new(points, faces)?;
-    let carry = Carry::new(fine, &parents, &is_held, &coarse)?;
+    let carry = Carry::new(fine, &parents, &is_held, &coarse, progress)?;
     Ok(Level { mesh: coarse, carry, parents })
 }
 

@@ -20,7 +20,7 @@ use crate::linear::ordering::eliminated;
 use crate::linear::pattern::LowerPattern;
 use crate::linear::subtrees::Subtrees;
 use crate::linear::triangular::Panels;
-use crate::memory;
+use crate::{memory, Progress, Result};
 
 /// Neighboring supernodes of at most so many columns are joined while less than this part of the result is
 /// zero. The library's own thresholds make one solve a tenth slower and the factorization no faster (measured
@@ -81,9 +81,10 @@ impl Cholesky {
     /// for a factor and waiting updates of at most `memory_limit` bytes.
     ///
     /// # Errors
-    /// [`SolveError::Memory`] when the factor is larger than that, or than what the system gives.
-    pub fn analyze(pattern: &LowerPattern, memory_limit: Option<usize>) -> Result<Self, SolveError> {
-        Self::analyze_in(Precision::Double, pattern, memory_limit)
+    /// [`SolveError::Memory`] when the factor is larger than that, or than what the system gives;
+    /// [`crate::Error::Cancelled`].
+    pub fn analyze(pattern: &LowerPattern, memory_limit: Option<usize>, progress: &Progress) -> Result<Self> {
+        Self::analyze_in(Precision::Double, pattern, memory_limit, progress)
     }
 
     /// [`Cholesky::analyze`] for a factor in this precision.
@@ -94,7 +95,8 @@ impl Cholesky {
         precision: Precision,
         pattern: &LowerPattern,
         memory_limit: Option<usize>,
-    ) -> Result<Self, SolveError> {
+        progress: &Progress,
+    ) -> Result<Self> {
         let failed = |error| match error {
             // What it asked for it does not say: of what it makes, the factor's pattern is the largest.
             FaerError::OutOfMemory => {
@@ -109,18 +111,22 @@ impl Cholesky {
             supernodal_params: SymbolicSupernodalParams { relax: Some(RELAXATION) },
             ..CholeskySymbolicParams::default()
         };
-        let forward = eliminated(pattern)?;
+        let forward = eliminated(pattern, progress)?;
         let mut backward = memory::repeated(0, pattern.n)?;
         for (k, &i) in forward.iter().enumerate() {
             backward[i] = k;
         }
+        progress.check()?;
         let ordering = SymmetricOrdering::Custom(PermRef::new_checked(&forward, &backward, pattern.n));
         let symbolic =
             factorize_symbolic_cholesky(view, Side::Lower, ordering, parameters).map_err(failed)?;
+        progress.check()?;
         let mut order = memory::room(pattern.n)?;
         order.extend(symbolic.perm().into_iter().flat_map(|p| p.arrays().0).map(|&i| i as u32));
         let mut panels = panels(&symbolic)?;
+        progress.check()?;
         let tree = Tree::new(pattern, &order, &panels)?;
+        progress.check()?;
         let subtrees = Subtrees::new(&mut panels, &tree)?;
         let factor_len = symbolic.len_val();
         drop(symbolic);
@@ -151,7 +157,7 @@ impl Cholesky {
     ///
     /// # Errors
     /// [`SolveError::Memory`], as in [`Cholesky::analyze`].
-    pub fn set_precision(&mut self, precision: Precision) -> Result<(), SolveError> {
+    pub fn set_precision(&mut self, precision: Precision) -> std::result::Result<(), SolveError> {
         if self.precision() != precision {
             // The old one goes before the new one comes.
             self.numbers = Numbers::Single(Factor::new(0, 0)?);
@@ -182,12 +188,12 @@ impl Cholesky {
     ///
     /// # Errors
     /// [`SolveError::Factorization`] when the matrix is not positive definite, in single precision also when
-    /// it nearly is not.
-    pub fn factorize(&mut self, values: &[f64]) -> Result<(), SolveError> {
+    /// it nearly is not. [`crate::Error::Cancelled`]: there is no factor then.
+    pub fn factorize(&mut self, values: &[f64], progress: &Progress) -> Result<()> {
         self.n_factorizations += 1;
         match &mut self.numbers {
-            Numbers::Double(factor) => factor.factorize(&self.tree, &self.panels, values),
-            Numbers::Single(factor) => factor.factorize(&self.tree, &self.panels, values),
+            Numbers::Double(factor) => factor.factorize(&self.tree, &self.panels, values, progress),
+            Numbers::Single(factor) => factor.factorize(&self.tree, &self.panels, values, progress),
         }
     }
 
@@ -196,7 +202,7 @@ impl Cholesky {
     ///
     /// # Errors
     /// [`SolveError::Memory`].
-    pub fn solve<const K: usize>(&mut self, right: &mut [[f64; K]]) -> Result<(), SolveError> {
+    pub fn solve<const K: usize>(&mut self, right: &mut [[f64; K]]) -> std::result::Result<(), SolveError> {
         self.solve_columns::<K, K>(right)
     }
 
@@ -207,7 +213,7 @@ impl Cholesky {
     pub fn solve_columns<const A: usize, const K: usize>(
         &mut self,
         right: &mut [[f64; K]],
-    ) -> Result<(), SolveError> {
+    ) -> std::result::Result<(), SolveError> {
         let (panels, subtrees, order) = (&self.panels, &self.subtrees, &self.order);
         match &mut self.numbers {
             Numbers::Double(factor) => factor.solve::<A, K>(panels, subtrees, order, right),
@@ -226,7 +232,7 @@ fn room(
     tree: &Tree,
     panels: &Panels,
     memory_limit: Option<usize>,
-) -> Result<Numbers, SolveError> {
+) -> std::result::Result<Numbers, SolveError> {
     let size = precision.size();
     // Every further thread has about half as much waiting as the first (measured at 200k and 1M rows).
     let waiting = size * (tree.most_waiting(panels) * (rayon::current_num_threads() + 1) / 2);
@@ -251,7 +257,7 @@ fn room(
 ///
 /// # Errors
 /// [`SolveError::Memory`].
-fn panels(symbolic: &SymbolicCholesky<usize>) -> Result<Panels, SolveError> {
+fn panels(symbolic: &SymbolicCholesky<usize>) -> std::result::Result<Panels, SolveError> {
     let mut panels = Panels::default();
     let push = |panels: &mut Panels, begin: usize, below: &[usize]| {
         panels.begin.push(begin);
@@ -291,6 +297,7 @@ fn panels(symbolic: &SymbolicCholesky<usize>) -> Result<Panels, SolveError> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use crate::Error;
 
     /// A diagonally dominant matrix with wide panels: `n` rows,
     /// entries up to `band` off the diagonal and in the last rows.
@@ -328,8 +335,8 @@ mod tests {
         let x: Vec<[f64; K]> =
             (0..n).map(|i| std::array::from_fn(|c| (i as f64 + 0.3 * c as f64).cos())).collect();
         let right = times(&pattern, &values, &x);
-        let mut cholesky = Cholesky::analyze(&pattern, None).unwrap();
-        cholesky.factorize(&values).unwrap();
+        let mut cholesky = Cholesky::analyze(&pattern, None, &Progress::new()).unwrap();
+        cholesky.factorize(&values, &Progress::new()).unwrap();
         let mut solution = right.clone();
         cholesky.solve_columns::<A, K>(&mut solution).unwrap();
         for i in 0..n {
@@ -358,22 +365,23 @@ mod tests {
     #[test]
     fn refuses_a_factor_that_is_larger_than_the_limit_and_says_how_large() {
         let (pattern, _) = matrix(200, 199);
-        let error = Cholesky::analyze(&pattern, Some(10_000)).unwrap_err();
+        let error = Cholesky::analyze(&pattern, Some(10_000), &Progress::new()).unwrap_err();
         let needed = match error {
-            SolveError::Memory { needed, limit: Some(10_000) } => needed,
+            Error::Solve(SolveError::Memory { needed, limit: Some(10_000) }) => needed,
             _ => 0,
         };
         assert!(needed >= 8 * 200 * 201 / 2, "{needed}");
         assert!(error.to_string().contains("the limit of 0.01 MB; raise memory_limit"), "{error}");
-        assert!(Cholesky::analyze(&pattern, Some(needed)).is_ok());
+        assert!(Cholesky::analyze(&pattern, Some(needed), &Progress::new()).is_ok());
     }
 
     #[test]
     fn refuses_a_matrix_that_is_not_positive_definite_and_recovers() {
         let (pattern, values) = matrix(20, 4);
-        let mut cholesky = Cholesky::analyze(&pattern, None).unwrap();
-        assert!(cholesky.factorize(&values.iter().map(|v| -v).collect::<Vec<_>>()).is_err());
-        cholesky.factorize(&values).unwrap();
+        let mut cholesky = Cholesky::analyze(&pattern, None, &Progress::new()).unwrap();
+        let negative: Vec<f64> = values.iter().map(|v| -v).collect();
+        assert!(cholesky.factorize(&negative, &Progress::new()).is_err());
+        cholesky.factorize(&values, &Progress::new()).unwrap();
         let mut right = times(&pattern, &values, &[[1.0]; 20]);
         cholesky.solve(&mut right).unwrap();
         assert!(right.iter().all(|[x]| (x - 1.0).abs() < 1e-13));

@@ -5,7 +5,7 @@ use crate::linear::multifrontal::{self, Tree, Workspace};
 use crate::linear::real::Real;
 use crate::linear::subtrees::Subtrees;
 use crate::linear::triangular::{Panels, Values, LANES};
-use crate::memory;
+use crate::{memory, Progress, Result};
 
 /// `L` of a matrix whose pattern is known.
 #[derive(Debug)]
@@ -23,7 +23,7 @@ impl<R: Real> Factor<R> {
     ///
     /// # Errors
     /// [`SolveError::Memory`].
-    pub(super) fn new(len: usize, n: usize) -> Result<Self, SolveError> {
+    pub(super) fn new(len: usize, n: usize) -> std::result::Result<Self, SolveError> {
         Ok(Self {
             panels: memory::repeated(R::ZERO, len + LANES)?,
             reciprocals: memory::room(n)?,
@@ -36,14 +36,16 @@ impl<R: Real> Factor<R> {
     /// Factors the matrix with these values.
     ///
     /// # Errors
-    /// [`SolveError::Factorization`] when it is not positive definite in this precision.
+    /// [`SolveError::Factorization`] when it is not positive definite in this precision,
+    /// [`crate::Error::Cancelled`].
     pub(super) fn factorize(
         &mut self,
         tree: &Tree,
         panels: &Panels,
         values: &[f64],
-    ) -> Result<(), SolveError> {
-        multifrontal::factorize(tree, panels, values, &mut self.panels, &self.workspace)?;
+        progress: &Progress,
+    ) -> Result<()> {
+        multifrontal::factorize(tree, panels, values, &mut self.panels, &self.workspace, progress)?;
         panels.reciprocals(&self.panels, &mut self.reciprocals);
         Ok(())
     }
@@ -59,7 +61,7 @@ impl<R: Real> Factor<R> {
         subtrees: &Subtrees,
         order: &[u32],
         right: &mut [[f64; K]],
-    ) -> Result<(), SolveError> {
+    ) -> std::result::Result<(), SolveError> {
         memory::refill(&mut self.rows, R::ZERO, A * order.len())?;
         let (x, _) = self.rows.as_chunks_mut::<A>();
         for (x, &i) in x.iter_mut().zip(order) {

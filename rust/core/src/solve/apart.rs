@@ -45,7 +45,12 @@ impl<'a> Apart<'a> {
             call.progress.check()?;
             let operator = pieces.operator(problem.operator, p)?;
             if let Some(left) = &mut left {
-                single.analyze(&operator, &at(&problem.fixed, pieces.rows(p))?, Some(*left))?;
+                single.analyze(
+                    &operator,
+                    &at(&problem.fixed, pieces.rows(p))?,
+                    Some(*left),
+                    call.progress,
+                )?;
                 *left = left.saturating_sub(single.factor_bytes());
             }
             operators.push(operator);

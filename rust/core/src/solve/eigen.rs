@@ -86,9 +86,9 @@ impl Pencil<'_> {
         let n = self.mass.len();
         let massive = self.mass.iter().filter(|m| **m > 0.0).count();
         let size = massive.min(2 * count + SPARE);
-        let mut shifted = self.analyzed()?;
+        let mut shifted = self.analyzed(progress)?;
         let mut wanted_shift = SHIFT * self.scale;
-        shifted.factorize(self, wanted_shift)?;
+        shifted.factorize(self, wanted_shift, progress)?;
         let first = |j: usize| {
             let step = (j as f64 + 2.5).sqrt();
             let entry = |i: usize| ((i + 1) as f64 * step).fract() - 0.5;
@@ -146,7 +146,7 @@ impl Pencil<'_> {
             before = std::mem::replace(&mut block, combined(&next, &rotation)?);
             let largest = values[size - 1];
             if at_rest > 0 && wanted_shift > 0.0 && largest < wanted_shift {
-                let is_lower = shifted.lower(self, SHIFT * largest)?;
+                let is_lower = shifted.lower(self, SHIFT * largest, progress)?;
                 wanted_shift = if is_lower { SHIFT * largest } else { 0.0 };
                 (best, at_rest) = (f64::INFINITY, 0);
             }
@@ -160,15 +160,15 @@ impl Pencil<'_> {
     }
 
     /// The pattern of `Q + σM`, analyzed.
-    fn analyzed(&self) -> Result<Shifted> {
+    fn analyzed(&self, progress: &Progress) -> Result<Shifted> {
         // A cut block with a negative weight makes any matrix one that is not definite.
         let negative = self.weights.iter().any(|w| *w < 0.0);
         let normal = if negative {
             NormalMatrix::new(self.operator)?
         } else {
-            NormalMatrix::stretched(self.operator)?
+            NormalMatrix::stretched(self.operator, progress)?
         };
-        let cholesky = Cholesky::analyze(normal.pattern(), self.memory_limit)?;
+        let cholesky = Cholesky::analyze(normal.pattern(), self.memory_limit, progress)?;
         Ok(Shifted { values: memory::room(normal.pattern().rows.len())?, normal, cholesky, shift: 0.0 })
     }
 
@@ -262,40 +262,40 @@ struct Shifted {
 
 impl Shifted {
     /// Factors the matrix for a shift, or a larger one where that is not enough to make it positive definite.
-    fn factorize(&mut self, pencil: &Pencil<'_>, shift: f64) -> Result<()> {
+    fn factorize(&mut self, pencil: &Pencil<'_>, shift: f64, progress: &Progress) -> Result<()> {
         self.shift = shift;
         for _ in 1..SHIFT_ATTEMPTS {
-            if self.is_factored(pencil)? {
+            if self.is_factored(pencil, progress)? {
                 return Ok(());
             }
             self.shift *= 10.0;
         }
-        self.factored(pencil)
+        self.factored(pencil, progress)
     }
 
     /// Factors the matrix for a smaller shift; where rounding leaves none, for the one before, and `false`.
-    fn lower(&mut self, pencil: &Pencil<'_>, shift: f64) -> Result<bool> {
+    fn lower(&mut self, pencil: &Pencil<'_>, shift: f64, progress: &Progress) -> Result<bool> {
         if shift <= 0.0 {
             return Ok(false);
         }
         let before = std::mem::replace(&mut self.shift, shift);
-        if self.is_factored(pencil)? {
+        if self.is_factored(pencil, progress)? {
             return Ok(true);
         }
         self.shift = before;
-        self.factored(pencil)?;
+        self.factored(pencil, progress)?;
         Ok(false)
     }
 
-    fn is_factored(&mut self, pencil: &Pencil<'_>) -> Result<bool> {
-        match self.factored(pencil) {
+    fn is_factored(&mut self, pencil: &Pencil<'_>, progress: &Progress) -> Result<bool> {
+        match self.factored(pencil, progress) {
             Ok(()) => Ok(true),
             Err(Error::Solve(SolveError::Factorization { .. })) => Ok(false),
             Err(error) => Err(error),
         }
     }
 
-    fn factored(&mut self, pencil: &Pencil<'_>) -> Result<()> {
+    fn factored(&mut self, pencil: &Pencil<'_>, progress: &Progress) -> Result<()> {
         let diagonal: Vec<f64> = memory::gathered(pencil.mass.iter().map(|m| self.shift * m))?;
         self.normal.assemble(pencil.operator, pencil.weights, &diagonal, &mut self.values);
         for (&start, m) in self.normal.pattern().starts.iter().zip(pencil.mass) {
@@ -303,7 +303,7 @@ impl Shifted {
                 self.values[start] = 1.0;
             }
         }
-        Ok(self.cholesky.factorize(&self.values)?)
+        self.cholesky.factorize(&self.values, progress)
     }
 }
 

@@ -1,12 +1,11 @@
 //! `HᵀRH + D` for a block operator `H`, a scalar `R` per block and a diagonal `D`, on a pattern found once.
 
 use crate::block_rows::{BlockRows, BLOCK};
-use crate::error::SolveError;
 use crate::linear::pattern::LowerPattern;
-use crate::memory;
 use crate::solve::normal_pattern::pattern_of;
 use crate::solve::primal_dual::Stiffness;
 use crate::solve::stretching::Stretching;
+use crate::{memory, Progress, Result};
 
 /// What is added to the stiffness of a block that is cut, as a part of its scale: where a cone is as good as
 /// straight, rounding would leave nothing that holds the new unknowns. A direction of Newton's method is not
@@ -26,8 +25,8 @@ impl NormalMatrix {
     /// Finds the pattern in one pass over the blocks and one sort of each column.
     ///
     /// # Errors
-    /// [`SolveError::Memory`] when the system does not give what it takes.
-    pub fn new(operator: &BlockRows) -> Result<Self, SolveError> {
+    /// [`crate::error::SolveError::Memory`] when the system does not give what it takes.
+    pub fn new(operator: &BlockRows) -> Result<Self> {
         Self::of(operator, None)
     }
 
@@ -36,20 +35,21 @@ impl NormalMatrix {
     /// on the right side its solutions are those of the matrix that is not cut.
     ///
     /// # Errors
-    /// [`SolveError::Memory`] when the system does not give what it takes.
-    pub fn stretched(operator: &BlockRows) -> Result<Self, SolveError> {
-        match Stretching::new(operator)? {
+    /// [`crate::error::SolveError::Memory`] when the system does not give what it takes;
+    /// [`crate::Error::Cancelled`].
+    pub fn stretched(operator: &BlockRows, progress: &Progress) -> Result<Self> {
+        match Stretching::new(operator, progress)? {
             None => Self::new(operator),
             Some(stretching) => Self::cut(stretching),
         }
     }
 
-    fn cut(stretching: Stretching) -> Result<Self, SolveError> {
+    fn cut(stretching: Stretching) -> Result<Self> {
         let rows = stretching.pattern().clone();
         Self::of(&rows, Some(stretching))
     }
 
-    fn of(operator: &BlockRows, stretching: Option<Stretching>) -> Result<Self, SolveError> {
+    fn of(operator: &BlockRows, stretching: Option<Stretching>) -> Result<Self> {
         let pattern = pattern_of(operator, |_| true)?;
         let LowerPattern { starts, rows, .. } = &pattern;
         let size = |b| operator.block(b).0.len();
@@ -222,8 +222,8 @@ mod tests {
         }
         assert_eq!(seen, 4 + 2 * 4, "no entry is missing: four off the diagonal");
 
-        let mut cholesky = Cholesky::analyze(pattern, None).unwrap();
-        cholesky.factorize(&values).unwrap();
+        let mut cholesky = Cholesky::analyze(pattern, None, &Progress::new()).unwrap();
+        cholesky.factorize(&values, &Progress::new()).unwrap();
         let x = [1.0, -2.0, 3.0, 0.5, 0.0, 4.0, -1.0, 2.0];
         let mut right: Vec<[f64; 2]> = expected
             .iter()
@@ -233,7 +233,7 @@ mod tests {
         for (i, right) in right.iter().enumerate() {
             assert!((0..2).all(|c| (right[c] - x[4 * c + i]).abs() < 1e-12));
         }
-        assert!(cholesky.factorize(&vec![0.0; values.len()]).is_err());
+        assert!(cholesky.factorize(&vec![0.0; values.len()], &Progress::new()).is_err());
     }
 
     /// Values may change; a column, an entry, or a block that goes somewhere else is another pattern.

@@ -213,6 +213,7 @@ mod tests {
     use crate::linear::Columns;
     use crate::solve::fast::system::{System, Weighing};
     use crate::solve::{Coupling, FreeOperator, Problem};
+    use crate::Progress;
 
     /// Blocks over three neighbors on a line, weights from nothing to two, fidelity on every other row,
     /// two ends known.
@@ -262,13 +263,13 @@ mod tests {
         barrier: f64,
         n_steps: usize,
     ) -> (Vec<[f64; 1]>, Vec<Block<1>>, f64) {
-        let mut system = System::new(reduced.free, None).unwrap();
+        let mut system = System::new(reduced.free, None, &Progress::new()).unwrap();
         let mut u = reduced.target.clone();
         let mut z = vec![[[0.0; 1]; BLOCK]; reduced.n_blocks()];
         let mut far = f64::INFINITY;
         for _ in 0..n_steps {
             let model = Model::new(reduced, &u, &z, barrier).unwrap();
-            system.factorize(reduced, Weighing::Stiffness(model.stiffness())).unwrap();
+            system.factorize(reduced, Weighing::Stiffness(model.stiffness()), &Progress::new()).unwrap();
             z = model.slope().to_vec();
             let mut step = lacking(reduced, &u, &z);
             system.solve_change(reduced, &mut step).unwrap();

@@ -38,7 +38,7 @@ const ROUNDING: f64 = 1e-18;
 pub fn minimize(problem: &Problem<'_>, settings: &Settings, progress: &Progress) -> Result<Solution> {
     problem.check_shapes()?;
     let free = FreeOperator::new(problem.operator, &problem.fixed)?;
-    let mut newton = Newton::new(problem, &free, settings)?;
+    let mut newton = Newton::new(problem, &free, settings, progress)?;
     let mut values = problem.target.copied()?;
     let (mut total, mut is_stopped) = (Totals::default(), false);
     for c in 0..values.n_columns {
@@ -101,22 +101,27 @@ enum Shift {
 }
 
 impl<'a> Newton<'a> {
-    fn new(problem: &'a Problem<'a>, free: &'a FreeOperator<'a>, settings: &Settings) -> Result<Self> {
+    fn new(
+        problem: &'a Problem<'a>,
+        free: &'a FreeOperator<'a>,
+        settings: &Settings,
+        progress: &Progress,
+    ) -> Result<Self> {
         let negative = problem.weights.iter().any(|w| *w < 0.0);
-        let normal = normal_matrix(problem, free)?;
+        let normal = normal_matrix(problem, free, progress)?;
         let mut newton = Self {
             problem,
             free,
-            cholesky: Cholesky::analyze(normal.pattern(), settings.memory_limit)?,
+            cholesky: Cholesky::analyze(normal.pattern(), settings.memory_limit, progress)?,
             shift: Shift::Mean,
             may_stay: !negative && problem.linear_constraints.is_none(),
             goal: settings.tolerance.unwrap_or(ENOUGH.sqrt()),
         };
-        newton.factorize(&normal, Shift::Mean)?;
+        newton.factorize(&normal, Shift::Mean, progress)?;
         Ok(newton)
     }
 
-    fn factorize(&mut self, normal: &NormalMatrix, kind: Shift) -> Result<()> {
+    fn factorize(&mut self, normal: &NormalMatrix, kind: Shift, progress: &Progress) -> Result<()> {
         /// The shift as a part of the diagonal: above rounding in the factorization, below the smallest
         /// eigenvalue of well posed problems up to some 100k vertices.
         const SHIFT: f64 = 1e-13;
@@ -159,12 +164,14 @@ impl<'a> Newton<'a> {
                 // so it stays where it is.
                 values[s] = if *d == 0.0 { scale } else { d + shift * whole };
             }
-            match self.cholesky.factorize(&values) {
+            match self.cholesky.factorize(&values, progress) {
                 Ok(()) => return Ok(()),
-                Err(error @ SolveError::Memory { .. }) => return Err(error.into()),
+                Err(error) if !matches!(error, Error::Solve(SolveError::Factorization { .. })) => {
+                    return Err(error);
+                }
                 Err(_) if shift < largest => shift = (SHIFT_GROWTH * shift).max(SHIFT),
                 Err(_) if negative => return Err(not_convex()),
-                Err(error) => return Err(error.into()),
+                Err(error) => return Err(error),
             }
         }
     }
@@ -215,8 +222,8 @@ impl<'a> Newton<'a> {
         if run.iterations == FIRST_STEPS && most == FIRST_STEPS && run.length > enough {
             total.steps += run.iterations;
             if self.shift == Shift::Mean {
-                let normal = normal_matrix(self.problem, self.free)?;
-                self.factorize(&normal, Shift::Each)?;
+                let normal = normal_matrix(self.problem, self.free, progress)?;
+                self.factorize(&normal, Shift::Each, progress)?;
             }
             let scale = Problem::gap_scale(self.objective(u, target), rounding);
             let (residual, enough) = (self.descent(u, target)?, 2.0 * CLEARLY * self.goal * scale);
@@ -328,10 +335,15 @@ impl Quadratic<1> for Descending<'_, '_> {
 }
 
 /// The matrix of the free rows. A cut block with a negative weight makes any that is not definite.
-fn normal_matrix(problem: &Problem<'_>, free: &FreeOperator<'_>) -> Result<NormalMatrix> {
-    let negative = problem.weights.iter().any(|w| *w < 0.0);
-    let of = if negative { NormalMatrix::new } else { NormalMatrix::stretched };
-    Ok(of(&free.operator)?)
+fn normal_matrix(
+    problem: &Problem<'_>,
+    free: &FreeOperator<'_>,
+    progress: &Progress,
+) -> Result<NormalMatrix> {
+    if problem.weights.iter().any(|w| *w < 0.0) {
+        return NormalMatrix::new(&free.operator);
+    }
+    NormalMatrix::stretched(&free.operator, progress)
 }
 
 fn squared(x: [f64; 3]) -> f64 {

@@ -94,6 +94,7 @@ impl Single {
     pub(super) fn run(&mut self, problem: &Problem<'_>, call: &Call<'_>) -> Result<Solution> {
         let groups = groups(problem)?;
         let free = FreeOperator::new(problem.operator, &problem.fixed)?;
+        call.progress.check()?;
         self.keep_if_fitting(&free);
         let mut stored = std::mem::take(&mut self.warm);
         if stored.len() != groups.len() {
@@ -121,17 +122,18 @@ impl Single {
     /// at most `memory_limit` bytes.
     ///
     /// # Errors
-    /// [`crate::error::SolveError::Memory`].
+    /// [`crate::error::SolveError::Memory`], or [`Error::Cancelled`].
     pub(super) fn analyze(
         &mut self,
         operator: &BlockRows,
         fixed: &[bool],
         memory_limit: Option<usize>,
+        progress: &Progress,
     ) -> Result<()> {
         let free = FreeOperator::new(operator, fixed)?;
         self.keep_if_fitting(&free);
         if self.system.is_none() && !free.free.is_empty() {
-            self.system = Some(System::new(&free, memory_limit)?);
+            self.system = Some(System::new(&free, memory_limit, progress)?);
         }
         Ok(())
     }
@@ -159,6 +161,7 @@ impl Single {
             total.add(&fast::untouched(reduced)?, &free.free, columns);
             return Ok(());
         }
+        call.progress.check()?;
         let outcome = match call.method {
             Method::Clarabel(solver) => {
                 let method = if solver == Solver::ClarabelFaer { "faer" } else { "qdldl" };
@@ -167,7 +170,7 @@ impl Single {
             Method::Fast => {
                 let system = match &mut self.system {
                     Some(system) => system,
-                    empty => empty.insert(System::new(free, call.settings.memory_limit)?),
+                    empty => empty.insert(System::new(free, call.settings.memory_limit, call.progress)?),
                 };
                 let before = system.n_factorizations();
                 let warm = warm.map(|w| w.restore(free.operator.n_blocks())).transpose()?.flatten();

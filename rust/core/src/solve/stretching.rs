@@ -14,10 +14,9 @@
 //! of pieces, and no front grows by more than the unknowns at the two ends of a run.
 
 use crate::block_rows::{BlockRows, BLOCK};
-use crate::error::SolveError;
 use crate::linear::ordering::eliminated;
-use crate::memory;
 use crate::solve::normal_pattern::pattern_of;
+use crate::{memory, Progress, Result};
 
 /// Blocks with more columns than this are cut. Measured on spheres with poles of so many columns, 24k and
 /// 120k vertices in all: at 128 cutting takes as long or a fifth longer, at 256 two thirds of the time, at
@@ -51,16 +50,16 @@ impl Stretching {
     /// How `operator` is cut; `None` when no block has many columns.
     ///
     /// # Errors
-    /// [`SolveError::Memory`] when the system does not give what it takes.
-    pub(super) fn new(operator: &BlockRows) -> Result<Option<Self>, SolveError> {
-        Self::above(DENSE, operator)
+    /// [`crate::error::SolveError::Memory`] when the system does not give what it takes.
+    pub(super) fn new(operator: &BlockRows, progress: &Progress) -> Result<Option<Self>> {
+        Self::above(DENSE, operator, progress)
     }
 
     /// The same for blocks with more than `most` columns.
     ///
     /// # Errors
     /// As [`Stretching::new`].
-    pub(super) fn above(most: usize, operator: &BlockRows) -> Result<Option<Self>, SolveError> {
+    pub(super) fn above(most: usize, operator: &BlockRows, progress: &Progress) -> Result<Option<Self>> {
         let size = |b| operator.starts[b + 1] - operator.starts[b];
         let is_dense = |b| size(b) > most.max(PIECE);
         let n_dense = (0..operator.n_blocks()).filter(|&b| is_dense(b)).count();
@@ -68,7 +67,8 @@ impl Stretching {
             return Ok(None);
         }
         let mut place = memory::repeated(0u32, operator.n_columns)?;
-        for (k, i) in eliminated(&pattern_of(operator, |b| !is_dense(b))?)?.into_iter().enumerate() {
+        for (k, i) in eliminated(&pattern_of(operator, |b| !is_dense(b))?, progress)?.into_iter().enumerate()
+        {
             place[i] = k as u32;
         }
         let n_pieces = |b| if is_dense(b) { size(b).div_ceil(PIECE) } else { 1 };
@@ -229,8 +229,8 @@ mod tests {
     const SIZE: usize = 300;
 
     fn solved(normal: &NormalMatrix, values: &[f64], n: usize) -> (Vec<[f64; 2]>, usize) {
-        let mut cholesky = Cholesky::analyze(normal.pattern(), None).unwrap();
-        cholesky.factorize(values).unwrap();
+        let mut cholesky = Cholesky::analyze(normal.pattern(), None, &Progress::new()).unwrap();
+        cholesky.factorize(values, &Progress::new()).unwrap();
         let mut right: Vec<[f64; 2]> = (0..n).map(|i| [(i as f64).cos(), 1.0 / (1 + i) as f64]).collect();
         cholesky.solve(&mut right).unwrap();
         (right, cholesky.factor_len())
@@ -260,7 +260,7 @@ mod tests {
         let h = hubs(SIZE);
         let weights: Vec<f64> = (0..h.n_blocks()).map(|b| 0.2 + 0.5 * (b % 5) as f64).collect();
         let diagonal: Vec<f64> = (0..h.n_columns).map(|i| 0.1 + 0.3 * (i % 2) as f64).collect();
-        let cut = NormalMatrix::stretched(&h).unwrap();
+        let cut = NormalMatrix::stretched(&h, &Progress::new()).unwrap();
         // Two blocks with three new unknowns a cut, one with one.
         assert_eq!(cut.pattern().n, h.n_columns + 7 * (h.n_columns / PIECE));
         check_same(&h, &cut, 1e-11, |matrix, out| matrix.assemble(&h, &weights, &diagonal, out));
@@ -283,7 +283,7 @@ mod tests {
         let mut weights = vec![1.0; h.n_blocks()];
         weights[SIZE..].fill(0.0);
         let diagonal = vec![0.1; h.n_columns];
-        let cut = NormalMatrix::stretched(&h).unwrap();
+        let cut = NormalMatrix::stretched(&h, &Progress::new()).unwrap();
         check_same(&h, &cut, 1e-11, |matrix, out| matrix.assemble(&h, &weights, &diagonal, out));
     }
 
@@ -291,8 +291,8 @@ mod tests {
     fn the_factor_grows_with_the_columns_of_a_block_and_not_with_their_square() {
         let entries = |n: usize| {
             let h = hubs(n);
-            let cut = NormalMatrix::stretched(&h).unwrap();
-            Cholesky::analyze(cut.pattern(), None).unwrap().factor_len() as f64
+            let cut = NormalMatrix::stretched(&h, &Progress::new()).unwrap();
+            Cholesky::analyze(cut.pattern(), None, &Progress::new()).unwrap().factor_len() as f64
         };
         let sizes = [2000, 4000, 8000, 16_000].map(|n| entries(n) / n as f64);
         assert!(sizes.iter().all(|a| *a < 150.0) && sizes[3] < 1.2 * sizes[0], "entries a column: {sizes:?}");
@@ -302,14 +302,17 @@ mod tests {
     fn an_operator_whose_blocks_are_small_is_left_alone() {
         let mut h = BlockRows::empty(DENSE);
         h.push_block((0..DENSE as u32).map(|k| (k, [1.0; BLOCK])));
-        assert!(Stretching::new(&h).unwrap().is_none());
-        assert_eq!(NormalMatrix::stretched(&h).unwrap().pattern(), NormalMatrix::new(&h).unwrap().pattern());
+        assert!(Stretching::new(&h, &Progress::new()).unwrap().is_none());
+        assert_eq!(
+            NormalMatrix::stretched(&h, &Progress::new()).unwrap().pattern(),
+            NormalMatrix::new(&h).unwrap().pattern()
+        );
     }
 
     #[test]
     fn a_row_that_has_entries_now_and_had_none_before_does_not_fit() {
         let mut h = hubs(SIZE);
-        let cut = Stretching::new(&h).unwrap().unwrap();
+        let cut = Stretching::new(&h, &Progress::new()).unwrap().unwrap();
         assert!(cut.fits(&h));
         h.values.last_mut().unwrap()[1] = 1.0;
         assert!(!cut.fits(&h));
@@ -317,7 +320,7 @@ mod tests {
 
     #[test]
     fn an_operator_with_other_entries_does_not_fit() {
-        let cut = Stretching::new(&hubs(SIZE)).unwrap().unwrap();
+        let cut = Stretching::new(&hubs(SIZE), &Progress::new()).unwrap().unwrap();
         let changed = |change: &dyn Fn(&mut BlockRows)| {
             let mut other = hubs(SIZE);
             change(&mut other);

@@ -10,6 +10,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 use super::padded::{stride_of, Padded, COLUMNS};
 use crate::linear::real::Real;
+use crate::{Progress, Result};
 
 /// Columns that are eliminated before the rest of a wide panel is brought up to date.
 const BLOCK_COLUMNS: usize = 64;
@@ -39,25 +40,31 @@ pub(super) struct Front<'f, R> {
 impl<R: Real> Front<'_, R> {
     /// Turns the panel into columns of the factor and takes their product off the update;
     /// `false` when a pivot is not positive.
-    #[must_use]
-    pub(super) fn eliminate(&mut self) -> bool {
+    ///
+    /// # Errors
+    /// [`crate::Error::Cancelled`], from a front with more than one block of columns or with products for
+    /// several threads; the others take less than a millisecond.
+    pub(super) fn eliminate(&mut self, progress: &Progress) -> Result<bool> {
         let mut begin = 0;
         while begin < self.n_columns {
             let end = self.n_columns.min(begin + BLOCK_COLUMNS);
             let stride = self.panel.stride;
             let block = &mut self.panel.values[begin * stride..];
             if !Arch::new().dispatch(Eliminate { block, stride, first: begin, n_columns: end - begin }) {
-                return false;
+                return Ok(false);
             }
-            self.bring_up_to_date(begin, end);
+            if end < self.n_columns {
+                progress.check()?;
+                self.bring_up_to_date(begin, end, progress)?;
+            }
             begin = end;
         }
-        self.take_off();
-        true
+        self.take_off(progress)?;
+        Ok(true)
     }
 
     /// Takes the columns `begin..end` off the later ones of the panel.
-    fn bring_up_to_date(&mut self, begin: usize, end: usize) {
+    fn bring_up_to_date(&mut self, begin: usize, end: usize, progress: &Progress) -> Result<()> {
         let (stride, n_rows) = (self.panel.stride, self.n_rows);
         let (done, rest) = self.panel.values.split_at_mut(end * stride);
         let rest = &mut rest[..(self.n_columns - end) * stride];
@@ -69,61 +76,79 @@ impl<R: Real> Front<'_, R> {
         let (triangle, below) = rest.split_at_row_mut(width);
         let (_, done) = done.split_at_row(end);
         let (top, bottom) = done.split_at_row(width);
-        subtract_product(triangle, top, Accum::Add);
-        subtract_rectangle(below, bottom, top, Accum::Add);
+        subtract_product(triangle, top, Accum::Add, progress)?;
+        subtract_rectangle(below, bottom, top, Accum::Add, progress)
     }
 
     /// Writes what all columns of the panel take off the rows below.
-    fn take_off(&mut self) {
+    fn take_off(&mut self, progress: &Progress) -> Result<()> {
         let (k, m) = (self.n_columns, self.n_rows);
         let n = m - k;
         let (stride, own) = (stride_of(n), self.panel.stride);
         if k < LARGE {
             let update = &mut *self.update;
             Arch::new().dispatch(TakeOff { update, stride, n, panel: &self.panel.values, own, k });
-            return;
+            return Ok(());
         }
         let panel = MatRef::from_column_major_slice_with_stride(&self.panel.values, m, k, own).subrows(k, n);
         let update = MatMut::from_column_major_slice_with_stride_mut(self.update, n, n, stride);
-        subtract_product(update, panel, Accum::Replace);
+        subtract_product(update, panel, Accum::Replace, progress)
     }
 }
 
 /// `target −= x xᵀ` or `target = −x xᵀ`, lower triangle: cut in halves,
 /// on several threads while they are large.
-fn subtract_product<R: Real>(target: MatMut<'_, R>, x: MatRef<'_, R>, accumulate: Accum) {
+fn subtract_product<R: Real>(
+    target: MatMut<'_, R>,
+    x: MatRef<'_, R>,
+    accumulate: Accum,
+    progress: &Progress,
+) -> Result<()> {
     let n = target.nrows();
     if n < SHARED {
         let (lower, rectangle) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
         let (other, minus) = (x.transpose(), R::of(-1.0));
         triangular::matmul(target, lower, accumulate, x, rectangle, other, rectangle, minus, Par::Seq);
-        return;
+        return Ok(());
     }
+    progress.check()?;
     let (left, _, below, right) = target.split_at_mut(n / 2, n / 2);
     let (top, bottom) = x.split_at_row(n / 2);
-    let corner = || subtract_rectangle(below, bottom, top, accumulate);
+    let corner = || subtract_rectangle(below, bottom, top, accumulate, progress);
     let triangles = || {
-        rayon::join(
-            || subtract_product(left, top, accumulate),
-            || subtract_product(right, bottom, accumulate),
-        );
+        both(rayon::join(
+            || subtract_product(left, top, accumulate, progress),
+            || subtract_product(right, bottom, accumulate, progress),
+        ))
     };
-    rayon::join(corner, triangles);
+    both(rayon::join(corner, triangles))
 }
 
 /// `target −= x yᵀ` or `target = −x yᵀ`, cut into parts for several threads.
-fn subtract_rectangle<R: Real>(target: MatMut<'_, R>, x: MatRef<'_, R>, y: MatRef<'_, R>, accumulate: Accum) {
+fn subtract_rectangle<R: Real>(
+    target: MatMut<'_, R>,
+    x: MatRef<'_, R>,
+    y: MatRef<'_, R>,
+    accumulate: Accum,
+    progress: &Progress,
+) -> Result<()> {
     let n = target.nrows();
     if n < SHARED {
         matmul(target, accumulate, x, y.transpose(), R::of(-1.0), Par::Seq);
-        return;
+        return Ok(());
     }
+    progress.check()?;
     let (above, below) = target.split_at_row_mut(n / 2);
     let (top, bottom) = x.split_at_row(n / 2);
-    rayon::join(
-        || subtract_rectangle(above, top, y, accumulate),
-        || subtract_rectangle(below, bottom, y, accumulate),
-    );
+    both(rayon::join(
+        || subtract_rectangle(above, top, y, accumulate, progress),
+        || subtract_rectangle(below, bottom, y, accumulate, progress),
+    ))
+}
+
+/// Whether both halves are done.
+fn both((one, other): (Result<()>, Result<()>)) -> Result<()> {
+    one.and(other)
 }
 
 /// `target −= Σ_a source_a · tops_a` for the rows from `first` to `end` of [`COLUMNS`] columns: row `i` of
@@ -331,7 +356,8 @@ mod tests {
                     panel.values[j * panel.stride + i] = entry(i, j, m);
                 }
             }
-            assert!(Front { panel: &mut panel, update: &mut update, n_rows: m, n_columns: k }.eliminate());
+            let mut front = Front { panel: &mut panel, update: &mut update, n_rows: m, n_columns: k };
+            assert!(front.eliminate(&Progress::new()).unwrap());
             for j in 0..m {
                 for i in j..m {
                     let mut sum: f64 = (0..k.min(j + 1))
@@ -356,7 +382,8 @@ mod tests {
             for j in 0..67 {
                 panel.values[j * panel.stride + j] = if j == bad { -1.0 } else { 1.0 };
             }
-            assert!(!Front { panel: &mut panel, update: &mut update, n_rows: 70, n_columns: 67 }.eliminate());
+            let mut front = Front { panel: &mut panel, update: &mut update, n_rows: 70, n_columns: 67 };
+            assert!(!front.eliminate(&Progress::new()).unwrap());
         }
     }
 }

@@ -21,20 +21,26 @@ pub(super) use tree::Tree;
 use crate::error::SolveError;
 use crate::linear::real::Real;
 use crate::linear::triangular::Panels;
+use crate::{Progress, Result};
+
+/// Multiplications of small fronts between two looks at whether to go on: some milliseconds.
+const LOOK_EVERY: f64 = 1e7;
 
 /// Factors the matrix with these values (one per entry of the pattern) into `factor`, panel by panel as in
 /// `panels`.
 ///
 /// # Errors
-/// [`SolveError::Factorization`] when it is not positive definite, [`SolveError::Memory`].
+/// [`SolveError::Factorization`] when it is not positive definite, [`SolveError::Memory`],
+/// [`crate::Error::Cancelled`].
 pub(super) fn factorize<R: Real>(
     tree: &Tree,
     panels: &Panels,
     values: &[f64],
     factor: &mut [R],
     workspace: &Workspace<R>,
-) -> Result<(), SolveError> {
-    let numeric = Numeric { tree, panels, values, workspace };
+    progress: &Progress,
+) -> Result<()> {
+    let numeric = Numeric { tree, panels, values, workspace, progress };
     numeric
         .subtrees(tree.children(panels.count()), 0, factor)
         .map(|left| left.into_iter().for_each(|x| workspace.give(x)))
@@ -51,12 +57,13 @@ struct Numeric<'n, R> {
     panels: &'n Panels,
     values: &'n [f64],
     workspace: &'n Workspace<R>,
+    progress: &'n Progress,
 }
 
 impl<R: Real> Numeric<'_, R> {
     /// Factors subtrees that follow each other, and returns what is left of each;
     /// `factor` starts with panel `begin`.
-    fn subtrees(&self, roots: &[u32], begin: usize, factor: &mut [R]) -> Result<Vec<Vec<R>>, SolveError> {
+    fn subtrees(&self, roots: &[u32], begin: usize, factor: &mut [R]) -> Result<Vec<Vec<R>>> {
         let mut rest = factor;
         let mut at = self.panels.values[begin];
         let mut segments = Vec::with_capacity(roots.len());
@@ -72,7 +79,8 @@ impl<R: Real> Numeric<'_, R> {
 
     /// Factors a subtree into `factor`, which starts with its first panel,
     /// and returns what is left for the parent of its root.
-    fn subtree(&self, root: usize, factor: &mut [R]) -> Result<Vec<R>, SolveError> {
+    fn subtree(&self, root: usize, factor: &mut [R]) -> Result<Vec<R>> {
+        self.progress.check()?;
         let first = self.tree.first[root] as usize;
         let base = self.panels.values[first];
         let mut update = Vec::new();
@@ -88,8 +96,14 @@ impl<R: Real> Numeric<'_, R> {
             return done.map(|()| update);
         }
         let mut work = self.workspace.work();
+        let mut since_look = 0.0;
         let done = (first..root)
             .try_for_each(|s| {
+                since_look += self.panels.multiplications(s);
+                if since_look > LOOK_EVERY {
+                    since_look = 0.0;
+                    self.progress.check()?;
+                }
                 let out = self.panels.values[s] - base..self.panels.values[s + 1] - base;
                 self.stacked(s, &mut factor[out], &mut work, None)
             })
@@ -105,13 +119,7 @@ impl<R: Real> Numeric<'_, R> {
 
     /// One front of a subtree that runs on one thread: takes what is left of its children from one stack, and
     /// leaves its own on the other, or in `update`.
-    fn stacked(
-        &self,
-        s: usize,
-        out: &mut [R],
-        work: &mut Work<R>,
-        update: Option<&mut [R]>,
-    ) -> Result<(), SolveError> {
+    fn stacked(&self, s: usize, out: &mut [R], work: &mut Work<R>, update: Option<&mut [R]>) -> Result<()> {
         let children = self.tree.children(s);
         let [even, odd] = &mut work.stacks;
         let (own, other) = if self.tree.stack[s] == 0 { (even, odd) } else { (odd, even) };
@@ -140,7 +148,7 @@ impl<R: Real> Numeric<'_, R> {
         left: &[&[R]],
         update: &mut [R],
         panel: &mut padded::Padded<R>,
-    ) -> Result<(), SolveError> {
+    ) -> Result<()> {
         let n_columns = self.panels.begin[s + 1] - self.panels.begin[s];
         let n_below = self.panels.below(s).len();
         let n_rows = n_columns + n_below;
@@ -156,8 +164,8 @@ impl<R: Real> Numeric<'_, R> {
         for (&child, from) in self.tree.children(s).iter().zip(left) {
             assembly::add_to_panel(relative(child), from, n_columns, panel);
         }
-        if !(Front { panel, update, n_rows, n_columns }.eliminate()) {
-            return Err(not_definite());
+        if !(Front { panel, update, n_rows, n_columns }.eliminate(self.progress)?) {
+            return Err(not_definite().into());
         }
         for (out, column) in out.chunks_exact_mut(n_rows).zip(panel.values.chunks_exact(panel.stride)) {
             out.copy_from_slice(&column[..n_rows]);

@@ -7,9 +7,9 @@
 use super::graph::Graph;
 use super::minimum_degree::minimum_degree;
 use super::separator::{separator, SEPARATOR};
-use crate::error::SolveError;
 use crate::linear::pattern::LowerPattern;
 use crate::random::Random;
+use crate::{Progress, Result};
 
 /// Parts of at most so many rows are left to minimum degree: with 200 one factor entry in twenty goes,
 /// for twice the time.
@@ -21,15 +21,16 @@ const GRAIN: usize = 4096;
 /// The rows of a symmetric matrix in the order of their elimination.
 ///
 /// # Errors
-/// [`SolveError::Factorization`] when the ordering of a part fails.
-pub fn nested_dissection(pattern: &LowerPattern) -> Result<Vec<u32>, SolveError> {
+/// [`crate::error::SolveError`] when the ordering of a part fails, [`crate::Error::Cancelled`].
+pub fn nested_dissection(pattern: &LowerPattern, progress: &Progress) -> Result<Vec<u32>> {
     let mut order: Vec<u32> = (0..pattern.n as u32).collect();
-    dissect(&Graph::new(pattern)?, &mut order)?;
+    dissect(&Graph::new(pattern)?, &mut order, progress)?;
     Ok(order)
 }
 
 /// Puts `order`, the rows that the vertices of `graph` stand for, into the order of elimination.
-fn dissect(graph: &Graph, order: &mut [u32]) -> Result<(), SolveError> {
+fn dissect(graph: &Graph, order: &mut [u32], progress: &Progress) -> Result<()> {
+    progress.check()?;
     let rows = order.to_vec();
     let place = |order: &mut [u32], members: &[u32]| {
         for (o, &v) in order.iter_mut().zip(members) {
@@ -40,7 +41,7 @@ fn dissect(graph: &Graph, order: &mut [u32]) -> Result<(), SolveError> {
         place(order, &minimum_degree(&pattern_of(graph))?);
         return Ok(());
     }
-    let side = separator(graph, &mut Random::new(graph.n() as u64));
+    let side = separator(graph, &mut Random::new(graph.n() as u64), progress)?;
     let parts = [graph.part(&side, 0), graph.part(&side, 1)];
     let between: Vec<u32> = (0..graph.n() as u32).filter(|&v| side[v as usize] == SEPARATOR).collect();
     if parts.iter().any(|(part, _)| part.n() == graph.n()) {
@@ -55,10 +56,10 @@ fn dissect(graph: &Graph, order: &mut [u32]) -> Result<(), SolveError> {
     place(middle, &second_members);
     place(tail, &between);
     if graph.n() < GRAIN {
-        dissect(&first, head)?;
-        return dissect(&second, middle);
+        dissect(&first, head, progress)?;
+        return dissect(&second, middle, progress);
     }
-    let (one, other) = rayon::join(|| dissect(&first, head), || dissect(&second, middle));
+    let (one, other) = rayon::join(|| dissect(&first, head, progress), || dissect(&second, middle, progress));
     one.and(other)
 }
 
@@ -122,11 +123,11 @@ mod tests {
     #[test]
     fn orders_every_row_once_and_the_same_way_each_time() {
         let pattern = grid(70);
-        let order = nested_dissection(&pattern).unwrap();
+        let order = nested_dissection(&pattern, &Progress::new()).unwrap();
         let mut sorted = order.clone();
         sorted.sort_unstable();
         assert!(sorted.into_iter().eq(0..pattern.n as u32));
-        assert_eq!(nested_dissection(&pattern).unwrap(), order);
+        assert_eq!(nested_dissection(&pattern, &Progress::new()).unwrap(), order);
     }
 
     #[test]
@@ -134,7 +135,7 @@ mod tests {
         let pattern = grid(70);
         let given: Vec<usize> = (0..pattern.n).collect();
         let mut place = vec![0; pattern.n];
-        for (k, &i) in nested_dissection(&pattern).unwrap().iter().enumerate() {
+        for (k, &i) in nested_dissection(&pattern, &Progress::new()).unwrap().iter().enumerate() {
             place[i as usize] = k;
         }
         let (natural, dissected) = (fill(&pattern, &given), fill(&pattern, &place));
@@ -144,7 +145,7 @@ mod tests {
     #[test]
     fn separators_separate() {
         let graph = Graph::new(&grid(60)).unwrap();
-        let side = separator(&graph, &mut Random::new(1));
+        let side = separator(&graph, &mut Random::new(1), &Progress::new()).unwrap();
         let count = |s: u8| side.iter().filter(|&&x| x == s).count();
         assert!(count(0) > graph.n() / 4 && count(1) > graph.n() / 4, "{} and {}", count(0), count(1));
         assert!(count(SEPARATOR) <= 100, "{}", count(SEPARATOR));
@@ -164,6 +165,6 @@ mod tests {
             pattern.rows.extend(j..n);
             pattern.starts.push(pattern.rows.len());
         }
-        assert_eq!(nested_dissection(&pattern).unwrap().len(), n);
+        assert_eq!(nested_dissection(&pattern, &Progress::new()).unwrap().len(), n);
     }
 }

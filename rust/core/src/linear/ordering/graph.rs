@@ -5,6 +5,7 @@ use crate::error::SolveError;
 use crate::linear::pattern::LowerPattern;
 use crate::memory;
 use crate::random::Random;
+use crate::{Progress, Result};
 
 /// An undirected graph with weights on vertices and edges; every edge stands at both of its ends.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -22,12 +23,15 @@ pub(super) struct Graph {
 /// No vertex.
 const NONE: u32 = u32::MAX;
 
+/// Vertices between two looks at whether to go on: some milliseconds.
+const CHECK_EVERY: usize = 1 << 16;
+
 impl Graph {
     /// The graph of a symmetric matrix; all weights are one.
     ///
     /// # Errors
     /// [`SolveError::Memory`].
-    pub(super) fn new(pattern: &LowerPattern) -> Result<Self, SolveError> {
+    pub(super) fn new(pattern: &LowerPattern) -> std::result::Result<Self, SolveError> {
         let (starts, neighbors) = Buckets::new(pattern.n, |visit| {
             for j in 0..pattern.n {
                 for &i in pattern.rows[pattern.starts[j]..pattern.starts[j + 1]].iter().filter(|&&i| i != j) {
@@ -60,11 +64,21 @@ impl Graph {
     /// Merges vertices with the neighbor that most edges lead to, as long as the two weigh at most
     /// `heaviest`; also says which coarse vertex each vertex went into (heavy edge matching, Karypis and
     /// Kumar 1998).
-    #[must_use]
-    pub(super) fn coarsened(&self, heaviest: u32, random: &mut Random) -> (Self, Vec<u32>) {
+    ///
+    /// # Errors
+    /// [`crate::Error::Cancelled`].
+    pub(super) fn coarsened(
+        &self,
+        heaviest: u32,
+        random: &mut Random,
+        progress: &Progress,
+    ) -> Result<(Self, Vec<u32>)> {
         let n = self.n();
         let mut mate = vec![NONE; n];
-        for v in random.permutation(n).into_iter().map(|v| v as u32) {
+        for (i, v) in random.permutation(n).into_iter().map(|v| v as u32).enumerate() {
+            if i.is_multiple_of(CHECK_EVERY) {
+                progress.check()?;
+            }
             if mate[v as usize] != NONE {
                 continue;
             }
@@ -88,16 +102,19 @@ impl Graph {
                 firsts.push(v as u32);
             }
         }
-        (self.contracted(&map, &firsts, &mate), map)
+        Ok((self.contracted(&map, &firsts, &mate, progress)?, map))
     }
 
-    fn contracted(&self, map: &[u32], firsts: &[u32], mate: &[u32]) -> Self {
+    fn contracted(&self, map: &[u32], firsts: &[u32], mate: &[u32], progress: &Progress) -> Result<Self> {
         let mut coarse =
             Self { starts: vec![0], neighbors: Vec::new(), edges: Vec::new(), weights: Vec::new() };
         coarse.neighbors.reserve(self.neighbors.len());
         coarse.edges.reserve(self.neighbors.len());
         let mut place = vec![NONE; firsts.len()];
         for (c, &v) in firsts.iter().enumerate() {
+            if c.is_multiple_of(CHECK_EVERY) {
+                progress.check()?;
+            }
             let begin = coarse.neighbors.len() as u32;
             let pair = [v, mate[v as usize]];
             let members = if pair[0] == pair[1] { &pair[..1] } else { &pair[..] };
@@ -120,7 +137,7 @@ impl Graph {
             coarse.starts.push(coarse.neighbors.len() as u32);
             coarse.weights.push(members.iter().map(|&v| self.weights[v as usize]).sum());
         }
-        coarse
+        Ok(coarse)
     }
 
     /// The graph on the vertices `v` with `side[v] == which`, and which they are.

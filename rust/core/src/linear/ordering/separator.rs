@@ -5,6 +5,7 @@ use std::collections::BinaryHeap;
 
 use crate::linear::ordering::graph::Graph;
 use crate::random::Random;
+use crate::{Progress, Result};
 
 /// The side that stands for the separator; the others are 0 and 1.
 pub(super) const SEPARATOR: u8 = 2;
@@ -17,8 +18,10 @@ const PATIENCE: usize = 200;
 const PASSES: usize = 8;
 
 /// The side of each vertex: 0, 1 or [`SEPARATOR`]; no edge joins 0 and 1.
-#[must_use]
-pub(super) fn separator(graph: &Graph, random: &mut Random) -> Vec<u8> {
+///
+/// # Errors
+/// [`crate::Error::Cancelled`].
+pub(super) fn separator(graph: &Graph, random: &mut Random, progress: &Progress) -> Result<Vec<u8>> {
     /// Graphs are coarsened to so many vertices.
     const COARSEST: usize = 40;
     /// A coarser graph with more than this part of the vertices is not worth its while.
@@ -31,35 +34,35 @@ pub(super) fn separator(graph: &Graph, random: &mut Random) -> Vec<u8> {
         if fine.n() <= COARSEST {
             break;
         }
-        let (coarse, map) = fine.coarsened(heaviest, random);
+        let (coarse, map) = fine.coarsened(heaviest, random, progress)?;
         if coarse.n() as f64 > WORTH_COARSENING * fine.n() as f64 {
             break;
         }
         levels.push(coarse);
         maps.push(map);
     }
-    let mut side = first(levels.last().unwrap_or(graph), random);
+    let mut side = first(levels.last().unwrap_or(graph), random, progress)?;
     while let Some(map) = maps.pop() {
         levels.pop();
         side = map.iter().map(|&c| side[c as usize]).collect();
-        refine(levels.last().unwrap_or(graph), &mut side);
+        refine(levels.last().unwrap_or(graph), &mut side, progress)?;
     }
-    side
+    Ok(side)
 }
 
 /// The best of a few separators grown from random vertices.
-fn first(graph: &Graph, random: &mut Random) -> Vec<u8> {
+fn first(graph: &Graph, random: &mut Random, progress: &Progress) -> Result<Vec<u8>> {
     /// First separators that are tried on the coarsest graph.
     const TRIES: usize = 4;
     let mut best: Option<((bool, u64), Vec<u8>)> = None;
     for _ in 0..TRIES {
         let mut side = grown(graph, random);
-        let score = refine(graph, &mut side);
+        let score = refine(graph, &mut side, progress)?;
         if best.as_ref().is_none_or(|(least, _)| score < *least) {
             best = Some((score, side));
         }
     }
-    best.map_or_else(Vec::new, |(_, side)| side)
+    Ok(best.map_or_else(Vec::new, |(_, side)| side))
 }
 
 /// Side 0 grows around a random vertex to half of the weight; its outer vertices are the separator.
@@ -99,14 +102,15 @@ fn grown(graph: &Graph, random: &mut Random) -> Vec<u8> {
 
 /// Makes the separator lighter by moving vertices off it; returns whether the sides are too unlike,
 /// and its weight.
-fn refine(graph: &Graph, side: &mut [u8]) -> (bool, u64) {
+fn refine(graph: &Graph, side: &mut [u8], progress: &Progress) -> Result<(bool, u64)> {
     let mut refinement = Refinement::new(graph, side);
     for _ in 0..PASSES {
+        progress.check()?;
         if !refinement.pass() {
             break;
         }
     }
-    refinement.score()
+    Ok(refinement.score())
 }
 
 struct Refinement<'g> {

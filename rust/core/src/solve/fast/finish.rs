@@ -79,7 +79,7 @@ impl<const K: usize> Run<'_, '_, K> {
         while idle < MOST_IDLE {
             progress.check()?;
             let before = self.gap();
-            match self.step(settings, &mut steps, aim * self.scale() / n_cones) {
+            match self.step(settings, &mut steps, aim * self.scale() / n_cones, progress) {
                 // Alternating directions have a tamer matrix.
                 Ok(false) | Err(Error::Solve(SolveError::Factorization { .. })) => break,
                 moved => moved?,
@@ -100,11 +100,17 @@ impl<const K: usize> Run<'_, '_, K> {
         }
         self.next_steps = 2 * iterations;
         self.next_reweighting = self.next_reweighting.max(2 * iterations);
-        self.reweight()
+        self.reweight(progress)
     }
 
     /// One step and the bounds that come with it; `false` when no step downwards was found.
-    fn step(&mut self, settings: &Settings, steps: &mut Steps<K>, barrier: f64) -> Result<bool> {
+    fn step(
+        &mut self,
+        settings: &Settings,
+        steps: &mut Steps<K>,
+        barrier: f64,
+        progress: &Progress,
+    ) -> Result<bool> {
         /// Iterations of conjugate gradients for a step with an older factor, and the part of the residual
         /// that is enough. They cost as much as the factorization they save; a run longer than [`LONG`] says
         /// that the factor is too old for the next step.
@@ -115,7 +121,7 @@ impl<const K: usize> Run<'_, '_, K> {
         let mut z = memory::twin(model.slope())?;
         let is_new = !steps.is_near;
         if is_new {
-            self.system.factorize(&mut self.reduced, Weighing::Stiffness(model.stiffness()))?;
+            self.system.factorize(&mut self.reduced, Weighing::Stiffness(model.stiffness()), progress)?;
         }
         self.y.clear();
         let mut step = self.lacking(&z, None)?;

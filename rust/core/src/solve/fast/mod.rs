@@ -105,13 +105,15 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
         floor: f64,
         progress: &Progress,
     ) -> Result<Self> {
+        progress.check()?;
         let (r, next_reweighting) = match &warm {
             Some(warm) => (reweighted(&warm.length, &reduced.weights)?, REWEIGHT_WARM),
             None => (uniform(&mut reduced, system, lengths, progress)?, REWEIGHT_COLD),
         };
         if warm.is_some() {
-            system.factorize(&mut reduced, Weighing::Penalties(&r))?;
+            system.factorize(&mut reduced, Weighing::Penalties(&r), progress)?;
         }
+        progress.check()?;
         let sweep = Sweep::new(&reduced, &r, &reduced.target, |b| match &warm {
             Some(warm) => (warm.z[b], scaled(reduced.weights[b], &warm.p[b])),
             None => ([[0.0; K]; BLOCK], [[0.0; K]; BLOCK]),
@@ -173,7 +175,7 @@ impl<'r, 's, const K: usize> Run<'r, 's, K> {
                 self.next_reweighting *= 3;
                 // The first new penalties always pay: the ones to start with are alike everywhere.
                 if iterations == REWEIGHT_COLD || left > FACTORIZATION {
-                    self.reweight()?;
+                    self.reweight(progress)?;
                 }
             }
         }

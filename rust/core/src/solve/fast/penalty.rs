@@ -69,7 +69,7 @@ pub fn uniform<const K: usize>(
     loop {
         progress.check()?;
         let r = penalties(scale)?;
-        system.factorize(reduced, Weighing::Penalties(&r))?;
+        system.factorize(reduced, Weighing::Penalties(&r), progress)?;
         attempts += 1;
         if attempts == MOST_ATTEMPTS || progress.is_finishing() {
             return Ok(r);

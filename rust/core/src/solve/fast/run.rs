@@ -1,6 +1,6 @@
 //! A run of the fast solver: where it is, the best point so far, and what is certain of it.
 
-use crate::progress::Report;
+use crate::progress::{Progress, Report};
 use crate::solve::certificate::{bound_along_ray, DualPoint};
 use crate::solve::cones::norm;
 use crate::solve::fast::penalty::reweighted;
@@ -43,9 +43,9 @@ pub(super) struct Best<const K: usize> {
 
 impl<const K: usize> Run<'_, '_, K> {
     /// New penalties from the lengths that the blocks have now; split variables and multipliers stay.
-    pub(super) fn reweight(&mut self) -> Result<()> {
+    pub(super) fn reweight(&mut self, progress: &Progress) -> Result<()> {
         let r = reweighted(&self.lengths()?, &self.reduced.weights)?;
-        self.system.factorize(&mut self.reduced, Weighing::Penalties(&r))?;
+        self.system.factorize(&mut self.reduced, Weighing::Penalties(&r), progress)?;
         self.sweep = self.under(&r)?;
         self.r = r;
         Ok(())

@@ -4,11 +4,11 @@
 use crate::block_rows::BlockRows;
 use crate::error::SolveError;
 use crate::linear::cholesky::{Cholesky, Precision};
-use crate::memory;
 use crate::solve::free_operator::FreeOperator;
 use crate::solve::normal_matrix::NormalMatrix;
 use crate::solve::primal_dual::Stiffness;
 use crate::solve::reduced::Reduced;
+use crate::{memory, Error, Progress, Result};
 
 /// Rows whose fidelity is below this share of the mean diagonal are raised to it by a proximal term: it makes
 /// the matrix definite where the operator alone does not. It weighs the change of `u`, and vanishes with it.
@@ -53,13 +53,13 @@ impl System {
     /// Analyzes the pattern of the free operator.
     ///
     /// # Errors
-    /// [`SolveError::Memory`] when the factor does not fit into `memory_limit` bytes.
-    pub fn new(free: &FreeOperator<'_>, memory_limit: Option<usize>) -> Result<Self, SolveError> {
-        let normal = NormalMatrix::stretched(&free.operator)?;
+    /// [`SolveError::Memory`] when the factor does not fit into `memory_limit` bytes, [`Error::Cancelled`].
+    pub fn new(free: &FreeOperator<'_>, memory_limit: Option<usize>, progress: &Progress) -> Result<Self> {
+        let normal = NormalMatrix::stretched(&free.operator, progress)?;
         let pattern = normal.pattern();
         let values = memory::room(pattern.rows.len())?;
         let precision = if pattern.n < LARGE { Precision::Double } else { Precision::Single };
-        let cholesky = Cholesky::analyze_in(precision, pattern, memory_limit)?;
+        let cholesky = Cholesky::analyze_in(precision, pattern, memory_limit, progress)?;
         Ok(Self { normal, cholesky, values, scale: 1.0, change: Vec::new() })
     }
 
@@ -84,12 +84,13 @@ impl System {
     /// Factors the matrix.
     ///
     /// # Errors
-    /// A matrix that is not positive definite, or dependent linear constraints.
+    /// A matrix that is not positive definite, or dependent linear constraints; [`Error::Cancelled`].
     pub fn factorize<const K: usize>(
         &mut self,
         reduced: &mut Reduced<'_, K>,
         weighing: Weighing<'_>,
-    ) -> Result<(), SolveError> {
+        progress: &Progress,
+    ) -> Result<()> {
         let twice: Vec<f64> = memory::gathered(reduced.fidelity.iter().map(|a| 2.0 * a))?;
         let (h, values) = (&reduced.free.operator, &mut self.values);
         match weighing {
@@ -111,14 +112,14 @@ impl System {
             for ((&s, d), a) in starts.iter().zip(&diagonal).zip(&twice) {
                 self.values[s] = d + (least - a).max(0.0);
             }
-            let mut done = self.cholesky.factorize(&self.values);
-            let is_indefinite = matches!(done, Err(SolveError::Factorization { .. }));
+            let mut done = self.cholesky.factorize(&self.values, progress);
+            let is_indefinite = matches!(done, Err(Error::Solve(SolveError::Factorization { .. })));
             if is_indefinite && self.cholesky.precision() == Precision::Single {
                 self.cholesky.set_precision(Precision::Double)?;
-                done = self.cholesky.factorize(&self.values);
+                done = self.cholesky.factorize(&self.values, progress);
             }
             match done {
-                Err(SolveError::Factorization { .. }) if attempt + 1 < PROXIMAL_ATTEMPTS => {}
+                Err(Error::Solve(SolveError::Factorization { .. })) if attempt + 1 < PROXIMAL_ATTEMPTS => {}
                 Err(error) => return Err(error),
                 Ok(()) => break,
             }
@@ -147,7 +148,7 @@ impl System {
         reduced: &Reduced<'_, K>,
         right: &[[f64; K]],
         u: &mut [[f64; K]],
-    ) -> Result<Vec<[f64; K]>, SolveError> {
+    ) -> std::result::Result<Vec<[f64; K]>, SolveError> {
         let mut kept = std::mem::take(&mut self.change);
         memory::refill(&mut kept, 0.0, K * u.len())?;
         let (change, _) = kept.as_chunks_mut::<K>();
@@ -174,7 +175,7 @@ impl System {
         &mut self,
         reduced: &Reduced<'_, K>,
         rest: &mut [[f64; K]],
-    ) -> Result<Vec<[f64; K]>, SolveError> {
+    ) -> std::result::Result<Vec<[f64; K]>, SolveError> {
         rest.iter_mut().flatten().for_each(|x| *x /= self.scale);
         self.substitute(reduced.n_columns, rest)?;
         let mut y = reduced
@@ -189,7 +190,7 @@ impl System {
         &mut self,
         n_columns: usize,
         right: &mut [[f64; K]],
-    ) -> Result<(), SolveError> {
+    ) -> std::result::Result<(), SolveError> {
         match n_columns {
             3 => self.cholesky.solve_columns::<3, K>(right),
             _ => self.cholesky.solve_columns::<K, K>(right),
@@ -226,8 +227,8 @@ mod tests {
         let free = FreeOperator::new(&operator, &problem.fixed).unwrap();
         let mut reduced = Reduced::<4>::new(&problem, &free, &[0, 1, 2]).unwrap();
         let r: Vec<f64> = (0..reduced.n_blocks()).map(|b| weighing * (1.0 + 30.0 * (b % 7) as f64)).collect();
-        let mut system = System::new(&free, None).unwrap();
-        system.factorize(&mut reduced, Weighing::Penalties(&r)).unwrap();
+        let mut system = System::new(&free, None, &Progress::new()).unwrap();
+        system.factorize(&mut reduced, Weighing::Penalties(&r), &Progress::new()).unwrap();
         let mut u = reduced.target.clone();
         let mut sizes = Vec::new();
         for _ in 0..3 {

@@ -111,9 +111,9 @@ impl<'a> Screened<'a> {
         let (pattern, entries) = self.membrane.matrix(&all, &all, |v| weights[v])?;
         let cholesky = match &mut self.cholesky {
             Some(cholesky) => cholesky,
-            none => none.insert(Cholesky::analyze(&pattern, None)?),
+            none => none.insert(Cholesky::analyze(&pattern, None, progress)?),
         };
-        cholesky.factorize(&entries)?;
+        cholesky.factorize(&entries, progress)?;
         let mut values = target.copied()?;
         for c in 0..values.n_columns {
             values.column_mut(c).iter_mut().zip(weights).for_each(|(x, a)| *x *= a);
@@ -135,7 +135,7 @@ pub(super) struct Harmonic<'a> {
 
 impl<'a> Harmonic<'a> {
     /// Factors the Laplacian of the copies that are not `fixed`; every piece needs a fixed copy.
-    pub(super) fn new(membrane: &'a Membrane, fixed: &[bool]) -> Result<Self> {
+    pub(super) fn new(membrane: &'a Membrane, fixed: &[bool], progress: &Progress) -> Result<Self> {
         let free = memory::sifted((0..fixed.len()).filter(|&v| !fixed[v]).map(|v| v as u32))?;
         let mut index = memory::repeated(FIXED, fixed.len())?;
         (0..).zip(&free).for_each(|(i, &v)| index[v as usize] = i);
@@ -143,8 +143,8 @@ impl<'a> Harmonic<'a> {
             None
         } else {
             let (pattern, values) = membrane.matrix(&free, &index, |_| 0.0)?;
-            let mut cholesky = Cholesky::analyze(&pattern, None)?;
-            cholesky.factorize(&values)?;
+            let mut cholesky = Cholesky::analyze(&pattern, None, progress)?;
+            cholesky.factorize(&values, progress)?;
             Some(cholesky)
         };
         Ok(Self { membrane, free, cholesky })

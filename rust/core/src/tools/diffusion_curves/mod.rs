@@ -158,7 +158,7 @@ fn in_their_unit(
     let (points, point_colors) = points(&task, &fit, &on_curves)?;
     (curves.points, curves.point_colors) = (points.clone(), point_colors.clone());
     let fixed = Conditions::new(connectivity, &table, &cut, &curves)?.fixed;
-    let mut harmonic = Harmonic::new(&membrane, &fixed)?;
+    let mut harmonic = Harmonic::new(&membrane, &fixed, progress)?;
     if options.refine && !progress.is_finishing() {
         report("improving colors", 0.4)?;
         task.refined(&mut fit, &mut harmonic, progress)?;

@@ -76,7 +76,7 @@ pub fn redraw(
     let conditions = Conditions::new(connectivity, &table, &cut, curves)?;
     conditions.check(&cut)?;
     progress.check()?;
-    let mut harmonic = Harmonic::new(&membrane, &conditions.fixed)?;
+    let mut harmonic = Harmonic::new(&membrane, &conditions.fixed, progress)?;
     conditions.solve(connectivity, &cut, &mut harmonic, sides, progress)
 }
 

@@ -159,6 +159,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::random::Random;
+    use crate::Progress;
 
     #[test]
     fn a_system_with_hubs_has_the_solution_of_the_dense_one() {
@@ -183,8 +184,8 @@ mod tests {
         let hubs = Hubs::new(&pairs[..1], &pairs[1..]).unwrap();
         assert_eq!([hubs.mask(true, 1).unwrap(), hubs.mask(false, 1).unwrap()], [[true], [true]]);
         let pattern = LowerPattern { n, starts: (0..=n).collect(), rows: (0..n).collect() };
-        let mut cholesky = Cholesky::analyze(&pattern, None).unwrap();
-        cholesky.factorize(&diagonal).unwrap();
+        let mut cholesky = Cholesky::analyze(&pattern, None, &Progress::new()).unwrap();
+        cholesky.factorize(&diagonal, &Progress::new()).unwrap();
         let mut found = right;
         let part = |is_corner: bool, k: usize| rows[usize::from(!is_corner)][k];
         assert!(hubs.solve(&mut cholesky, (&pattern, &diagonal), &mut found, part).unwrap());

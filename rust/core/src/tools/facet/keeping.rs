@@ -11,7 +11,7 @@ use super::unfolding;
 use crate::linear::cholesky::Cholesky;
 use crate::linear::pattern::LowerPattern;
 use crate::mesh::vector::{add, between, centroid, distance, scale, sub, Point};
-use crate::{memory, Result};
+use crate::{memory, Progress, Result};
 
 /// The least and the greatest weight of an edge: with the factor of a membrane of slivers still accurate to
 /// more than what a file keeps.
@@ -44,8 +44,8 @@ impl Job<'_> {
     /// The mesh's own vertices and faces on the facets that were found, each face on that of its label.
     ///
     /// # Errors
-    /// [`crate::error::SolveError::Memory`].
-    pub(super) fn kept(&self, found: &Found) -> Result<KeptTriangles> {
+    /// [`crate::error::SolveError::Memory`], or [`crate::Error::Cancelled`].
+    pub(super) fn kept(&self, found: &Found, progress: &Progress) -> Result<KeptTriangles> {
         let connectivity = self.working.mesh().connectivity();
         let labels = self.labels(found.labels.iter().copied())?;
         let regions =
@@ -53,7 +53,7 @@ impl Job<'_> {
         let mut membrane = Membrane::new(&regions, &found.shape)?;
         membrane.place_ridges()?;
         let mut faces = unfolding::Sheet::new(connectivity, &found.shape, &labels)?;
-        let (along, across) = membrane.stretched()?;
+        let (along, across) = membrane.stretched(progress)?;
         membrane.choose(&faces, &along, &across)?;
         let Membrane { mut places, inside, .. } = membrane;
         let n_flipped = faces.unfold(&mut places, |v| inside[v as usize] != OUTSIDE)?;
@@ -155,7 +155,7 @@ impl<'a> Membrane<'a> {
     /// Where a membrane has the vertices that the known ones are the rim of, and how far it moves them if it
     /// carries the moves of the rim: Tutte's embedding (1963), with the barycentric dual edge over the edge
     /// as its weights, which are positive: it folds no triangle in a convex facet.
-    fn stretched(&self) -> Result<(Vec<Point>, Vec<Point>)> {
+    fn stretched(&self, progress: &Progress) -> Result<(Vec<Point>, Vec<Point>)> {
         let n = self.places.len();
         let mut number = memory::repeated(usize::MAX, n)?;
         let free: Vec<usize> = memory::sifted((0..n).filter(|&v| self.inside[v] != OUTSIDE))?;
@@ -188,8 +188,8 @@ impl<'a> Membrane<'a> {
         }
         if !free.is_empty() {
             let (pattern, values) = assembled(entries, free.len())?;
-            let mut cholesky = Cholesky::analyze(&pattern, None)?;
-            cholesky.factorize(&values)?;
+            let mut cholesky = Cholesky::analyze(&pattern, None, progress)?;
+            cholesky.factorize(&values, progress)?;
             cholesky.solve(&mut right)?;
         }
         let (mut along, mut across) = (memory::twin(&self.places)?, memory::twin(&self.places)?);

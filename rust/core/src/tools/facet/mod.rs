@@ -163,7 +163,7 @@ fn run(
 impl Job<'_> {
     /// The result in the mesh's own coordinates.
     fn given(&self, mesh: &Mesh, found: Found, merges: FacetMerges, progress: &Progress) -> Result<Faceted> {
-        let kept = self.keeps.then(|| self.kept(&found)).transpose()?;
+        let kept = self.keeps.then(|| self.kept(&found, progress)).transpose()?;
         let Found { shape, inspection, labels, distances, n_facets, n_crossings } = found;
         let original = mesh.positions().unwrap_or_default();
         let n_corners = shape.corners.len();

@@ -17,7 +17,7 @@ use crate::linear::cholesky::Cholesky;
 use crate::linear::pattern::LowerPattern;
 use crate::memory;
 use crate::mesh::vector::{add, area_vector, distance, dot, norm, scale, sub, unit, Point};
-use crate::Result;
+use crate::{Error, Result};
 
 /// A facet at a corner.
 #[derive(Clone, Copy)]
@@ -70,7 +70,7 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point], stage: &S
     let is_hub = [hubs.mask(true, n)?, hubs.mask(false, m)?];
     let pattern = pattern(&incidences, &at.0, &at.1, &is_hub)?;
     let (starts, rows) = (&pattern.starts, &pattern.rows);
-    let mut cholesky = Cholesky::analyze(&pattern, None)?;
+    let mut cholesky = Cholesky::analyze(&pattern, None, stage.progress())?;
     let (mut last, mut slack) = (f64::INFINITY, SLACK[usize::from(shape.off_planes() < FLAT)]);
     for step in 0..2 * STEPS {
         stage.step()?;
@@ -119,9 +119,9 @@ pub(super) fn flatten(shape: &mut Shape, stay: f64, targets: &[Point], stage: &S
             [height + dot(of_planes[k], fall(&turning[i.facet])) + dot(of_corners[k], pull(i.corner))]
         };
         let mut multipliers: Vec<[f64; 1]> = memory::gathered(incidences.iter().enumerate().map(off))?;
-        match cholesky.factorize(&values) {
+        match cholesky.factorize(&values, stage.progress()) {
             // Sizes are so far apart that rounding leaves no step: what is there is judged as it is.
-            Err(SolveError::Factorization { .. }) => break,
+            Err(Error::Solve(SolveError::Factorization { .. })) => break,
             done => done?,
         }
         let part = |is_corner: bool, k: usize| {

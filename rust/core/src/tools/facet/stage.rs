@@ -47,6 +47,11 @@ impl<'p> Stage<'p> {
         Ok(())
     }
 
+    /// The handle that it asks.
+    pub(super) fn progress(&self) -> &'p Progress {
+        self.progress
+    }
+
     /// Whether to leave it at what there is.
     pub(super) fn is_finishing(&self) -> bool {
         self.progress.is_finishing()

@@ -62,7 +62,7 @@ impl Functional<'_> {
     pub(super) fn minimize(&self, progress: &Progress) -> Result<Minimizer> {
         let mut run = Run {
             functional: self,
-            pieces: self.pieces()?,
+            pieces: self.pieces(progress)?,
             progress,
             reached: Minimizer {
                 values: self.values.copied()?,
@@ -86,13 +86,14 @@ impl Functional<'_> {
 
     /// The connected pieces of the surface: minimizers of their own. What the Hessian sees nothing of, single
     /// triangles, has no borders and stays as it is.
-    fn pieces(&self) -> Result<Vec<Piece>> {
+    fn pieces(&self, progress: &Progress) -> Result<Vec<Piece>> {
         let surface = self.surface;
         let faces = surface.connectivity.faces();
         let operator = self.operator()?;
         let mass = voronoi_mass(surface.connectivity, &surface.lengths)?;
         let weights = face_laplacian_weights(surface.connectivity, &surface.lengths, &surface.centroids)?;
-        let step = |faces| IndicatorStep::new(surface, faces, &weights, self.length_weight, self.face_costs);
+        let (length_weight, costs) = (self.length_weight, self.face_costs);
+        let step = |faces| IndicatorStep::new(surface, faces, &weights, length_weight, costs, progress);
         let Some(pieces) = Pieces::of(&operator, Some(faces))? else {
             let (rows, faces) = (memory::numbers(mass.len())?, memory::numbers(faces.len())?);
             let step = step([&faces, &faces])?;
@@ -132,13 +133,13 @@ impl Functional<'_> {
         let weights = face_laplacian_weights(surface.connectivity, &surface.lengths, &surface.centroids)?;
         let faces = memory::numbers(surface.n_faces())?;
         let (costs, faces) = (self.face_costs, [&faces[..], &faces]);
-        let mut step = IndicatorStep::new(surface, faces, &weights, self.length_weight, costs)?;
+        let mut step = IndicatorStep::new(surface, faces, &weights, self.length_weight, costs, progress)?;
         if let Some(epsilon) = self.epsilons.last() {
             step.prepare(*epsilon);
         }
         Ok(Minimizer {
             values: self.values.copied()?,
-            indicator: step.minimize(&block_norms(&operator, self.values, Coupling::Joint)?)?,
+            indicator: step.minimize(&block_norms(&operator, self.values, Coupling::Joint)?, progress)?,
             fidelity: self.fidelity,
             alternations: 1,
             status: Status::Solved,

@@ -3,7 +3,7 @@
 use super::surface::Surface;
 use crate::linear::cholesky::Cholesky;
 use crate::linear::pattern::LowerPattern;
-use crate::{memory, Result};
+use crate::{memory, Progress, Result};
 
 /// `v ← argmin vᵀ (diag ‖(H u)_f‖ + λ ε L + λ/(4ε) M_F) v − λ/(2ε) 1ᵀ M_F v` (Rowe et al. 2024, supplement
 /// E), for one `ε` after the other. `λ` is times a cost for each face, and for each edge the mean of both.
@@ -24,13 +24,14 @@ impl IndicatorStep {
     /// `weights` are those of the halfedges ([`crate::operators::face_laplacian_weights`]).
     ///
     /// # Errors
-    /// Too little memory for the factor.
+    /// Too little memory for the factor, or [`crate::Error::Cancelled`].
     pub(super) fn new(
         surface: &Surface<'_>,
         [faces, places]: [&[u32]; 2],
         weights: &[[f64; 3]],
         length_weight: f64,
         face_costs: &[f64],
+        progress: &Progress,
     ) -> Result<Self> {
         let m = faces.len();
         let n_sides: usize = faces.iter().map(|&f| surface.around(f as usize).count()).sum();
@@ -62,7 +63,7 @@ impl IndicatorStep {
         let weighted_areas = memory::gathered(weighted)?;
         let pattern = LowerPattern { n: m, starts, rows };
         Ok(Self {
-            cholesky: Cholesky::analyze(&pattern, None)?,
+            cholesky: Cholesky::analyze(&pattern, None, progress)?,
             starts: pattern.starts,
             weighted_areas,
             values: memory::twin(&laplacian)?,
@@ -79,8 +80,8 @@ impl IndicatorStep {
     /// The minimizer for the norms `‖(H u)_f‖`. Faces that nothing determines, those without area, get 1.
     ///
     /// # Errors
-    /// A matrix that is not positive definite.
-    pub(super) fn minimize(&mut self, norms: &[f64]) -> Result<Vec<f64>> {
+    /// A matrix that is not positive definite, or [`crate::Error::Cancelled`].
+    pub(super) fn minimize(&mut self, norms: &[f64], progress: &Progress) -> Result<Vec<f64>> {
         let largest = self.weighted_areas.iter().fold(0.0_f64, |a, b| a.max(*b)).max(f64::MIN_POSITIVE);
         for (value, entry) in self.values.iter_mut().zip(&self.laplacian) {
             *value = self.epsilon * entry;
@@ -90,7 +91,7 @@ impl IndicatorStep {
             self.values[start] += norm + pull(area);
         }
         let mut v: Vec<[f64; 1]> = memory::gathered(self.weighted_areas.iter().map(|&area| [pull(area)]))?;
-        self.cholesky.factorize(&self.values)?;
+        self.cholesky.factorize(&self.values, progress)?;
         self.cholesky.solve(&mut v)?;
         // Exactly, 0 < v ≤ 1 by the maximum principle.
         v.iter_mut().for_each(|[v]| *v = v.clamp(0.0, 1.0));

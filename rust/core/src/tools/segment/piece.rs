@@ -96,7 +96,7 @@ impl Piece {
                 return Ok(());
             }
             let norms = block_norms(&self.operator, &self.values, Coupling::Joint)?;
-            let v = self.step.minimize(&norms)?;
+            let v = self.step.minimize(&norms, solving.progress)?;
             let change = self.mean_squared_change(&v);
             self.indicator = v;
             let energy = self.update_values(solving)?;

@@ -18,7 +18,7 @@ use crate::progress::Progress;
 use crate::solve::Settings;
 use crate::tools::options::ENOUGH;
 use crate::tools::Scale;
-use crate::{memory, Result};
+use crate::{memory, Error, Result};
 
 /// How many steps a flow is expected to take on its coarsest level, for the progress: 2 to 9.
 const EXPECTED: usize = 6;
@@ -45,7 +45,14 @@ pub(super) fn coarse_to_fine(
 ) -> Result<Stylized> {
     let start = mesh.positions().ok_or(MeshError::NoPositions)?;
     let held = held(options, start.len())?;
-    let mut levels = levels(mesh, held.as_deref(), ENOUGH, progress)?;
+    let mut levels = match levels(mesh, held.as_deref(), ENOUGH, &progress.hasty()) {
+        // Nothing has moved yet.
+        Err(Error::Cancelled) if !progress.is_cancelled() => {
+            finest.run(settings, progress)?;
+            return Ok(finest.into_result());
+        }
+        levels => levels?,
+    };
     // One unit of length for all levels.
     let lengths = edge_lengths(mesh.connectivity().faces(), start)?;
     let coarse_scale = Scale::Length(scale.unit(mesh.connectivity(), start, &lengths));
@@ -66,14 +73,16 @@ pub(super) fn coarse_to_fine(
             flow = flow.showing_its_end();
         }
         flow.run(settings, progress)?;
+        progress.check()?;
+        if progress.is_finishing() {
+            let result = flow.into_result();
+            account.add(&result);
+            return Ok(account.of(stopped(mesh, result, &levels[..depth])?));
+        }
         let finer = mesh_at(mesh, &levels, depth - 1);
         let n_vertices = |mesh: &Mesh| mesh.connectivity().n_vertices() as f64;
         let left = flow.legacy(STEPS, n_vertices(finer) / n_vertices(&level.mesh));
-        let result = flow.into_result();
-        account.add(&result);
-        if progress.is_finishing() {
-            return Ok(account.of(stopped(mesh, result, &levels[..depth])?));
-        }
+        account.add(&flow.into_result());
         if left.plan.n_steps() > 0 {
             let points = carried(finer, &levels[depth - 1..depth], left.points)?;
             let faces = finer.connectivity().faces();

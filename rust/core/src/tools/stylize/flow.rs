@@ -16,7 +16,7 @@ use crate::solve::{solve, Problem, Session, Settings, Solution, Solver, Status};
 use crate::tools::answer::Surroundings;
 use crate::tools::scale::{extent, Scale};
 use crate::tools::sharpness::{block_norms, sharpened_weights};
-use crate::{memory, Result};
+use crate::{memory, Error, Result};
 
 /// A step that moves the vertices by less than this part of the shape's size (root mean square) moves
 /// nothing.
@@ -201,11 +201,14 @@ impl<'a> Flow<'a> {
                 self.result.status = Stopped;
                 break;
             }
-            let solution = self.solve(&step, settings, progress)?;
-            if progress.is_finishing() && solution.status == Status::Stopped {
-                self.result.status = Stopped;
-                break;
-            }
+            // Nothing is taken of a step that is not done.
+            let solution = match self.solve(&step, settings, &progress.hasty()) {
+                Err(Error::Cancelled) if !progress.is_cancelled() => {
+                    self.result.status = Stopped;
+                    break;
+                }
+                solution => solution?,
+            };
             let moved = solution.values.to_points()?;
             if !self.is_near(&moved) || !solution.gap.is_finite() {
                 self.result.status = Diverged;
@@ -219,11 +222,13 @@ impl<'a> Flow<'a> {
             self.points = moved;
             self.done += 1;
             step = self.prepare()?;
+            progress.check()?;
             self.note(&step, &solution);
             inaccurate |= solution.status == Status::Inaccurate;
             if self.shows_steps {
                 progress.set_snapshot(self.done, &(self.show)(&self.points)?);
             }
+            progress.check()?;
             let flatness = Flatness::of(self.connectivity, &self.points)?;
             self.result.flatness[1] = flatness;
             let moved = weighted_distance(self.start, &self.points, &weights) / self.area.sqrt();
