@@ -56,9 +56,9 @@ nested_divisions! { Parts, n_parts, "parts";
 /// ----------
 /// mesh : Mesh with positions
 /// n_parts : number of parts wanted, or None: as `coarseness` has it; fewer where the shape has no more
-/// coarseness : float > 0, larger gives fewer parts: at a cost of 1.4 / coarseness a cut of the whole shape
-///     is as likely as not; a cut of a small part must be cheaper. Cuts of about the same cost, as of two
-///     arms, are made all or none
+/// coarseness : float > 0, larger gives fewer parts: at a cost of 1.9 / coarseness a cut of the whole shape
+///     is as likely as not; a cut of a small part must be cheaper, and so must any where hollows are
+///     everywhere. Cuts of about the same cost, as of two arms, are made all or none
 /// face_weights : (m,) array ≥ 0, what borders cost there: 1 is neutral, smaller attracts them
 /// edge_weights : (m,3) array ≥ 0, the same for edges, column i opposite corner i;
 ///     the mean of both faces' entries counts

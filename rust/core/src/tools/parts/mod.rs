@@ -76,6 +76,7 @@ fn found(mesh: &Mesh, options: &PartsOptions, progress: &Progress) -> Result<Par
     say(progress, "measuring");
     let surface = Surface::new(mesh, &faces, |h| options.weight(h))?;
     let graph = hollows::border_graph(&surface, progress)?;
+    let usual = hollows::usual_part(&surface, &graph);
     let (graph, pieces) = stitch::stitched(&surface, graph)?;
     let (clusters, n_clusters) = clusters::clusters(&graph, progress)?;
     let coarse = graph.quotient(&clusters, n_clusters)?;
@@ -83,7 +84,7 @@ fn found(mesh: &Mesh, options: &PartsOptions, progress: &Progress) -> Result<Par
     let divisions = division::divisions(&coarse, options.n_parts, progress)?;
     say(progress, "drawing borders");
     let drawn = borders::drawn(&graph, &clusters, n_clusters, &divisions, progress)?;
-    let (hierarchy, found) = nested(&graph, &pieces, drawn, options)?;
+    let (hierarchy, found) = nested(&graph, &pieces, drawn, options, usual)?;
     let hierarchy = hierarchy.spread(&faces, n_faces)?;
     let n_parts = options.n_parts.unwrap_or(found).min(hierarchy.range()[0]);
     let labels = hierarchy.labels_at(n_parts)?;
@@ -92,13 +93,20 @@ fn found(mesh: &Mesh, options: &PartsOptions, progress: &Progress) -> Result<Par
 }
 
 /// Divisions of every count, and how many parts people would see: what is divided cheaply stays longest, and
-/// what is found stays longer than all others.
-fn nested(graph: &Graph, pieces: &[u32], drawn: Drawn, options: &PartsOptions) -> Result<(Hierarchy, usize)> {
+/// what is found stays longer than all others. `usual` is the part of its length that a border costs at an
+/// average place.
+fn nested(
+    graph: &Graph,
+    pieces: &[u32],
+    drawn: Drawn,
+    options: &PartsOptions,
+    usual: f64,
+) -> Result<(Hierarchy, usize)> {
     let count = drawn.divisions.len() + 1;
     let first = drawn.divisions.partition_point(|(_, cost)| *cost <= options.most_cost());
     let mut origin: Vec<u32> = (0..=first as u32).collect();
     drawn.divisions.iter().skip(first).for_each(|([part, _], _)| origin.push(origin[*part as usize]));
-    let (labels, limit) = (&drawn.labels, options.even_cost());
+    let (labels, limit) = (&drawn.labels, options.even_cost(usual));
     let merges = Merging::new(graph, pieces, labels, origin, limit, Beyond::Pairs)?.merges();
     let found = choice::count(&merges, limit);
     let mut origin = Partition::new(count)?;

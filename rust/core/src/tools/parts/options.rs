@@ -1,6 +1,6 @@
 //! How to find parts.
 
-use super::constants::{COST, EVEN_COST};
+use super::constants::{COST, EVEN_COST, USUAL_POWER};
 use crate::mesh::Mesh;
 use crate::tools::options::{check_edge_weights, check_faces, check_positive, check_weights, SolveOptions};
 use crate::{tools, Error, Result};
@@ -12,7 +12,8 @@ pub struct PartsOptions {
     pub n_parts: Option<usize>,
     /// How much cheaper cuts must be than is usual, 1: larger finds fewer parts. A cut costs the length of
     /// its border, in hollows down to a tenth of it, over the 0.7th power of the area that it cuts off, both
-    /// in units of the whole area; at 1.4 over the coarseness it is as likely as not that people make it.
+    /// in units of the whole area; at 1.9 over the coarseness it is as likely as not that people make it, at
+    /// less on shapes with hollows everywhere.
     pub coarseness: f64,
     /// What borders cost in each face, 1 neutral, smaller where they are welcome.
     pub face_weights: Option<Vec<f64>>,
@@ -56,9 +57,10 @@ impl PartsOptions {
         COST / self.coarseness
     }
 
-    /// At which cost it is as likely as not that people make a cut of the whole shape.
-    pub(super) fn even_cost(&self) -> f64 {
-        EVEN_COST / self.coarseness
+    /// At which cost it is as likely as not that people make a cut of the whole shape, where a border usually
+    /// costs that part of its length.
+    pub(super) fn even_cost(&self, usual: f64) -> f64 {
+        EVEN_COST * usual.powf(USUAL_POWER) / self.coarseness
     }
 
     /// The threads, checked where they are started.
