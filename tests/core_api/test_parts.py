@@ -184,6 +184,18 @@ def test_beyond_what_is_found_large_parts_are_divided_before_strips_come_off():
     assert areas.min() >= 0.1 * areas.sum()
 
 
+def test_hollows_say_little_where_they_are_everywhere():
+    """Bumps all over a ball make no parts of it, and of its limbs neither."""
+    vertices, faces, truth = limbs.ball_with_limbs(5)
+    waves = 1 + 0.03 * np.prod(np.sin(12 * vertices), axis=1)
+    rough = ridgeform.parts(ridgeform.Mesh(vertices * waves[:, None], faces))
+    assert rough.n_parts == 5
+    assert adjusted_rand_index(rough.labels, truth) >= 0.9
+    sphere, triangles = shapes.icosphere(5)
+    bumps = 1 + 0.1 * np.prod(np.sin(12 * sphere), axis=1)
+    assert ridgeform.parts(ridgeform.Mesh(sphere * bumps[:, None], triangles)).n_parts == 1
+
+
 def test_closed_pieces_that_pass_through_each_other_are_a_part_each():
     """The inside of one does not make the other thin."""
     small, small_faces = shapes.icosphere(3)
