@@ -99,11 +99,11 @@ SOURCES = items(
     ATTRIBUTE="Parts on which an attribute, color, or vertex group is even or rises evenly",
 )
 FILLETS = items(
-    automatic="Found where a crease parts them from their sides, or the mesh is as a CAD kernel makes it",
-    apart=(
-        "Each is a segment: faces are told by the planes, spheres, cylinders, cones, and tori that they lie "
-        "on, also on scans and remeshed parts"
+    automatic=(
+        "Each is a segment, found by the planes, spheres, cylinders, cones, and tori that faces lie on. Free "
+        "shapes, such as characters, are divided where they bend"
     ),
+    apart="The same also where one smooth surface would do as well: free shapes may fall into patches",
     joined="Each belongs to the larger side beside it: a box with rounded or beveled edges has six sides",
 )
 MODES = items(

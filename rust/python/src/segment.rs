@@ -88,10 +88,11 @@ solver_function! {
     ///     "bounding_box" (the longest side is 1), "area" or "max_edge"
     /// method : "fitted" (watershed of v, merging of what bends little, border faces moved to the segment
     ///     that they fit best) or "paper" (cuts below the threshold, small pieces merged by majority)
-    /// fillets : "automatic" (segments are told by bends, and where a mesh is exact by its surfaces), "apart"
-    ///     (by the planes, spheres, cylinders, cones and tori that their faces lie on, under noise as well:
-    ///     every fillet is one) or "joined" (the same, and fillets and bevels belong to the larger side
-    ///     beside them). The latter for shapes by "fitted" without `fidelity`
+    /// fillets : for shapes by "fitted" without `fidelity`; "automatic" (segments are told by the planes,
+    ///     spheres, cylinders, cones and tori that their faces lie on, so every fillet is one, and by bends
+    ///     where a smooth surface would do as well), "apart" (by such surfaces wherever they explain the
+    ///     faces, also in patches of a free shape) or "joined" (as "automatic", and fillets and bevels belong
+    ///     to the larger side beside them)
     /// n_segments : number of segments wanted, or None; fewer where the finest segmentation has fewer
     /// face_weights : (m,) array ≥ 0, what borders cost there: 1 is neutral, smaller attracts them
     /// edge_weights : (m,3) array ≥ 0, the same for edges, column i opposite corner i;

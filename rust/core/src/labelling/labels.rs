@@ -33,6 +33,8 @@ pub struct Piece {
     pub is_doubted: bool,
     /// What it costs with its parameters.
     pub(super) energy: f64,
+    /// Whether all of this is that of its faces, to which no surface has to be fitted.
+    pub(super) is_fitted: bool,
 }
 
 impl Labelling {

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::constants::{BORDER, GROWN, JUDGED_BY};
+use super::constants::{BORDER, FREE_MISFIT, GROWN, JUDGED_BY, NOISE_MISFIT};
 use super::labels::{Labelling, Piece, NONE};
 use super::pieces::best;
 use super::Domain;
 use crate::progress::Progress;
-use crate::surfaces::Surface;
+use crate::surfaces::{Kind, Surface};
 use crate::{memory, Result};
 
 /// What is known of two neighbors.
@@ -108,6 +108,15 @@ fn borders(domain: &Domain<'_>, labels: &[u32]) -> BTreeMap<(u32, u32), f64> {
     borders
 }
 
+impl Domain<'_> {
+    /// Whether a piece is free although it would pay to have a surface of the dearest kind, were there one
+    /// beside which its vertices are off by noise alone. Then none explains it with a neighbor either.
+    fn is_none_for(&self, piece: &Piece) -> bool {
+        let dearest = self.kappa * Kind::Torus.n_parameters() as f64;
+        piece.surface.is_none() && (1.0 - NOISE_MISFIT / FREE_MISFIT) * piece.energy > dearest
+    }
+}
+
 fn union(state: &Labelling, (a, b): (u32, u32)) -> Result<Vec<u32>> {
     let [first, second] = [a, b].map(|label| &state.pieces[label as usize].faces);
     let mut faces = memory::room(first.len() + second.len())?;
@@ -119,6 +128,10 @@ fn union(state: &Labelling, (a, b): (u32, u32)) -> Result<Vec<u32>> {
 
 /// By how much the energy would fall, about: surfaces are fitted to some of the points.
 fn judged(domain: &Domain<'_>, state: &Labelling, pair: (u32, u32), border: f64) -> Result<Judged> {
+    if [pair.0, pair.1].iter().any(|label| domain.is_none_for(&state.pieces[*label as usize])) {
+        let n_faces = [pair.0, pair.1].iter().map(|label| state.pieces[*label as usize].faces.len()).sum();
+        return Ok(Judged { gain: 0.0, n_faces, is_current: true });
+    }
     let faces = union(state, pair)?;
     let samples = domain.samples(&faces)?;
     let limit = state.pieces[pair.0 as usize].energy + state.pieces[pair.1 as usize].energy + border;

@@ -16,7 +16,8 @@
 //! from a few faces as far as faces lie on them. Pieces are divided whose surface does not explain them
 //! ([`mod@divide`]). In both, borders move by minimum cuts ([`mod@swap`]) toward where surfaces meet or touch
 //! ([`contact`]), and that is taken if `E` falls. In the end faces are free that their surface does not
-//! explain ([`mod@doubt`]).
+//! explain ([`mod@doubt`]). Segments ask besides whether pieces are patches of one smooth surface
+//! ([`mod@smooth`]).
 
 mod constants;
 mod contact;
@@ -30,11 +31,13 @@ mod merge;
 mod pieces;
 mod relabel;
 mod seek;
+mod smooth;
 mod swap;
 
 pub use constants::FREE_MISFIT;
 pub use domain::Domain;
 pub use labels::{Labelling, Piece, NONE};
+pub use smooth::free_patches;
 
 use constants::MOST_ROUNDS;
 

@@ -21,16 +21,19 @@ impl Piece {
         Ok(match best(domain, &faces, &samples, free)? {
             Some((found, energy)) => {
                 let (side, rms) = (samples.side(&found), samples.rms(&found));
-                Self { faces, surface: Some(found), side, rms, energy, is_doubted: false }
+                Self { faces, surface: Some(found), side, rms, energy, is_doubted: false, is_fitted: true }
             }
-            None => Self { faces, side: 1.0, energy: free, ..Self::default() },
+            None => Self { faces, side: 1.0, energy: free, is_fitted: true, ..Self::default() },
         })
     }
 
-    /// The same faces with a surface fitted again, where that costs less.
-    fn again(domain: &Domain<'_>, faces: Vec<u32>, old: Option<&Surface>) -> Result<Self> {
+    /// The piece of these faces, which keeps the surface that it had where that costs less than another.
+    fn again(domain: &Domain<'_>, faces: Vec<u32>, old: Self) -> Result<Self> {
+        if old.is_fitted && old.faces == faces {
+            return Ok(Self { is_doubted: false, ..old });
+        }
         let mut piece = Self::of(domain, faces)?;
-        if let Some(old) = old {
+        if let Some(old) = &old.surface {
             let samples = domain.samples(&piece.faces)?;
             let kept = samples.cost(old, domain.sigma)
                 + domain.strain(&piece.faces, old)
@@ -94,6 +97,7 @@ impl Labelling {
             if let Some((surface, _)) = best(domain, &faces, &samples, UNLIMITED)? {
                 piece.surface = Some(surface);
             }
+            piece.is_fitted = false;
         }
         Ok(())
     }
@@ -115,21 +119,22 @@ impl Labelling {
         let n = self.labels.iter().filter(|l| **l != NONE).map(|l| *l as usize + 1).max().unwrap_or(0);
         let mut names = memory::repeated(NONE, n)?;
         let mut members: Vec<Vec<u32>> = Vec::new();
-        let mut old: Vec<Option<Surface>> = Vec::new();
+        let mut old: Vec<Piece> = Vec::new();
+        let mut before = std::mem::take(&mut self.pieces);
         for (f, label) in (0_u32..).zip(&mut self.labels).filter(|(_, label)| **label != NONE) {
             let name = &mut names[*label as usize];
             if *name == NONE {
                 *name = members.len() as u32;
                 memory::push(&mut members, Vec::new())?;
                 memory::extend(&mut old, 1)?;
-                old.push(self.pieces.get(*label as usize).and_then(|piece| piece.surface));
+                old.push(before.get_mut(*label as usize).map(std::mem::take).unwrap_or_default());
             }
             *label = *name;
             memory::push(&mut members[*name as usize], f)?;
         }
-        let again = |(faces, old): (Vec<u32>, Option<Surface>)| {
+        let again = |(faces, old): (Vec<u32>, Piece)| {
             progress.check()?;
-            Piece::again(domain, faces, old.as_ref())
+            Piece::again(domain, faces, old)
         };
         self.pieces = memory::all(memory::joined(members.into_par_iter().zip(old).map(again))?)?;
         Ok(())

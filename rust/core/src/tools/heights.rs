@@ -4,11 +4,11 @@
 use crate::mesh::vector::{add, cross, dot, scale, sub, unit, Point};
 
 /// Coefficients of `1, s, t, s², st, t²`.
-pub(super) const TERMS: usize = 6;
+pub(crate) const TERMS: usize = 6;
 
 /// Coordinates over a plane, in units of a size.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
+pub(crate) struct Frame {
     pub origin: Point,
     /// Two unit vectors in the plane, and its normal.
     pub axes: [Point; 3],
@@ -17,26 +17,26 @@ pub(super) struct Frame {
 
 impl Frame {
     /// The plane through `origin` with the unit `normal`.
-    pub(super) fn new(origin: Point, normal: Point, scale: f64) -> Self {
+    pub(crate) fn new(origin: Point, normal: Point, scale: f64) -> Self {
         Self { origin, axes: axes_along(normal), scale }
     }
 
     /// What the coefficients multiply at `p`, and its height.
-    pub(super) fn terms(&self, p: Point) -> ([f64; TERMS], f64) {
+    pub(crate) fn terms(&self, p: Point) -> ([f64; TERMS], f64) {
         let d = sub(p, self.origin);
         let [s, t, height] = self.axes.map(|axis| dot(axis, d) / self.scale);
         ([1.0, s, t, s * s, s * t, t * t], height)
     }
 
     /// The signed distance of `p` from the surface with the height `c`, to first order.
-    pub(super) fn distance(&self, c: &[f64; TERMS], p: Point) -> f64 {
+    pub(crate) fn distance(&self, c: &[f64; TERMS], p: Point) -> f64 {
         let (terms, height) = self.terms(p);
         let [s, t] = slope(c, &terms);
         self.scale * (height - value(c, &terms)) / (1.0 + s * s + t * t).sqrt()
     }
 
     /// The unit normal of that surface at `p`.
-    pub(super) fn normal(&self, c: &[f64; TERMS], p: Point) -> Point {
+    pub(crate) fn normal(&self, c: &[f64; TERMS], p: Point) -> Point {
         let [s, t] = slope(c, &self.terms(p).0);
         let [first, second, up] = self.axes;
         unit(sub(up, add(scale(first, s), scale(second, t))))
@@ -44,7 +44,7 @@ impl Frame {
 }
 
 /// The function with the coefficients `c`.
-pub(super) fn value(c: &[f64; TERMS], terms: &[f64; TERMS]) -> f64 {
+pub(crate) fn value(c: &[f64; TERMS], terms: &[f64; TERMS]) -> f64 {
     terms.iter().zip(c).map(|(t, c)| t * c).sum()
 }
 
@@ -54,19 +54,19 @@ fn slope(c: &[f64; TERMS], terms: &[f64; TERMS]) -> [f64; 2] {
 
 /// The weighted least squares fit of functions to their values at the same points.
 #[derive(Debug, Clone)]
-pub(super) struct LeastSquares {
+pub(crate) struct LeastSquares {
     matrix: [[f64; TERMS]; TERMS],
     right: Vec<[f64; TERMS]>,
 }
 
 impl LeastSquares {
     /// No points yet, and so many functions.
-    pub(super) fn new(n_functions: usize) -> Self {
+    pub(crate) fn new(n_functions: usize) -> Self {
         Self { matrix: [[0.0; TERMS]; TERMS], right: vec![[0.0; TERMS]; n_functions] }
     }
 
     /// Adds a point by its terms and what the functions are there.
-    pub(super) fn add(&mut self, weight: f64, terms: &[f64; TERMS], value: impl Fn(usize) -> f64) {
+    pub(crate) fn add(&mut self, weight: f64, terms: &[f64; TERMS], value: impl Fn(usize) -> f64) {
         for i in 0..TERMS {
             (0..TERMS).for_each(|j| self.matrix[i][j] += weight * terms[i] * terms[j]);
             for (c, row) in self.right.iter_mut().enumerate() {
@@ -77,7 +77,7 @@ impl LeastSquares {
 
     /// The coefficients of each function, with pulls to zero: `slight` on the constant and the slopes, which
     /// need it only where the points lie on a line, and `stiffness` on the quadratic terms.
-    pub(super) fn solve(mut self, slight: f64, stiffness: f64) -> Vec<[f64; TERMS]> {
+    pub(crate) fn solve(mut self, slight: f64, stiffness: f64) -> Vec<[f64; TERMS]> {
         for (i, row) in self.matrix.iter_mut().enumerate() {
             row[i] += if i < 3 { slight } else { stiffness };
         }
@@ -86,7 +86,7 @@ impl LeastSquares {
 }
 
 /// Two unit vectors in the plane of the unit `normal`, and the normal.
-pub(super) fn axes_along(normal: Point) -> [Point; 3] {
+pub(crate) fn axes_along(normal: Point) -> [Point; 3] {
     let least = (0..3).min_by(|&i, &j| normal[i].abs().total_cmp(&normal[j].abs())).unwrap_or(0);
     let mut axis = [0.0; 3];
     axis[least] = 1.0;

@@ -7,7 +7,7 @@ mod diffusion_curves;
 mod energy_options;
 mod facet;
 mod fill_holes;
-mod heights;
+pub(crate) mod heights;
 mod interpolate;
 pub(crate) mod minimum_cut;
 mod modes;

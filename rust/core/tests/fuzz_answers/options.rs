@@ -208,7 +208,7 @@ pub(crate) fn segment(random: &mut Random, mesh: &Mesh) -> SegmentOptions {
         noise: maybe(random, amount),
         levels: levels(random),
         solve: solving(random),
-        fillets: any(random, &[Fillets::Automatic, Fillets::Automatic, Fillets::Apart, Fillets::Joined]),
+        fillets: any(random, &[Fillets::Automatic, Fillets::Apart, Fillets::Joined, Fillets::Unseen]),
         ..standard
     }
 }

@@ -11,7 +11,7 @@ use crate::mesh::vector::{add, norm, scale, unit, Point};
 use crate::mesh::Mesh;
 use crate::progress::Progress;
 use crate::tools::options::Levels;
-use crate::tools::segment::{segment, SegmentOptions};
+use crate::tools::segment::{segment, Fillets, SegmentOptions};
 use crate::tools::SolveOptions;
 use crate::Result;
 
@@ -70,6 +70,7 @@ impl SmoothParts {
         let options = SegmentOptions {
             levels: Levels::Never,
             solve: solve.within().on_residuals(),
+            fillets: Fillets::Unseen,
             ..SegmentOptions::default()
         };
         let found = segment(&mesh, None, &options, &progress.quiet())?;

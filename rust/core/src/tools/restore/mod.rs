@@ -23,7 +23,7 @@ use crate::progress::{Progress, Report};
 use crate::solve::Status;
 use crate::tools::answer::{refused, Surroundings};
 use crate::tools::scale::extent;
-use crate::tools::segment::{segment, SegmentOptions};
+use crate::tools::segment::{segment, Fillets, SegmentOptions};
 use crate::unit::Unit;
 use crate::{Error, Result};
 use constants::MOST_MOVE;
@@ -73,6 +73,7 @@ fn on(working: &Working<'_>, unit: Unit, options: &RestoreOptions, progress: &Pr
         None,
         &SegmentOptions {
             faces: options.faces.as_deref().map(memory::twin).transpose()?,
+            fillets: Fillets::Unseen,
             solve: options.segment_solve(),
             ..SegmentOptions::default()
         },

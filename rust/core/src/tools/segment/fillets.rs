@@ -1,26 +1,26 @@
 //! Segments by the surfaces that faces lie on ([`mod@crate::labelling`]), fillets apart from the sides beside
-//! them or joined to these ([`super::blends`]). Both are in one hierarchy: fillets are what is joined first.
+//! them or joined to these ([`super::blends`]). Both are in one hierarchy ([`super::nesting`]).
 
 use std::collections::BTreeMap;
 
 use super::blends::Blends;
 use super::constants::{BEND, LEAST_FREE, LEAST_SIGMA};
-use super::hierarchy::Hierarchy;
-use super::merge::{rename, within_order, Merge};
+use super::nesting::nested;
 use super::options::{Fillets, SegmentOptions};
 use super::segmentation::{boundary_edges, Segmentation};
 use super::surface::{pieces, Surface};
-use super::tangent;
-use crate::labelling::{labelling, Domain, Labelling};
+use crate::labelling::{free_patches, labelling, Domain, Labelling, Piece};
 use crate::mesh::partition::{contiguous, Partition};
-use crate::mesh::vector::{add, scale, sub, Point};
+use crate::mesh::vector::{add, distance, scale, sub, Point};
 use crate::mesh::{Mesh, FILE_ROUNDING};
 use crate::progress::{Progress, Report};
 use crate::solve::Status;
+use crate::surfaces::Surface as Named;
 use crate::{memory, Result};
 
 /// The segments of `mesh`, which is `surface` in its unit, by the surfaces that its faces lie on, where bends
-/// tell those that were `found`. What is `tessellated` is in its surfaces already.
+/// tell those that were `found`, without a number asked for. What is `tessellated` is in its surfaces
+/// already.
 ///
 /// # Errors
 /// [`crate::Error::Cancelled`].
@@ -33,56 +33,72 @@ pub(super) fn by_surfaces(
     progress: &Progress,
 ) -> Result<Segmentation> {
     progress.report(Report { fraction: 0.98, stage: "surfaces".into(), ..Report::default() });
-    let (leaves, points) = if tessellated {
-        (memory::gathered(found.labels.iter().map(|label| label.cast_unsigned()))?, None)
-    } else {
-        let noise = options.noise.unwrap_or(found.noise);
-        let (labels, points) = on_surfaces(mesh, surface, &found.labels, noise, options, progress)?;
-        (labels, Some(points))
+    let bent = || memory::gathered(found.labels.iter().map(|label| label.cast_unsigned()));
+    let told = if tessellated { None } else { on_surfaces(mesh, surface, &found, options, progress)? };
+    let (labels, points) = match told {
+        Some((labels, points)) => (labels, Some(points)),
+        // Nothing is told by surfaces.
+        None if options.fillets == Fillets::Automatic => return with_count(mesh, found, options, progress),
+        None => (bent()?, None),
     };
-    let (leaves, n_leaves) = contiguous(&leaves)?;
+    let (labels, n_labels) = contiguous(&labels)?;
+    let is_smooth = points.is_some();
     let points = points.as_deref().unwrap_or(&surface.positions);
-    let joined = Blends::new(surface, &leaves, points, tessellated)?.found(BEND * options.length_weight)?;
-    let joined: Vec<Merge> =
-        memory::gathered(joined.into_iter().map(|[gone, kept]| Merge { kept, gone, strength: 0.0 }))?;
-    let mut merges = within_order(&leaves, n_leaves, &joined)?;
-    let default = match options.fillets {
-        Fillets::Joined => n_leaves - merges.len(),
-        Fillets::Apart | Fillets::Automatic => n_leaves,
+    let blends = Blends::new(surface, &labels, points, !is_smooth)?.found(BEND * options.length_weight)?;
+    let hierarchy = nested(surface, &found.hierarchy, found.n_segments, &labels, &blends, tessellated)?;
+    let n_segments = match options.fillets {
+        Fillets::Joined => joined_count(n_labels, &blends)?,
+        _ => n_labels,
     };
-    let mut current = memory::twin(&leaves)?;
-    rename(&mut current, &merges);
-    let outer = tangent::merged(surface, &mut current)?;
-    memory::extend(&mut merges, outer.len())?;
-    merges.extend(outer);
-    let merges = merges.iter().map(|m| ([m.kept, m.gone], m.strength));
-    let hierarchy = Hierarchy::new(leaves, n_leaves, merges).ascending();
-    let labels = hierarchy.labels_at(options.n_segments.unwrap_or(default))?;
+    with_count(mesh, Segmentation { hierarchy, n_segments, ..found }, options, progress)
+}
+
+/// How many of so many segments are left once all pairs are one.
+fn joined_count(n: usize, pairs: &[[u32; 2]]) -> Result<usize> {
+    let mut partition = Partition::new(n)?;
+    pairs.iter().for_each(|&[a, b]| partition.unite(a, b));
+    Ok((0..n as u32).filter(|&label| partition.root(label) == label).count())
+}
+
+/// The segments that are wanted of the hierarchy: as many as asked for, or as were found.
+fn with_count(
+    mesh: &Mesh,
+    found: Segmentation,
+    options: &SegmentOptions,
+    progress: &Progress,
+) -> Result<Segmentation> {
+    let labels = found.hierarchy.labels_at(options.n_segments.unwrap_or(found.n_segments))?;
     Ok(Segmentation {
         n_segments: labels.iter().max().map_or(0, |most| *most as usize + 1),
         boundary_edges: boundary_edges(mesh, &labels)?,
         labels,
-        hierarchy,
         status: if progress.is_finishing() { Status::Stopped } else { found.status },
         ..found
     })
 }
 
-/// Segments by surfaces, begun as `start`, and the vertices on these, in the unit of `surface`.
+/// Segments by surfaces, begun as those that bends tell, and the vertices on these, in the unit of `surface`;
+/// nothing where there are none.
 fn on_surfaces(
     mesh: &Mesh,
     surface: &Surface<'_>,
-    start: &[i32],
-    noise: f64,
+    bent: &Segmentation,
     options: &SegmentOptions,
     progress: &Progress,
-) -> Result<(Vec<u32>, Vec<Point>)> {
+) -> Result<Option<(Vec<u32>, Vec<Point>)>> {
+    let (start, noise) = (&bent.labels, options.noise.unwrap_or(bent.noise));
     let unit = options.unit_of(mesh);
     let least = (LEAST_SIGMA * surface.mean_edge).max(FILE_ROUNDING);
     let domain = Domain::new(mesh.connectivity(), &surface.positions, (noise / unit).max(least))?;
-    let found = labelling(&domain, start, progress)?;
+    let mut found = labelling(&domain, start, progress)?;
+    if options.fillets != Fillets::Apart {
+        free_patches(&domain, &mut found, BEND * options.length_weight, progress)?;
+    }
+    if found.pieces.iter().all(|piece| piece.surface.is_none()) {
+        return Ok(None);
+    }
     let labels = connected(surface, &found, start, options, noise / unit)?;
-    Ok((labels, placed(&domain, &found)?))
+    Ok(Some((labels, placed(&domain, &found)?)))
 }
 
 /// The connected pieces of surfaces, and of the segments that `start` has where there are none. Specks, that
@@ -96,11 +112,12 @@ fn connected(
 ) -> Result<Vec<u32>> {
     let is_free = |label: u32| found.pieces.get(label as usize).is_none_or(|piece| piece.surface.is_none());
     let count = found.pieces.len() as u32;
+    let side = sides(surface, found, BEND * options.length_weight)?;
     let names: Vec<u32> = memory::gathered(found.labels.iter().zip(start).map(|(&label, &segment)| {
         if is_free(label) {
             count + segment.cast_unsigned()
         } else {
-            label
+            side[label as usize]
         }
     }))?;
     let (labels, n) = pieces(surface, &names)?;
@@ -119,13 +136,14 @@ fn connected(
         let held = largest.entry(name[piece]).or_default();
         *held = (*held).max((sizes[piece], piece as u32));
     }
+    let mut given: BTreeMap<u32, usize> = BTreeMap::new();
+    start.iter().for_each(|segment| *given.entry(count + segment.cast_unsigned()).or_default() += 1);
     let least = options.least_faces(noise / surface.mean_edge);
-    // Fewer faces than a surface is sought with do not say that they are on none.
-    let least_free = options.min_faces.unwrap_or(LEAST_FREE);
     let is_speck = |piece: &u32| {
         let (size, name) = (sizes[*piece as usize], name[*piece as usize]);
-        let is_whole = name < count && largest[&name].1 == *piece;
-        let least = if name < count { least } else { least_free };
+        let is_whole = largest[&name].1 == *piece && given.get(&name).is_none_or(|all| 2 * size >= *all);
+        // What is left of a segment is none of its own where a surface would not have been sought in it.
+        let least = if name < count { least } else { options.min_faces.unwrap_or(LEAST_FREE) };
         size < least && (options.min_faces.is_some() || !is_whole)
     };
     let mut specks: Vec<u32> = memory::sifted((0..n as u32).filter(is_speck))?;
@@ -143,6 +161,35 @@ fn connected(
         }
     }
     Ok(memory::gathered(labels.iter().map(|&label| partition.root(label)))?)
+}
+
+/// A name for each piece, the same for planes that meet in no edge that counts: one where their unit normals
+/// differ by `bend` and more, where borders cost their length.
+fn sides(surface: &Surface<'_>, found: &Labelling, bend: f64) -> Result<Vec<u32>> {
+    let normal = |label: u32| match found.pieces.get(label as usize)? {
+        Piece { surface: Some(Named::Plane { normal, .. }), side, .. } => Some(scale(*normal, *side)),
+        _ => None,
+    };
+    // Of each two planes the length of their border, what that costs, and how far their normals differ.
+    let mut borders: BTreeMap<[u32; 2], [f64; 3]> = BTreeMap::new();
+    for (f, &own) in found.labels.iter().enumerate() {
+        for (h, g) in surface.around(f).filter(|&(_, g)| found.labels[g] > own) {
+            let other = found.labels[g];
+            if let (Some(m), Some(n)) = (normal(own), normal(other)) {
+                let length = surface.lengths[h / 3][h % 3];
+                let border = borders.entry([own, other]).or_default();
+                *border =
+                    [border[0] + length, border[1] + length * surface.costs[h / 3][h % 3], distance(m, n)];
+            }
+        }
+    }
+    let mut partition = Partition::new(found.pieces.len())?;
+    for ([a, b], [length, cost, apart]) in borders {
+        if apart * length < bend * cost {
+            partition.unite(a, b);
+        }
+    }
+    Ok(memory::gathered((0..found.pieces.len() as u32).map(|label| partition.root(label)))?)
 }
 
 /// The vertices on the surfaces of their faces, in the mean of those places by area; others as they are.

@@ -26,6 +26,16 @@ impl Hierarchy {
         Self { leaves, n_leaves, merges, strengths }
     }
 
+    /// The segment of every face in the finest segmentation.
+    pub(in crate::tools) fn leaves(&self) -> &[u32] {
+        &self.leaves
+    }
+
+    /// The merges in order: of each the segment kept, the one gone, and the strength.
+    pub(in crate::tools) fn merges(&self) -> impl Iterator<Item = ([u32; 2], f64)> + '_ {
+        self.merges.iter().copied().zip(self.strengths.iter().copied())
+    }
+
     /// The same where no border is weaker than one that fell before it.
     pub(in crate::tools) fn ascending(mut self) -> Self {
         let mut most = 0.0_f64;

@@ -6,9 +6,9 @@
 //! ([`explain`]), and moving faces at borders to the segment that they fit best ([`relabel`]), or, between
 //! curved segments, along creases ([`straighten`]). Sides of a few triangles, which the Hessian cannot see,
 //! are told by their planes ([`exact`]), tangent faces of CAD parts by their surfaces ([`cover`]), sides of a
-//! few rows under little noise by the clear ridges around them ([`regions`]). Where fillets are wanted apart
-//! or joined, segments are told by the surfaces of the labelling ([`mod@fillets`]). In any case a
-//! [`hierarchy`] of nested segmentations comes with it. Faces split at T-junctions ([`split`]) and [`copies`]
+//! few rows under little noise by the clear ridges around them ([`regions`]). Where surfaces of a known kind
+//! explain faces, these are segments ([`mod@fillets`]). In any case a [`hierarchy`] of nested segmentations
+//! comes with it ([`nesting`]). Faces split at T-junctions ([`split`]) and [`copies`]
 //! of faces are given back as the mesh has them.
 
 mod blends;
@@ -25,6 +25,7 @@ mod hierarchy;
 mod indicator;
 mod indicator_step;
 mod merge;
+mod nesting;
 mod noise;
 mod normalized;
 mod options;
@@ -198,7 +199,7 @@ fn whole(
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Segmentation> {
-    if options.fillets == Fillets::Automatic {
+    if options.fillets == Fillets::Unseen || !options.is_plain(values.is_some()) {
         return Ok(by_bends(mesh, values, options, settings, progress)?.0);
     }
     mesh.demand(Tool::Restore).admit(options.solve.memory_limit)?;

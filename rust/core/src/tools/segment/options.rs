@@ -24,13 +24,16 @@ pub enum SegmentMethod {
 /// What becomes of the fillets and bevels of a shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Fillets {
-    /// Segments are told by bends, and on exact shapes by their surfaces.
+    /// Segments are told by the surfaces that their faces lie on, so every fillet is one of its own, and by
+    /// bends where one smooth surface would do as well, as on free shapes.
     #[default]
     Automatic,
-    /// Segments are told by the surfaces that their faces lie on: every fillet is one of its own.
+    /// The same wherever surfaces explain the faces, also in patches of a free shape.
     Apart,
-    /// The same, and fillets and bevels belong to the larger one of the sides beside them.
+    /// The same as by default, and fillets and bevels belong to the larger one of the sides beside them.
     Joined,
+    /// Segments are told by bends alone, and on exact shapes by their surfaces: what no edge parts is one.
+    Unseen,
 }
 
 /// How to segment.
@@ -121,7 +124,7 @@ impl SegmentOptions {
         if let Some(noise) = self.noise.filter(|noise| !(*noise >= 0.0 && noise.is_finite())) {
             return Err(Error::argument("noise", format!("is {noise}; it must be finite and at least 0")));
         }
-        if self.fillets != Fillets::Automatic && !self.is_plain(values.is_some()) {
+        if matches!(self.fillets, Fillets::Apart | Fillets::Joined) && !self.is_plain(values.is_some()) {
             let problem = "are told on shapes by method \"fitted\" without fidelity; pass \"automatic\"";
             return Err(Error::argument("fillets", problem.to_owned()));
         }

@@ -7,6 +7,7 @@ use super::exact::Planes;
 use super::explain::Explain;
 use super::hierarchy::Hierarchy;
 use super::merge::{rename, within_order, Merge, Merging};
+use super::nesting::nested_leaves;
 use super::options::{SegmentMethod, SegmentOptions};
 use super::patches::patch_size;
 use super::regions::Regions;
@@ -251,7 +252,7 @@ impl<'a> Passes<'a> {
     /// Merges until nothing that may merge touches. Bends say nothing of faces that are tangent.
     fn all_merges(&self, merging: &Merging<'_>, labels: &mut [u32]) -> Result<Vec<Merge>> {
         match self.planes {
-            Some(Planes { groups: Some(_), .. }) => tangent::merged(self.surface, labels),
+            Some(Planes { groups: Some(_), .. }) => tangent::merged(self.surface, labels, |_, _| true),
             _ => merging.all(labels),
         }
     }
@@ -265,7 +266,7 @@ impl<'a> Passes<'a> {
         labels: &[u32],
     ) -> Result<Hierarchy> {
         self.report(0.98, "hierarchy");
-        let (finest, n_leaves) = self.nested_leaves(leaves, labels)?;
+        let (finest, n_leaves) = nested_leaves(self.surface, leaves, labels)?;
         let mut current = memory::twin(&finest)?;
         let within = Merging { groups: Some(labels), ..*merging };
         let mut merges: Vec<Merge> = within.all(&mut current)?;
@@ -278,48 +279,6 @@ impl<'a> Passes<'a> {
         merges.extend(outer);
         let merges = merges.iter().map(|m| ([m.kept, m.gone], m.strength));
         Ok(Hierarchy::new(finest, n_leaves, merges).ascending())
-    }
-
-    /// Each leaf belongs to the segment that has most of its faces;
-    /// faces elsewhere go to the nearest leaf of their own segment.
-    fn nested_leaves(&self, leaves: &[u32], labels: &[u32]) -> Result<(Vec<u32>, usize)> {
-        let n_leaves = leaves.iter().map(|l| *l as usize + 1).max().unwrap_or(0);
-        let mut pairs: Vec<(u32, u32)> =
-            memory::gathered(leaves.iter().copied().zip(labels.iter().copied()))?;
-        pairs.sort_unstable();
-        let mut owner = memory::repeated((0, u32::MAX), n_leaves)?;
-        for same in pairs.chunk_by(|a, b| a == b) {
-            let held = &mut owner[same[0].0 as usize];
-            if same.len() > held.0 {
-                *held = (same.len(), same[0].1);
-            }
-        }
-        // Names that no leaf has stand for segments without a leaf of their own.
-        let own = |(&leaf, &label): (&u32, &u32)| {
-            if owner[leaf as usize].1 == label {
-                leaf
-            } else {
-                u32::MAX
-            }
-        };
-        let mut nested: Vec<u32> = memory::gathered(leaves.iter().zip(labels).map(own))?;
-        let mut queue: Vec<usize> = memory::sifted((0..nested.len()).filter(|&f| nested[f] != u32::MAX))?;
-        let mut next = 0;
-        while let Some(&f) = queue.get(next) {
-            next += 1;
-            for (_, g) in self.surface.around(f) {
-                if nested[g] == u32::MAX && labels[g] == labels[f] {
-                    nested[g] = nested[f];
-                    memory::push(&mut queue, g)?;
-                }
-            }
-        }
-        for (nested, label) in nested.iter_mut().zip(labels) {
-            if *nested == u32::MAX {
-                *nested = n_leaves as u32 + label;
-            }
-        }
-        Ok(contiguous(&nested)?)
     }
 
     /// Whether what only makes borders better is left out.

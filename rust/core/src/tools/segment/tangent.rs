@@ -26,18 +26,23 @@ fn cost(a: Normals, b: Normals) -> f64 {
     a.0 * b.0 / (a.0 + b.0) * dot(apart, apart)
 }
 
-/// Merges segments that touch until none do, in the order of what that costs, and names them so.
+/// Merges segments that touch and that `may` be one until none do, in the order of what that costs, and
+/// names them so. What is kept of two may be one with what either might.
 ///
 /// # Errors
 /// [`crate::Error::Solve`] where memory is missing.
-pub(super) fn merged(surface: &Surface<'_>, labels: &mut [u32]) -> Result<Vec<Merge>> {
+pub(super) fn merged(
+    surface: &Surface<'_>,
+    labels: &mut [u32],
+    may: impl Fn(u32, u32) -> bool,
+) -> Result<Vec<Merge>> {
     let mut normals: BTreeMap<u32, Normals> = BTreeMap::new();
     let mut around: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
     for (f, &label) in labels.iter().enumerate() {
         let (area, sum) = normals.entry(label).or_insert((0.0, [0.0; 3]));
         *area += surface.areas[f];
         *sum = add(*sum, surface.vector_area(f));
-        for (_, g) in surface.around(f).filter(|&(_, g)| labels[g] != label) {
+        for (_, g) in surface.around(f).filter(|&(_, g)| labels[g] != label && may(labels[g], label)) {
             around.entry(label).or_default().insert(labels[g]);
         }
     }
@@ -106,7 +111,7 @@ mod tests {
                 _ => 2,
             })
             .collect();
-        let merges = merged(&surface, &mut labels).unwrap();
+        let merges = merged(&surface, &mut labels, |_, _| true).unwrap();
         assert_eq!(merges.len(), 2);
         assert_eq!((merges[0].kept, merges[0].gone), (2, 1));
         assert!(merges[0].strength < merges[1].strength);
