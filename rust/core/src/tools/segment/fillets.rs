@@ -42,9 +42,8 @@ pub(super) fn by_surfaces(
         None => (bent()?, None),
     };
     let (labels, n_labels) = contiguous(&labels)?;
-    let is_smooth = points.is_some();
     let points = points.as_deref().unwrap_or(&surface.positions);
-    let blends = Blends::new(surface, &labels, points, !is_smooth)?.found(BEND * options.length_weight)?;
+    let blends = Blends::new(surface, &labels, points, tessellated)?.found(BEND * options.length_weight)?;
     let hierarchy = nested(surface, &found.hierarchy, found.n_segments, &labels, &blends, tessellated)?;
     let n_segments = match options.fillets {
         Fillets::Joined => joined_count(n_labels, &blends)?,
